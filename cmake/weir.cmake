@@ -1,0 +1,46 @@
+# One target a folder; the link list of a target is the layer rule (tests/layout checks every #include against it).
+
+# Flags of all our own code. No FMA contraction: a*b + c*d must round the same way on both sides of a mirror.
+add_library(weir_flags INTERFACE)
+target_compile_options(weir_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off -fno-math-errno)
+if(WEIR_NATIVE)
+  target_compile_options(weir_flags INTERFACE -march=native)
+endif()
+if(WEIR_SANITIZE)
+  target_compile_options(weir_flags INTERFACE -fsanitize=${WEIR_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(weir_flags INTERFACE -fsanitize=${WEIR_SANITIZE})
+endif()
+
+set_property(GLOBAL PROPERTY WEIR_LIBRARIES "")
+
+# weir_library(NAME SOURCES a.cpp ... LINKS weir::core ... PRIVATE_LINKS ...)  builds the static library weir_NAME, known as weir::NAME.
+function(weir_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  add_library(weir_${name} STATIC ${arg_SOURCES})
+  add_library(weir::${name} ALIAS weir_${name})
+  set_target_properties(weir_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(weir_${name} PUBLIC cxx_std_20)
+  target_include_directories(weir_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/solvers> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/weir>)
+  target_link_libraries(weir_${name} PUBLIC ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:weir_flags> ${arg_PRIVATE_LINKS})
+  set_property(GLOBAL APPEND PROPERTY WEIR_LIBRARIES weir_${name})
+endfunction()
+
+# weir_test(KIND NAME SOURCES a.cpp ... LINKS ... [LABELS ...] [ENVIRONMENT ...])  builds one program KIND_NAME; each source file is one
+# ctest entry, named KIND.NAME.file, that runs the tests of that file.
+function(weir_test kind name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LINKS;LABELS;ENVIRONMENT" ${ARGN})
+  add_executable(${kind}_${name} ${arg_SOURCES})
+  target_include_directories(${kind}_${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${kind}_${name} PRIVATE weir_flags weir_test_main ${arg_LINKS})
+  target_compile_definitions(${kind}_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WEIR_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+  foreach(source ${arg_SOURCES})
+    get_filename_component(stem ${source} NAME_WE)
+    add_test(NAME ${kind}.${name}.${stem} COMMAND ${kind}_${name} --gtest_filter=${stem}.* --gtest_brief=1)
+    set_tests_properties(${kind}.${name}.${stem} PROPERTIES LABELS "${kind};${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
+      ENVIRONMENT "${arg_ENVIRONMENT}" FAIL_REGULAR_EXPRESSION "Running 0 tests")
+  endforeach()
+endfunction()

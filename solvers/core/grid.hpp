@@ -1,0 +1,116 @@
+// A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis;
+// sums are taken plane by plane and then in order, so no result depends on the number of threads.
+#pragma once
+#include "core/parallel.hpp"
+#include "core/types.hpp"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace weir {
+
+/// Values of type T on a box of `extent` entries. Entry (i, j, k) is at i + n_x (j + n_y k).
+template <class T, int D>
+class Grid {
+public:
+    Grid() { extent_.fill(0); }
+    explicit Grid(const Index<D>& extent, const T& value = T{}) : extent_(extent), data_(product(extent), value) {}
+
+    const Index<D>& extent() const { return extent_; }
+    std::size_t size() const { return data_.size(); }
+    bool empty() const { return data_.empty(); }
+    /// Distance in memory between neighbours along an axis.
+    std::ptrdiff_t stride(int axis) const {
+        std::ptrdiff_t s = 1;
+        for (int d = 0; d < axis; ++d) s *= extent_[d];
+        return s;
+    }
+    std::size_t linear(const Index<D>& I) const {
+        std::size_t at = 0;
+        for (int d = D - 1; d >= 0; --d) at = at * static_cast<std::size_t>(extent_[d]) + static_cast<std::size_t>(I[d]);
+        return at;
+    }
+    bool contains(const Index<D>& I) const {
+        for (int d = 0; d < D; ++d)
+            if (I[d] < 0 || I[d] >= extent_[d]) return false;
+        return true;
+    }
+    T& operator()(const Index<D>& I) { return data_[linear(I)]; }
+    const T& operator()(const Index<D>& I) const { return data_[linear(I)]; }
+    T& operator[](std::size_t i) { return data_[i]; }
+    const T& operator[](std::size_t i) const { return data_[i]; }
+    T* data() { return data_.data(); }
+    const T* data() const { return data_.data(); }
+    std::span<const T> values() const { return data_; }
+    std::span<T> values() { return data_; }
+    void fill(const T& value) { std::fill(data_.begin(), data_.end(), value); }
+    void swap(Grid& other) {
+        std::swap(extent_, other.extent_);
+        data_.swap(other.data_);
+    }
+
+private:
+    Index<D> extent_;
+    std::vector<T> data_;
+};
+
+/// f(I) for every I in [lo, hi), threaded over the slowest axis; x runs innermost.
+template <int D, class F>
+void for_each_in(const Index<D>& lo, const Index<D>& hi, F&& f) {
+    for (int d = 0; d < D; ++d)
+        if (hi[d] <= lo[d]) return;
+    parallel_for(lo[D - 1], hi[D - 1], [&](int outer) {
+        Index<D> I = lo;
+        I[D - 1] = outer;
+        if constexpr (D == 2) {
+            for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
+        } else {
+            for (I[1] = lo[1]; I[1] < hi[1]; ++I[1])
+                for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
+        }
+    });
+}
+
+/// f(I) for every entry of a box of `extent` entries.
+template <int D, class F>
+void for_each_cell(const Index<D>& extent, F&& f) {
+    for_each_in(Index<D>::constant(0), extent, f);
+}
+
+/// Sum of f(I) over a box, plane by plane along the slowest axis and then in order: bitwise equal for any thread count.
+template <int D, class F>
+real sum_over(const Index<D>& extent, F&& f) {
+    return ordered_sum(extent[D - 1], [&](int outer) {
+        Index<D> I{};
+        I[D - 1] = outer;
+        real sum = 0;
+        if constexpr (D == 2) {
+            for (I[0] = 0; I[0] < extent[0]; ++I[0]) sum += f(I);
+        } else {
+            for (I[1] = 0; I[1] < extent[1]; ++I[1])
+                for (I[0] = 0; I[0] < extent[0]; ++I[0]) sum += f(I);
+        }
+        return sum;
+    });
+}
+
+/// Largest f(I) over a box; NaN if any is NaN (so that a maximum never hides one). -infinity for an empty box.
+template <int D, class F>
+real max_over(const Index<D>& extent, F&& f) {
+    return ordered_max(extent[D - 1], [&](int outer) {
+        Index<D> I{};
+        I[D - 1] = outer;
+        real m = -infinity;
+        const auto see = [&](real value) { m = (value > m || std::isnan(value)) ? value : m; };
+        if constexpr (D == 2) {
+            for (I[0] = 0; I[0] < extent[0]; ++I[0]) see(f(I));
+        } else {
+            for (I[1] = 0; I[1] < extent[1]; ++I[1])
+                for (I[0] = 0; I[0] < extent[0]; ++I[0]) see(f(I));
+        }
+        return m;
+    });
+}
+
+}  // namespace weir

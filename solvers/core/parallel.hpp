@@ -1,0 +1,52 @@
+// Threads: one static division of a range, and reductions whose order never depends on the number of threads.
+#pragma once
+#include "core/types.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <omp.h>
+
+namespace weir {
+
+/// Number of threads that every parallel loop of the library uses; at least 1. Default: OpenMP's own.
+int threads();
+void set_threads(int count);
+
+/// f(i) for i in [begin, end), in contiguous blocks, one a thread. f must write only what belongs to i.
+template <class F>
+void parallel_for(int begin, int end, F&& f) {
+#pragma omp parallel for schedule(static) num_threads(threads()) if (threads() > 1 && end - begin > 1)
+    for (int i = begin; i < end; ++i) f(i);
+}
+
+namespace detail {
+/// Scratch of the calling thread for ordered reductions: grows, never shrinks, so that later steps allocate nothing.
+std::vector<real>& reduction_scratch(std::size_t count);
+}  // namespace detail
+
+/// f(0) + f(1) + ... + f(count - 1), added in that order.
+template <class F>
+real ordered_sum(int count, F&& f) {
+    auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
+    parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+    real sum = 0;
+    for (int i = 0; i < count; ++i) sum += part[static_cast<std::size_t>(i)];
+    return sum;
+}
+
+/// The largest of f(0) .. f(count - 1); NaN if any is NaN.
+template <class F>
+real ordered_max(int count, F&& f) {
+    auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
+    parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+    real largest = -infinity;
+    for (int i = 0; i < count; ++i) {
+        const real value = part[static_cast<std::size_t>(i)];
+        if (value > largest || std::isnan(value)) largest = value;
+        if (std::isnan(largest)) break;
+    }
+    return largest;
+}
+
+}  // namespace weir

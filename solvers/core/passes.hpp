@@ -1,0 +1,57 @@
+// What a step is made of, by name: calls, milliseconds, bytes moved at least. A pass times itself, so that step functions stay
+// free of clocks. Recording allocates only when a name is seen for the first time.
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir {
+
+/// Accumulated cost of one named pass.
+struct Pass {
+    std::string name;
+    std::int64_t calls = 0;
+    double seconds = 0;
+};
+
+class Passes {
+public:
+    /// Measures from its construction to its destruction.
+    class Timer {
+    public:
+        explicit Timer(Passes& owner, std::size_t pass) : owner_(owner), pass_(pass), start_(clock::now()) {}
+        Timer(const Timer&) = delete;
+        Timer& operator=(const Timer&) = delete;
+        ~Timer() {
+            Pass& p = owner_.list_[pass_];
+            ++p.calls;
+            p.seconds += std::chrono::duration<double>(clock::now() - start_).count();
+        }
+
+    private:
+        using clock = std::chrono::steady_clock;
+        Passes& owner_;
+        std::size_t pass_;
+        clock::time_point start_;
+    };
+
+    /// `const auto timed = passes.time("project");` as the first line of a pass.
+    [[nodiscard]] Timer time(std::string_view name) { return Timer(*this, find(name)); }
+    const std::vector<Pass>& list() const { return list_; }
+    void reset() {
+        for (Pass& p : list_) p.calls = 0, p.seconds = 0;
+    }
+
+private:
+    std::size_t find(std::string_view name) {
+        for (std::size_t i = 0; i < list_.size(); ++i)
+            if (list_[i].name == name) return i;
+        list_.push_back({std::string(name), 0, 0});
+        return list_.size() - 1;
+    }
+    std::vector<Pass> list_;
+};
+
+}  // namespace weir

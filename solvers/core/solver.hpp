@@ -1,0 +1,97 @@
+// What the time loop, the output and the validation see of any solver: steps, views of fields, integrals, checkpoints.
+#pragma once
+#include "core/checkpoint.hpp"
+#include "core/passes.hpp"
+#include "core/types.hpp"
+
+#include <array>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace weir {
+
+inline constexpr real not_applicable = std::numeric_limits<real>::quiet_NaN();
+
+/// What one step answers. NaN means that the quantity does not exist for the solver. Plain data: filling it allocates nothing.
+struct StepReport {
+    real dt = 0;                              // [s]
+    real cfl = not_applicable;                // dt max(|u|/h)
+    real max_divergence = not_applicable;     // max |div u| over fluid cells after the step [1/s]
+    int iterations = 0;                       // of the pressure (or constraint) solve
+    real residual_before = not_applicable;    // relative to the right-hand side (l2)
+    real residual_after = not_applicable;     // true residual, recomputed; relative (l2)
+    real residual_max = not_applicable;       // true residual, max norm, in units of the right-hand side (so dt/rho times it bounds div u)
+    real density_error = not_applicable;      // particle solvers: mean compression
+    real max_density_error = not_applicable;  // particle solvers: max compression
+};
+
+enum class Where { cell, face, particle };
+
+/// A view of one quantity; valid until the next step. Cell data: one span a component, each of product(cells) values, x fastest.
+/// Face data: one span an axis; span a has cells + e_a values. Particle data: one span a component, `count` values each.
+struct FieldView {
+    std::string name;
+    std::string unit;
+    Where where = Where::cell;
+    std::string set;  // particle sets by name: "markers", "particles"; empty for grids
+    std::vector<std::span<const real>> data;
+    int components() const { return static_cast<int>(data.size()); }
+};
+
+/// Geometry of the grid on which cell and face fields live. Axis 2 has one cell and size 0 in 2D.
+struct GridView {
+    int dim = 0;  // 0: this solver has no grid
+    std::array<int, 3> cells{1, 1, 1};
+    std::array<real, 3> origin{0, 0, 0};   // lower corner of the domain [m]
+    std::array<real, 3> spacing{0, 0, 0};  // [m]
+};
+
+/// Everything a solver shows. A particle set's positions are the field named "position" of that set.
+struct FieldSet {
+    GridView grid;
+    std::vector<FieldView> fields;
+    const FieldView* find(std::string_view name) const {
+        for (const auto& f : fields)
+            if (f.name == name) return &f;
+        return nullptr;
+    }
+    const FieldView* find(std::string_view set, std::string_view name) const {
+        for (const auto& f : fields)
+            if (f.set == set && f.name == name) return &f;
+        return nullptr;
+    }
+};
+
+/// A named integral or extremum over the whole domain: "kinetic_energy" [J per metre of depth in 2D], "mass", "volume", ...
+struct Integral {
+    std::string name;
+    std::string unit;
+    real value = 0;
+};
+
+class Solver {
+public:
+    virtual ~Solver() = default;
+    /// Advances by dt [s]. Throws NumericalFailure, leaving whatever state it reached.
+    virtual StepReport step(real dt) = 0;
+    /// The largest step that the solver and every effect in the scene advise now [s]; infinity where nothing limits.
+    virtual real advised_dt() const = 0;
+    virtual FieldSet fields() const = 0;
+    virtual std::vector<Integral> integrals() const = 0;
+    /// Simulated time [s].
+    virtual real time() const = 0;
+    /// Everything the next step depends on, exactly: restore(save()) continues bit for bit.
+    virtual void save(Checkpoint& to) const = 0;
+    virtual void restore(const Checkpoint& from) = 0;
+    virtual const Passes& passes() const = 0;
+    /// Bytes of all state and scratch that the solver holds.
+    virtual std::size_t bytes() const = 0;
+    /// Passes may be reset between frames, so that reports speak of the interval.
+    virtual Passes& passes() = 0;
+};
+
+}  // namespace weir

@@ -1,0 +1,90 @@
+// The pressure equation on cells of any shape of fluid, solved by name.
+//
+//     (A p)(I) = Σ_faces w_f (p(I) − p(N)) = b(I)      for each fluid cell I; N is its neighbour across face f
+//
+// w_f ≥ 0 is the face weight (fraction open to flow × anisotropy; θ⁻¹ at a ghost-fluid surface, Gibou et al. 2002; Batty et al. 2007).
+// A neighbour in air, or beyond a side of the domain whose face weight is not zero, is p = 0; a neighbour that is solid has w_f = 0.
+// h² is scaled out: b = −h² ∇·u ρ/dt for a projection. Connected components without any air neighbour are singular: each gets a
+// compatible right-hand side (its mean removed) and a zero-mean solution.
+#pragma once
+#include "core/grid.hpp"
+#include "core/types.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir::poisson {
+
+enum class Cell : std::uint8_t { solid = 0, fluid = 1, air = 2 };
+
+/// The matrix, as data. Faces between two non-fluid cells are ignored; faces of solid cells count as closed whatever their weight.
+template <int D>
+struct Operator {
+    Grid<Cell, D> cells;
+    /// weight[a] has cells.extent() + e<D>(a) entries; entry I is the face on the lower side of cell I along a. All D empty: every
+    /// face between non-solid cells weighs axis_weight[a], and domain sides are closed (the fast path by flags alone).
+    std::array<Grid<real, D>, D> weight;
+    /// Multiplies every face weight along an axis: (h/h_a)² for anisotropic cells.
+    Vec<D> axis_weight = Vec<D>::constant(1);
+    /// The first and the last cell along a periodic axis are neighbours; the face between them is entry 0 (entry n is ignored).
+    std::array<bool, D> periodic{};
+};
+
+/// What every solve answers.
+struct Report {
+    int iterations = 0;
+    bool converged = false;
+    real residual_before = 0;   // ‖b − A p₀‖₂ / ‖b‖₂ with the compatible b
+    real residual_after = 0;    // the same for the answer, recomputed in double precision
+    real residual_max = 0;      // ‖b − A p‖_∞, absolute
+    std::vector<real> history;  // relative residual after each iteration, as the iteration sees it; empty unless asked for
+    double setup_seconds = 0;   // of the last setup()
+    double solve_seconds = 0;
+    std::size_t bytes = 0;  // held by the solver after setup, without the caller's p, b and Operator
+    int components = 0;     // closed (singular) components of fluid
+};
+
+struct Options {
+    real tolerance = 1e-8;  // on ‖b − A p‖₂ / ‖b‖₂
+    int max_iterations = 1000;
+    bool fixed_iterations = false;  // run exactly max_iterations and accept what comes (what games do)
+    bool record_history = false;
+};
+
+/// One method. Usage: setup() when cells or weights changed, solve() as often as wanted.
+template <int D>
+class Solver {
+public:
+    virtual ~Solver() = default;
+    virtual void setup(const Operator<D>& A) = 0;
+    /// Solves A p = b. p holds the first guess on entry; cells that are not fluid are set to 0. Throws NumericalFailure("pressure", ...)
+    /// when the tolerance is missed after max_iterations (unless fixed_iterations) or when the residual is not finite.
+    /// The reference stays valid until the next call; after the first, a solve with an unchanged structure allocates nothing.
+    virtual const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) = 0;
+    virtual std::size_t bytes() const = 0;
+};
+
+/// A method of the registry. `iterative`: its error can be studied against its iteration count.
+struct Method {
+    std::string name;
+    std::string doc;
+    bool iterative = true;
+    bool whole_box_only = false;  // needs every cell fluid, uniform weights and closed sides (dct)
+};
+
+/// multigrid, cg_mic0, cg_jacobi, cg, eigen_iccg, cholmod, red_black, jacobi, dct: always in this order.
+const std::vector<Method>& methods();
+
+/// Throws BadInput for an unknown name, naming the known ones.
+template <int D>
+std::unique_ptr<Solver<D>> make_solver(std::string_view method, const Options& options);
+
+/// r = b − A p in double precision on fluid cells, zero elsewhere; b is taken as it stands.
+template <int D>
+void residual(const Operator<D>& A, const Grid<real, D>& p, const Grid<real, D>& b, Grid<real, D>& r);
+
+}  // namespace weir::poisson

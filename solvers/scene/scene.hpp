@@ -1,0 +1,132 @@
+// A scene as plain data: read from TOML against a schema, checked as a whole, defaults filled in, every value with its place.
+#pragma once
+#include "core/error.hpp"
+#include "core/types.hpp"
+#include "scene/schema.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace weir::scene {
+
+/// Where a value stands in its file; line 0: it is a default or came from --set.
+struct Place {
+    int line = 0;
+    int column = 0;
+};
+
+/// One thing wrong with a scene, and what would be right.
+struct Problem {
+    std::string file;
+    Place place;
+    int width = 1;        // characters to underline
+    std::string message;  // what was found and what is allowed
+    std::string hint;     // "known: ...", shown behind the underline; may be empty
+};
+
+/// All problems of one scene at once. what() is the whole report, as a user sees it (STYLE: file:line:column: message, line, underline).
+struct BadScene : BadInput {
+    BadScene(std::vector<Problem> problems, std::string_view source);
+    std::vector<Problem> problems;
+};
+
+class Table;
+/// Lists of integers and numbers are kept as numbers; integers are exact to 2^53.
+using Value =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>, Table, std::vector<Table>>;
+
+/// Checked values by key. A path "grid.cells" descends through tables. Reading a key that the schema does not have, or an absent key
+/// without default, is a programming error: std::logic_error.
+class Table {
+public:
+    bool has(std::string_view path) const;
+    bool flag(std::string_view path) const;
+    std::int64_t integer(std::string_view path) const;
+    real number(std::string_view path) const;
+    real number_or(std::string_view path, real fallback) const { return has(path) ? number(path) : fallback; }
+    const std::string& text(std::string_view path) const;
+    std::string text_or(std::string_view path, std::string_view fallback) const { return has(path) ? text(path) : std::string(fallback); }
+    const std::vector<double>& numbers(std::string_view path) const;
+    const std::vector<std::string>& texts(std::string_view path) const;
+    const Table& table(std::string_view path) const;
+    const std::vector<Table>& tables(std::string_view path) const;  // an absent list is empty
+    Place place(std::string_view path) const;
+    template <int D>
+    Vec<D> vec(std::string_view path) const {
+        Vec<D> v{};
+        const auto& list = numbers(path);
+        for (int d = 0; d < D && d < static_cast<int>(list.size()); ++d) v[d] = list[static_cast<std::size_t>(d)];
+        return v;
+    }
+    template <int D>
+    Index<D> index(std::string_view path) const {
+        Index<D> i{};
+        const auto& list = numbers(path);
+        for (int d = 0; d < D && d < static_cast<int>(list.size()); ++d) i[d] = static_cast<int>(list[static_cast<std::size_t>(d)]);
+        return i;
+    }
+    /// Keys in the order of the file, then defaults in schema order.
+    std::vector<std::string> keys() const;
+
+    void set(const std::string& key, Value value, Place place);
+    const Value* find(std::string_view path) const;
+
+private:
+    struct Entry;
+    std::vector<std::pair<std::string, Entry>> entries_;
+};
+
+struct Override {
+    std::string key;    // "grid.cells", "effects.buoyancy.alpha", "solids[0].centre"
+    std::string value;  // a TOML value: "[64, 64]", "true", "\"pic\"" (a bare word is taken as a string)
+};
+
+/// A read scene. root() has every key; the shortcuts are what every solver asks first.
+class Scene {
+public:
+    const Table& root() const { return root_; }
+    const std::string& file() const { return file_; }
+    const std::string& source() const { return source_; }
+    const std::string& solver() const { return solver_; }
+    int dim() const { return dim_; }
+    /// Parameters of an effect that the scene names; nullptr where it does not.
+    const Table* effect(std::string_view name) const;
+    /// A problem at a key of this scene, for checks that need geometry; throws BadScene.
+    [[noreturn]] void refuse(std::string_view path, const std::string& message, const std::string& hint = "") const;
+    const std::vector<Override>& overrides() const { return overrides_; }
+
+    bool has(std::string_view path) const { return root_.has(path); }
+    real number(std::string_view path) const { return root_.number(path); }
+    std::int64_t integer(std::string_view path) const { return root_.integer(path); }
+    const std::string& text(std::string_view path) const { return root_.text(path); }
+    bool flag(std::string_view path) const { return root_.flag(path); }
+    template <int D>
+    Vec<D> vec(std::string_view path) const {
+        return root_.vec<D>(path);
+    }
+    template <int D>
+    Index<D> index(std::string_view path) const {
+        return root_.index<D>(path);
+    }
+
+private:
+    friend Scene parse(std::string_view, const std::string&, const std::vector<SolverSchema>&, const std::vector<Override>&);
+    Table root_;
+    std::string file_, source_, solver_;
+    int dim_ = 2;
+    std::vector<Override> overrides_;
+};
+
+/// Reads and checks a scene from text; `file` is its name in messages. Throws BadScene with every problem found.
+Scene parse(std::string_view source, const std::string& file, const std::vector<SolverSchema>& solvers,
+            const std::vector<Override>& overrides = {});
+/// A folder stands for its scene.toml. Throws BadInput when it cannot be read.
+Scene read(const std::filesystem::path& path, const std::vector<SolverSchema>& solvers, const std::vector<Override>& overrides = {});
+
+}  // namespace weir::scene
