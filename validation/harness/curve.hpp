@@ -1,0 +1,40 @@
+// Curves and the panels they are drawn in: what references give, metrics compare, and figures show.
+#pragma once
+#include "core/types.hpp"
+
+#include <string>
+#include <vector>
+
+namespace weir::validation {
+
+/// Pairs (x, y) under one name. Data of others are drawn as points, our own results as lines.
+struct Curve {
+    std::string label;
+    std::vector<real> x, y;
+    bool points = false;
+    std::size_t size() const { return x.size(); }
+};
+
+/// y at `at` on the straight line between neighbours; NaN outside the curve (nobody extrapolates unawares). x must ascend.
+inline real interpolate(const Curve& c, real at) {
+    if (c.x.empty() || !(at >= c.x.front()) || !(at <= c.x.back())) return std::nan("");
+    std::size_t i = 1;
+    while (i < c.x.size() && c.x[i] < at) ++i;
+    if (i == c.x.size() || c.x[i] == c.x[i - 1]) return c.y[i - 1];
+    const real s = (at - c.x[i - 1]) / (c.x[i] - c.x[i - 1]);
+    return (1 - s) * c.y[i - 1] + s * c.y[i];
+}
+
+struct Axis {
+    std::string label;  // quantity and unit: "y [m]"
+    bool log = false;
+};
+
+/// One diagram of a case's figure.
+struct Panel {
+    std::string title;
+    Axis x, y;
+    std::vector<Curve> curves;
+};
+
+}  // namespace weir::validation

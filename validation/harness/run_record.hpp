@@ -1,0 +1,110 @@
+// One finished run of a scene as metrics see it: the last fields, every step's report and integrals, the probes, the cost.
+#pragma once
+#include "core/error.hpp"
+#include "core/solver.hpp"
+#include "scene/scene.hpp"
+#include "validation/harness/curve.hpp"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace weir {
+class Simulation;
+}
+
+namespace weir::validation {
+
+/// The run at one time: index 0 is the initial state (its report is empty), then one entry a step.
+struct Moment {
+    std::int64_t step = 0;
+    real time = 0;  // [s]
+    StepReport report;
+    std::vector<real> integrals;  // in the order of RunRecord::integrals
+    std::vector<real> observed;   // in the order of RunRecord::observers
+};
+
+/// Samples of one probe of the scene. Row i of `values` was taken at times[i] and has one entry a column.
+struct ProbeSeries {
+    std::string name;
+    std::string kind;                  // point, line, gauge, wall_pressure, integral, front
+    std::vector<std::string> columns;  // "u [m/s]", "height [m]", ...
+    std::vector<Vec<3>> positions;     // of each column's sample where it has one (points, lines, gauges)
+    std::vector<real> times;           // [s]
+    std::vector<std::vector<real>> values;
+    /// History of one column.
+    Curve column(std::size_t c) const {
+        Curve curve{.label = name, .x = times, .y = {}};
+        for (const auto& row : values) curve.y.push_back(row.at(c));
+        return curve;
+    }
+};
+
+struct RunRecord {
+    std::shared_ptr<const scene::Scene> scene;
+    std::shared_ptr<Simulation> simulation;  // as it stands at the end; keeps `fields` alive. Null in tests of synthetic records
+    FieldSet fields;                         // at the end
+    real time = 0;                           // at the end [s]
+    std::vector<Integral> integrals;         // names, units and last values
+    std::vector<std::string> observers;      // names of metrics that watched every step
+    std::vector<Moment> history;
+    std::vector<ProbeSeries> probes;
+    std::vector<Pass> passes;            // calls and seconds of each pass over the whole run
+    double seconds = 0;                  // wall clock of all steps
+    std::optional<std::string> failure;  // why the run ended early: its numbers must not be used
+
+    std::int64_t steps() const { return history.empty() ? 0 : history.back().step; }
+    const ProbeSeries& probe(std::string_view name) const {
+        for (const auto& p : probes)
+            if (p.name == name) return p;
+        throw BadInput("the scene has no probe \"" + std::string(name) + "\"");
+    }
+    const FieldView& field(std::string_view name) const {
+        if (const FieldView* f = fields.find(name)) return *f;
+        throw BadInput("the solver shows no field \"" + std::string(name) + "\"");
+    }
+    bool has_integral(std::string_view name) const { return index_of(name) < integrals.size(); }
+    /// An integral, an observed metric, or a number of the step reports (dt, cfl, divergence, iterations, residual, residual_max)
+    /// against time. Reports have no value at the initial state, so their series begins with the first step.
+    Curve series(std::string_view name) const;
+
+private:
+    std::size_t index_of(std::string_view name) const {
+        std::size_t i = 0;
+        while (i < integrals.size() && integrals[i].name != name) ++i;
+        return i;
+    }
+};
+
+inline Curve RunRecord::series(std::string_view name) const {
+    static const std::map<std::string, real (*)(const StepReport&), std::less<>> reports = {
+        {"dt", [](const StepReport& r) { return r.dt; }},
+        {"cfl", [](const StepReport& r) { return r.cfl; }},
+        {"divergence", [](const StepReport& r) { return r.max_divergence; }},
+        {"iterations", [](const StepReport& r) { return static_cast<real>(r.iterations); }},
+        {"residual", [](const StepReport& r) { return r.residual_after; }},
+        {"residual_max", [](const StepReport& r) { return r.residual_max; }},
+        {"density_error", [](const StepReport& r) { return r.density_error; }},
+    };
+    Curve curve{.label = std::string(name), .x = {}, .y = {}};
+    const auto add = [&](const Moment& m, real value) { curve.x.push_back(m.time), curve.y.push_back(value); };
+    if (const std::size_t i = index_of(name); i < integrals.size()) {
+        for (const auto& m : history) add(m, m.integrals.at(i));
+        return curve;
+    }
+    for (std::size_t i = 0; i < observers.size(); ++i) {
+        if (observers[i] != name) continue;
+        for (const auto& m : history) add(m, m.observed.at(i));
+        return curve;
+    }
+    const auto report = reports.find(name);
+    if (report == reports.end()) throw BadInput("no integral, observed metric or step report is called \"" + std::string(name) + "\"");
+    for (const auto& m : history)
+        if (m.step > 0) add(m, report->second(m.report));
+    return curve;
+}
+
+}  // namespace weir::validation
