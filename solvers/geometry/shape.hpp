@@ -1,0 +1,53 @@
+// Shapes as signed distances (negative inside), made from a scene's tables: the one description of liquid, solids and emitters.
+// Distances of box, sphere, plane, capsule and cylinder are exact; a union's is exact outside, a difference's is a lower bound of the
+// magnitude (Quilez 2008, "Modeling with distance functions"; Ericson 2005, ch. 5).
+#pragma once
+#include "core/types.hpp"
+#include "scene/scene.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace weir::geometry {
+
+/// A closed region of space at rest. Immutable, cheap to copy by pointer.
+template <int D>
+class Shape {
+public:
+    virtual ~Shape() = default;
+    /// Signed distance from x to the surface [m], negative inside.
+    virtual real distance(const Vec<D>& x) const = 0;
+    /// Where moving shapes turn about when no centre is given.
+    virtual Vec<D> centre() const = 0;
+    bool contains(const Vec<D>& x) const { return distance(x) < 0; }
+};
+
+template <int D>
+using ShapePtr = std::shared_ptr<const Shape<D>>;
+
+template <int D>
+ShapePtr<D> box(const Vec<D>& min, const Vec<D>& max);
+/// A circle in 2D.
+template <int D>
+ShapePtr<D> sphere(const Vec<D>& centre, real radius);
+/// The half space behind the normal (which need not have length one).
+template <int D>
+ShapePtr<D> plane(const Vec<D>& point, const Vec<D>& normal);
+template <int D>
+ShapePtr<D> capsule(const Vec<D>& from, const Vec<D>& to, real radius);
+/// Flat-ended; in 2D a rectangle of half width `radius` about the axis.
+template <int D>
+ShapePtr<D> cylinder(const Vec<D>& from, const Vec<D>& to, real radius);
+template <int D>
+ShapePtr<D> unite(std::vector<ShapePtr<D>> parts);
+template <int D>
+ShapePtr<D> subtract(ShapePtr<D> from, std::vector<ShapePtr<D>> minus);
+
+/// The shape that a scene's table describes: { shape = "sphere", centre = [...], radius = ... }.
+template <int D>
+ShapePtr<D> make_shape(const scene::Table& table);
+/// All shapes of a list of tables ("liquid", ...), in order.
+template <int D>
+std::vector<ShapePtr<D>> make_shapes(const std::vector<scene::Table>& tables);
+
+}  // namespace weir::geometry

@@ -1,0 +1,108 @@
+#include "geometry/solids.hpp"
+
+#include <algorithm>
+
+namespace weir::geometry {
+
+template <int D>
+Solids<D>::Solids(const std::vector<scene::Table>& tables) {
+    for (const auto& table : tables) {
+        Solid<D> solid;
+        solid.shape = make_shape<D>(table);
+        if (table.has("motion")) solid.motion = Motion<D>::make(table.table("motion"), solid.shape->centre());
+        solid.no_slip = table.text_or("slip", "free") == "no";
+        solids_.push_back(std::move(solid));
+    }
+    poses_.resize(solids_.size());
+    set_time(0);
+}
+
+template <int D>
+bool Solids<D>::moving() const {
+    return std::any_of(solids_.begin(), solids_.end(), [](const Solid<D>& s) { return s.motion.moves(); });
+}
+
+template <int D>
+void Solids<D>::set_time(real t) {
+    for (std::size_t i = 0; i < solids_.size(); ++i) poses_[i] = solids_[i].motion.pose(t);
+}
+
+template <int D>
+real Solids<D>::distance(const Vec<D>& x) const {
+    real d = infinity;
+    for (std::size_t i = 0; i < solids_.size(); ++i) d = std::min(d, distance(i, x));
+    return d;
+}
+
+template <int D>
+std::size_t Solids<D>::nearest(const Vec<D>& x) const {
+    std::size_t best = 0;
+    real d = infinity;
+    for (std::size_t i = 0; i < solids_.size(); ++i)
+        if (const real di = distance(i, x); di < d) d = di, best = i;
+    return best;
+}
+
+template <int D>
+Vec<D> Solids<D>::normal(const Vec<D>& x, real eps) const {
+    Vec<D> n;
+    for (int a = 0; a < D; ++a) {
+        const Vec<D> step = eps * Vec<D>::unit(a);
+        n[a] = distance(x + step) - distance(x - step);
+    }
+    const real length = norm(n);
+    return length > 0 ? n / length : Vec<D>::unit(D - 1);
+}
+
+template <int D>
+Vec<D> Solids<D>::push_out(const Vec<D>& x, real margin, real eps) const {
+    Vec<D> y = x;
+    for (int newton = 0; newton < 2; ++newton) {
+        const real d = distance(y);
+        if (d >= margin) break;
+        y += (margin - d) * normal(y, eps);
+    }
+    return y;
+}
+
+real fraction_positive(real a, real b) {
+    if (a >= 0 && b >= 0) return 1;
+    if (a < 0 && b < 0) return 0;
+    return a >= 0 ? a / (a - b) : b / (b - a);
+}
+
+namespace {
+
+/// Area cut off a unit square at corner `at` by the zero crossings on its two edges; crossing_to(a, b) is measured from a.
+real corner_area(const std::array<real, 4>& v, std::size_t at) {
+    const real here = v[at], next = v[(at + 1) % 4], before = v[(at + 3) % 4];
+    return 0.5 * (here / (here - next)) * (here / (here - before));
+}
+
+}  // namespace
+
+real fraction_positive(const std::array<real, 4>& v) {
+    std::array<bool, 4> in{};
+    int count = 0;
+    for (std::size_t i = 0; i < 4; ++i) count += in[i] = v[i] < 0;
+    if (count == 0) return 1;
+    if (count == 4) return 0;
+    const auto find = [&](bool inside) { return static_cast<std::size_t>(std::find(in.begin(), in.end(), inside) - in.begin()); };
+    if (count == 1) return 1 - corner_area(v, find(true));
+    if (count == 3) return corner_area(v, find(false));
+    if (in[0] == in[2]) {  // saddle: two opposite corners inside
+        const bool middle_inside = v[0] + v[1] + v[2] + v[3] < 0;
+        const std::size_t odd = in[0] == middle_inside ? 1 : 0;  // corners that are cut off on their own
+        const real cut = corner_area(v, odd) + corner_area(v, odd + 2);
+        return middle_inside ? cut : 1 - cut;
+    }
+    std::size_t first = 0;  // inside corners are first and first + 1; the cut runs between the two edges across
+    while (!(in[first] && in[(first + 1) % 4])) ++first;
+    const real near = fraction_positive(v[first], v[(first + 3) % 4]), far = fraction_positive(v[(first + 1) % 4], v[(first + 2) % 4]);
+    return 0.5 * (near + far);
+}
+
+template class Solids<2>;
+template class Solids<3>;
+
+}  // namespace weir::geometry

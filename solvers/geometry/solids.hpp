@@ -1,0 +1,72 @@
+// The solids of a scene at a time: distance, velocity, and the fraction of each cell face that is open to flow.
+#pragma once
+#include "core/types.hpp"
+#include "geometry/motion.hpp"
+#include "geometry/shape.hpp"
+#include "scene/scene.hpp"
+
+#include <array>
+#include <vector>
+
+namespace weir::geometry {
+
+template <int D>
+struct Solid {
+    ShapePtr<D> shape;
+    Motion<D> motion;
+    bool no_slip = false;
+};
+
+/// All solids; set_time() places them, every query speaks of that time.
+template <int D>
+class Solids {
+public:
+    Solids() = default;
+    /// From the scene's list "solids".
+    explicit Solids(const std::vector<scene::Table>& tables);
+
+    bool empty() const { return solids_.empty(); }
+    std::size_t count() const { return solids_.size(); }
+    /// Whether any solid moves: otherwise fractions never change.
+    bool moving() const;
+    void set_time(real t);
+    const Solid<D>& operator[](std::size_t i) const { return solids_[i]; }
+
+    /// Signed distance to the nearest solid [m], negative inside; +infinity without solids.
+    real distance(const Vec<D>& x) const;
+    real distance(std::size_t solid, const Vec<D>& x) const { return solids_[solid].shape->distance(poses_[solid].to_rest(x)); }
+    /// The solid whose surface is nearest (deepest inside wins); needs at least one.
+    std::size_t nearest(const Vec<D>& x) const;
+    /// Velocity of the nearest solid's material at x [m/s].
+    Vec<D> velocity(const Vec<D>& x) const { return poses_[nearest(x)].velocity_at(x); }
+    /// Outward unit normal of the distance field, by central differences over ± eps [m].
+    Vec<D> normal(const Vec<D>& x, real eps) const;
+    /// x, or the nearest point at distance `margin` outside when x is closer than that (two Newton steps along the gradient).
+    Vec<D> push_out(const Vec<D>& x, real margin, real eps) const;
+    const Pose<D>& pose(std::size_t solid) const { return poses_[solid]; }
+
+private:
+    std::vector<Solid<D>> solids_;
+    std::vector<Pose<D>> poses_;
+};
+
+/// Fraction of a segment where a linear function of the end values is positive (outside the solid), in [0, 1].
+real fraction_positive(real a, real b);
+/// Fraction of a square where the solid is not, from the signed distances at its corners in order (0,0) (1,0) (1,1) (0,1), by marching
+/// squares with linear edges (Ng, Min & Gibou 2009). The saddle is resolved by the mean.
+real fraction_positive(const std::array<real, 4>& corner);
+
+/// Open fraction of the face on the lower side along `axis` of the cell whose lower corner is x: `distance` at the corners of the face.
+template <int D, class Distance>
+real open_fraction(const Distance& distance, const Vec<D>& x, const Vec<D>& h, int axis) {
+    const int b = (axis + 1) % D;
+    if constexpr (D == 2) {
+        return fraction_positive(distance(x), distance(x + h[b] * Vec<D>::unit(b)));
+    } else {
+        const int c = (axis + 2) % D;
+        const Vec<D> eb = h[b] * Vec<D>::unit(b), ec = h[c] * Vec<D>::unit(c);
+        return fraction_positive({distance(x), distance(x + eb), distance(x + eb + ec), distance(x + ec)});
+    }
+}
+
+}  // namespace weir::geometry
