@@ -11,8 +11,10 @@
 
 namespace weir {
 
-enum class Stage { source, force, finish };  // the places in a step where physics may act
-inline constexpr int stage_count = 3;
+/// The places in a step where physics may act: source (emitters, heaters), force (explicit rates, u += dt f), implicit (linear solves
+/// after all explicit rates are in), finish (after the projection).
+enum class Stage { source, force, implicit, finish };
+inline constexpr int stage_count = 4;
 
 /// The fields that effects asked for, by name. Two effects that need the same field share it.
 class FieldPlan {
