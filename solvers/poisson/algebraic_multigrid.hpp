@@ -1,0 +1,34 @@
+// Aggregation multigrid with the K-cycle (Notay & Vassilevski 2008; Notay 2010): slower than the geometric cycle on open water, and
+// indifferent to walls, slits and face weights of any size, because it coarsens along the strong connections of the matrix only.
+#pragma once
+#include "poisson/aggregation.hpp"
+#include "poisson/sparse_cholesky.hpp"
+
+namespace weir::poisson {
+
+class AlgebraicMultigrid {
+public:
+    /// The K-cycle takes inner products, so M changes with r: conjugate gradients must be flexible.
+    static constexpr bool is_linear = false;
+
+    void prepare(const Matrix& A, const Components& components);
+    /// z = M r: one cycle. r must be compatible in closed components.
+    void apply(const Vector& r, Vector& z);
+    std::size_t bytes() const;
+
+private:
+    struct Level {
+        Matrix own;  // empty on the finest level, whose matrix belongs to the caller
+        const Matrix* A = nullptr;
+        Aggregation groups;       // to the next level
+        Vector r, x, c, v, d, w;  // right-hand side and answer of this level; directions of the K-cycle and their products
+        const Matrix& matrix() const { return A != nullptr ? *A : own; }
+    };
+    void cycle(std::size_t l, const Vector& r, Vector& z);
+    void accelerate(std::size_t l);
+    std::vector<Level> levels_;
+    std::unique_ptr<SparseCholesky> coarsest_;
+    Components coarsest_components_;
+};
+
+}  // namespace weir::poisson

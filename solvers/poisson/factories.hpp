@@ -1,0 +1,29 @@
+// One maker a method, defined where the method is.
+#pragma once
+#include "poisson/poisson.hpp"
+
+namespace weir::poisson {
+
+template <int D>
+using Made = std::unique_ptr<Solver<D>>;
+
+template <int D>
+Made<D> make_multigrid(const Options& options);
+template <int D>
+Made<D> make_cg(const Options& options);
+template <int D>
+Made<D> make_cg_jacobi(const Options& options);
+template <int D>
+Made<D> make_cg_mic0(const Options& options);
+template <int D>
+Made<D> make_eigen_iccg(const Options& options);
+template <int D>
+Made<D> make_cholmod(const Options& options);
+template <int D>
+Made<D> make_red_black(const Options& options);
+template <int D>
+Made<D> make_jacobi(const Options& options);
+template <int D>
+Made<D> make_dct(const Options& options);
+
+}  // namespace weir::poisson

@@ -1,0 +1,33 @@
+// SuiteSparse's CHOLMOD (Chen, Davis, Hager & Rajamanickam 2008) behind a small face: factor a matrix, solve with it.
+#pragma once
+#include "poisson/system.hpp"
+
+#include <memory>
+
+namespace weir::poisson {
+
+class SparseCholesky {
+public:
+    SparseCholesky();
+    ~SparseCholesky();
+    SparseCholesky(const SparseCholesky&) = delete;
+    SparseCholesky& operator=(const SparseCholesky&) = delete;
+
+    /// Factors A, each closed component held by a raised first diagonal entry. The analysis is kept while the pattern is the same, the
+    /// factor while the values are the same.
+    void factor(const Matrix& A, const Components& components);
+    /// x = A⁻¹ b; for a closed component any solution of a compatible b.
+    void solve(const Vector& b, Vector& x);
+    std::size_t bytes() const;
+    int analyses() const { return analyses_; }
+    int factorizations() const { return factorizations_; }
+
+private:
+    struct Handles;
+    std::unique_ptr<Handles> cholmod_;
+    std::vector<long> start_, row_;
+    Vector value_;
+    int analyses_ = 0, factorizations_ = 0;
+};
+
+}  // namespace weir::poisson
