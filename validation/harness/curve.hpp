@@ -7,11 +7,12 @@
 
 namespace weir::validation {
 
-/// Pairs (x, y) under one name. Data of others are drawn as points, our own results as lines.
+/// Pairs (x, y) under one name. Data of others are drawn as points, our own results as lines, guides to the eye dashed.
 struct Curve {
-    std::string label;
-    std::vector<real> x, y;
+    std::string label{};
+    std::vector<real> x{}, y{};
     bool points = false;
+    bool dashed = false;
     std::size_t size() const { return x.size(); }
 };
 
@@ -26,15 +27,15 @@ inline real interpolate(const Curve& c, real at) {
 }
 
 struct Axis {
-    std::string label;  // quantity and unit: "y [m]"
+    std::string label{};  // quantity and unit: "y [m]"
     bool log = false;
 };
 
 /// One diagram of a case's figure.
 struct Panel {
-    std::string title;
-    Axis x, y;
-    std::vector<Curve> curves;
+    std::string title{};
+    Axis x{}, y{};
+    std::vector<Curve> curves{};
 };
 
 }  // namespace weir::validation

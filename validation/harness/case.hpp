@@ -1,0 +1,86 @@
+// A case: a scene, what is claimed about it, why each bound is what it is, and what the case cannot see. Read from
+// cases/<name>/case.toml and resolved for one size, so that what follows is a plain list of runs and criteria.
+#pragma once
+#include "core/types.hpp"
+#include "scene/scene.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir::validation {
+
+enum class Size { ci, full };
+std::string_view name(Size size);
+
+/// exact: an identity, or a solution that the scheme reproduces. convergence: an order. Both are verification (are the equations
+/// solved right?). benchmark: others' data, which is validation (are they the right equations?). iterations: accuracy against work.
+enum class Kind { exact, convergence, benchmark, iterations };
+std::string_view name(Kind kind);
+
+/// One claim: a metric, what it must be, and the reason for the bound.
+struct Criterion {
+    enum class Test { at_most, at_least, within, equals, order_at_least, order_within, gci_at_most, never_increases, never_decreases };
+    std::string metric{};
+    Test test = Test::at_most;
+    real low = -infinity, high = infinity;  // the bound as an interval; for never_*: high is the slack, relative to the largest value
+    std::optional<real> at{};               // the sweep value that it speaks of; absent: the last
+    bool every = false;                     // the worst over the sweep
+    real formal_order = std::nan("");       // for gci_at_most on two grids
+    std::string why{};
+    scene::Place place{};  // of its metric in case.toml
+};
+std::string_view name(Criterion::Test test);
+
+/// One key of the scene through several values; `also` moves others with it (a time step that follows the grid).
+/// For grid.cells a value is the number of cells along `axis`; other axes keep the scene's proportions, or stay as they are (`keep`).
+struct Sweep {
+    std::string key{};
+    std::vector<real> values{};
+    int axis = 0;
+    std::vector<int> keep{};
+    struct Follower {
+        std::string key;
+        std::vector<real> values;
+    };
+    std::vector<Follower> also{};
+};
+
+/// One configuration of the case (a scheme, a solver, a Reynolds number), run once or over a sweep.
+struct Variant {
+    std::string name{};  // empty where the case has only one
+    std::filesystem::path scene{};
+    std::string reference{};  // empty: none
+    std::vector<scene::Override> overrides{};
+    std::optional<Sweep> sweep{};
+    std::vector<Criterion> accept{};
+    real time_limit = infinity;  // wall seconds of one run
+
+    std::size_t runs() const { return sweep ? sweep->values.size() : 1; }
+};
+
+struct Case {
+    std::string name;
+    std::filesystem::path folder;
+    std::string question, blind_to;
+    Kind kind = Kind::exact;
+    Size size = Size::ci;
+    std::vector<Variant> variants;  // those that claim something at this size
+};
+
+/// The scene of run `i` of a variant, with the case's changes. Throws BadScene.
+scene::Scene scene_of(const Variant& variant, std::size_t i, const std::vector<scene::SolverSchema>& solvers);
+
+/// Reads and checks cases/<name>; throws scene::BadScene with every problem in the file, or BadInput when it cannot be read.
+Case read_case(const std::filesystem::path& folder, Size size);
+/// The same from text; `file` is its name in messages.
+Case parse_case(std::string_view text, const std::string& file, const std::filesystem::path& folder, Size size);
+/// What case.toml may contain: the one table behind reader, messages and manual.
+const std::vector<scene::Key>& case_keys();
+
+/// Folders below `root` that hold a case.toml, in alphabetical order.
+std::vector<std::filesystem::path> find_cases(const std::filesystem::path& root);
+
+}  // namespace weir::validation

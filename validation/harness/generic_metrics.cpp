@@ -1,0 +1,207 @@
+// Norms and statistics by name. A name is subject.operation: a series if the run has one of that name, else a field.
+#include "validation/harness/generic_metrics.hpp"
+
+#include "core/grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+
+namespace weir::validation {
+namespace {
+
+struct Name {
+    std::string subject, operation;
+};
+
+Name split(std::string_view name) {
+    const auto dot = name.rfind('.');
+    if (dot == std::string_view::npos) return {std::string(name), ""};
+    return {std::string(name.substr(0, dot)), std::string(name.substr(dot + 1))};
+}
+
+/// f(x, weight, i) for each sample of one component of a field on the grid.
+template <class F>
+void for_each_sample(const GridView& g, int face_axis, F&& f) {
+    std::array<int, 3> n = g.cells;
+    if (face_axis >= 0) ++n[static_cast<std::size_t>(face_axis)];
+    std::size_t i = 0;
+    for (int z = 0; z < n[2]; ++z)
+        for (int y = 0; y < n[1]; ++y)
+            for (int x = 0; x < n[0]; ++x, ++i) {
+                const std::array<int, 3> at{x, y, z};
+                Vec<3> position{};
+                for (int d = 0; d < g.dim; ++d) {
+                    const auto u = static_cast<std::size_t>(d);
+                    position[d] = g.origin[u] + g.spacing[u] * (at[u] + (d == face_axis ? 0.0 : 0.5));
+                }
+                const bool end = face_axis >= 0 && (at[static_cast<std::size_t>(face_axis)] == 0 ||
+                                                    at[static_cast<std::size_t>(face_axis)] == n[static_cast<std::size_t>(face_axis)] - 1);
+                f(position, end ? 0.5 : 1.0, i);
+            }
+}
+
+/// Running sums of one norm.
+struct NormSum {
+    Norm norm;
+    real sum = 0, weight = 0;
+    void add(real value, real w) {
+        weight += w;
+        const real a = std::abs(value);
+        if (norm == Norm::linf)
+            sum = (a > sum || std::isnan(a)) ? a : sum;  // a NaN stays, and fails
+        else
+            sum += w * (norm == Norm::l1 ? a : a * a);
+    }
+    real mean() const { return norm == Norm::linf || weight == 0 ? sum : sum / weight; }
+    /// Adds the mean of another component.
+    void join(const NormSum& other) {
+        if (norm == Norm::linf)
+            add(other.sum, 1);
+        else
+            sum += other.mean();
+    }
+};
+
+struct Component {
+    NormSum error, scale;
+};
+
+/// Sums over one component. Where the reference holds up to a constant, both means are taken out first.
+template <class Exact>
+Component component_error(const RunRecord& run, const Reference& reference, const FieldView& view, int c, Norm norm, Exact&& exact) {
+    const auto& data = view.data[static_cast<std::size_t>(c)];
+    const int axis = view.where == Where::face ? c : -1;
+    const auto covered = [&](const Vec<3>& x) { return !reference.covers || reference.covers(x, run.time); };
+    real value_mean = 0, exact_mean = 0, weight = 0;
+    for_each_sample(run.fields.grid, axis, [&](const Vec<3>& x, real w, std::size_t i) {
+        if (covered(x)) value_mean += w * data[i], exact_mean += w * exact(x), weight += w;
+    });
+    if (weight == 0) throw BadInput(fmt::format("the reference of \"{}\" covers no sample of the run", view.name));
+    const bool keep = reference.up_to_a_constant.count(view.name) == 0;
+    value_mean = keep ? 0 : value_mean / weight, exact_mean = keep ? 0 : exact_mean / weight;
+    Component sums{{norm}, {norm}};
+    for_each_sample(run.fields.grid, axis, [&](const Vec<3>& x, real w, std::size_t i) {
+        if (!covered(x)) return;
+        const real truth = exact(x) - exact_mean;
+        sums.error.add(data[i] - value_mean - truth, w);
+        sums.scale.add(truth, w);
+    });
+    return sums;
+}
+
+real statistic(const Curve& s, const std::string& operation) {
+    if (s.y.empty()) return std::nan("");
+    for (const real y : s.y)
+        if (std::isnan(y)) return std::nan("");  // min and max would step over it
+    const real first = s.y.front(), last = s.y.back();
+    if (operation.empty()) return last;
+    if (operation == "max") return *std::max_element(s.y.begin(), s.y.end());
+    if (operation == "min") return *std::min_element(s.y.begin(), s.y.end());
+    if (operation == "mean") return std::accumulate(s.y.begin(), s.y.end(), 0.0) / static_cast<real>(s.y.size());
+    if (operation == "change") return (last - first) / std::abs(first);
+    real drift = 0;
+    for (const real y : s.y) drift = std::max(drift, std::abs(y - first));
+    return drift / std::abs(first);
+}
+
+const std::vector<std::string> series_operations = {"", "max", "min", "mean", "drift", "change"};
+const std::vector<std::string> field_operations = {"l1", "l2", "linf", "l1_relative", "l2_relative", "linf_relative", "max"};
+
+bool contains(const std::vector<std::string>& list, const std::string& what) {
+    return std::find(list.begin(), list.end(), what) != list.end();
+}
+
+bool has_series(const RunRecord& run, const std::string& name) {
+    try {
+        run.series(name);
+        return true;
+    } catch (const BadInput&) {
+        return false;
+    }
+}
+
+real largest(const RunRecord& run, std::string_view field) {
+    NormSum sum{Norm::linf};
+    for (const auto& component : run.field(field).data)
+        for (const real v : component) sum.add(v, 1);
+    return sum.mean();
+}
+
+real field_metric(const Name& name, const RunRecord& run, const Reference& reference) {
+    if (name.operation == "max") return largest(run, name.subject);
+    const Norm norm = name.operation.starts_with("l1") ? Norm::l1 : name.operation.starts_with("l2") ? Norm::l2 : Norm::linf;
+    const FieldError e = field_error(run, reference, name.subject, norm);
+    return name.operation.ends_with("_relative") ? e.error / e.scale : e.error;
+}
+
+std::optional<real> cost(std::string_view name, const RunRecord& run) {
+    if (name == "steps") return static_cast<real>(run.steps());
+    if (name == "seconds") return run.seconds;
+    if (name != "ns_per_cell_step") return std::nullopt;
+    const auto& n = run.fields.grid.cells;
+    return 1e9 * run.seconds / (static_cast<real>(run.steps()) * n[0] * n[1] * n[2]);
+}
+
+}  // namespace
+
+FieldError field_error(const RunRecord& run, const Reference& reference, std::string_view field, Norm norm) {
+    const FieldView& view = run.field(field);
+    const std::string name(field);
+    if (view.where == Where::particle) throw BadInput(fmt::format("field \"{}\" lives on particles: no norm against a reference", name));
+    const bool scalar = view.components() == 1 && view.where == Where::cell;
+    const ScalarField* one = scalar ? &reference.scalar(name) : nullptr;
+    const VectorField* many = scalar ? nullptr : &reference.vector(name);
+    NormSum error{norm}, scale{norm};
+    for (int c = 0; c < view.components(); ++c) {
+        const auto exact = [&](const Vec<3>& x) { return scalar ? (*one)(x, run.time) : (*many)(x, run.time)[c]; };
+        const Component sums = component_error(run, reference, view, c, norm, exact);
+        error.join(sums.error), scale.join(sums.scale);
+    }
+    const auto finish = [&](const NormSum& s) { return norm == Norm::l2 ? std::sqrt(s.sum) : s.sum; };
+    return {finish(error), finish(scale)};
+}
+
+const Metric* find_metric(std::string_view name) {
+    for (const Metric& m : metrics())
+        if (m.name == name) return &m;
+    return nullptr;
+}
+
+Quantity quantity_of(std::string_view name) {
+    if (const Metric* m = find_metric(name)) return m->quantity;
+    const Name n = split(name);
+    const bool error = n.operation.starts_with("l1") || n.operation.starts_with("l2") || n.operation.starts_with("linf") ||
+                       n.operation == "drift" || n.subject == "divergence" || n.subject.starts_with("residual");
+    return error ? Quantity::error : Quantity::value;
+}
+
+real measure(std::string_view name, const RunRecord& run, const Reference& reference) {
+    if (const Metric* m = find_metric(name); m && m->measure) return m->measure(run, reference);
+    if (const auto c = cost(name, run)) return *c;
+    if (has_series(run, std::string(name))) return statistic(run.series(name), "");  // an observed metric may have a dot in its name
+    const Name n = split(name);
+    if (contains(series_operations, n.operation) && has_series(run, n.subject)) return statistic(run.series(n.subject), n.operation);
+    return field_metric(n, run, reference);
+}
+
+void check_metric(std::string_view name, const RunRecord& start, const Reference& reference) {
+    if (find_metric(name) || cost(name, start)) return;
+    const Name n = split(name);
+    if (contains(series_operations, n.operation) && has_series(start, n.subject)) return;
+    if (contains(field_operations, n.operation) && start.fields.find(n.subject)) {
+        if (n.operation == "max") return;
+        field_error(start, reference, n.subject, Norm::linf);
+        return;
+    }
+    std::vector<std::string> known;
+    for (const auto& f : start.fields.fields) known.push_back(f.name);
+    for (const auto& i : start.integrals) known.push_back(i.name);
+    for (const Metric& m : metrics()) known.push_back(m.name);
+    throw BadInput(fmt::format("unknown metric \"{}\"; fields, integrals and metrics of this run: {}", name, fmt::join(known, ", ")));
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,178 @@
+// The loop over one run, and what is kept of it.
+#include "validation/harness/runner.hpp"
+
+#include "output/frames.hpp"
+#include "sim/registry.hpp"
+#include "sim/simulation.hpp"
+#include "validation/harness/generic_metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+namespace weir::validation {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void remember(RunRecord& record, const Simulation& simulation, const StepReport& report, const std::vector<const Metric*>& observers) {
+    Moment moment{.step = simulation.steps(), .time = simulation.time(), .report = report};
+    record.integrals = simulation.solver().integrals();
+    for (const Integral& i : record.integrals) moment.integrals.push_back(i.value);
+    if (!observers.empty()) {
+        const FieldSet fields = simulation.fields();
+        for (const Metric* m : observers) moment.observed.push_back(m->observe(fields, *record.scene, moment.time));
+    }
+    record.history.push_back(std::move(moment));
+    record.time = simulation.time();
+}
+
+/// The metrics of the variant's claims, each once.
+std::vector<std::string> metrics_of(const Variant& variant) {
+    std::vector<std::string> names;
+    for (const Criterion& c : variant.accept)
+        if (std::find(names.begin(), names.end(), c.metric) == names.end()) names.push_back(c.metric);
+    return names;
+}
+
+bool is_series(const std::string& metric, const Variant& variant) {
+    for (const Criterion& c : variant.accept)
+        if (c.metric == metric && (c.test == Criterion::Test::never_increases || c.test == Criterion::Test::never_decreases)) return true;
+    return false;
+}
+
+/// A series to draw and judge: the metric itself, or what stands before its ".drift".
+std::optional<Curve> history_of(const RunRecord& record, const std::string& metric) {
+    for (const std::string& name : {metric, metric.substr(0, metric.rfind('.'))}) try {
+            return record.series(name);
+        } catch (const BadInput&) {
+        }
+    return std::nullopt;
+}
+
+/// Writes the scene's frames, or the first and the last where it asks for none.
+class FrameWriter {
+public:
+    FrameWriter(const std::filesystem::path& folder, const scene::Scene& scene) {
+        if (folder.empty() || !output::can_write_frames()) return;
+        output::FrameOptions options{.fields = {}, .single_precision = true};
+        if (scene.has("output.fields")) options.fields = scene.root().texts("output.fields");
+        frames_.emplace(folder, options);
+    }
+    void write(const Simulation& simulation) {
+        if (frames_ && simulation.at_frame()) frames_->write(simulation.fields(), simulation.time());
+    }
+
+private:
+    std::optional<output::Frames> frames_;
+};
+
+real mesh_width(const Variant& variant, std::size_t i, const scene::Scene& scene) {
+    if (!variant.sweep) return 0;
+    if (variant.sweep->key != "grid.cells") return variant.sweep->values[i];
+    const auto axis = static_cast<std::size_t>(variant.sweep->axis);
+    return scene.root().numbers("grid.size").at(axis) / scene.root().numbers("grid.cells").at(axis);
+}
+
+void take(RunResult& result, const RunRecord& record, const Reference& reference, const Variant& variant) {
+    for (const std::string& metric : metrics_of(variant)) {
+        if (const auto series = history_of(record, metric)) result.series[metric] = *series;
+        if (!is_series(metric, variant)) result.measured[metric] = measure(metric, record, reference);
+        const Metric* m = find_metric(metric);
+        if (m && m->figure) result.panels.push_back(m->figure(record, reference));
+    }
+}
+
+}  // namespace
+
+RunRecord run_scene(scene::Scene scene, const RunOptions& options) {
+    RunRecord record;
+    record.simulation = std::make_shared<Simulation>(std::move(scene));
+    Simulation& simulation = *record.simulation;
+    record.scene = {record.simulation, &simulation.scene()};
+    for (const Metric* m : options.observers) record.observers.push_back(m->name);
+    remember(record, simulation, {}, options.observers);
+    record.fields = simulation.fields();
+    if (options.at_start) options.at_start(record);
+    FrameWriter frames(options.frames, simulation.scene());
+    frames.write(simulation);
+    try {
+        while (!simulation.finished()) {
+            const auto start = Clock::now();
+            const StepReport report = simulation.step();
+            record.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+            remember(record, simulation, report, options.observers);
+            frames.write(simulation);
+            if (record.seconds > options.time_limit)
+                throw NumericalFailure("time limit", fmt::format("not finished after {:g} s of computing", options.time_limit));
+        }
+    } catch (const NumericalFailure& failure) {
+        record.failure = fmt::format("step {}, t = {:.6g} s: {}", simulation.steps(), simulation.time(), failure.what());
+    }
+    record.fields = simulation.fields();
+    record.probes = simulation.probes();
+    record.passes = simulation.solver().passes().list();
+    return record;
+}
+
+Reference make_reference(const std::string& name, const scene::Scene& scene, const std::filesystem::path& case_folder) {
+    if (name.empty()) return {};
+    std::vector<std::string> known;
+    for (const ReferenceKind& kind : references()) {
+        if (kind.name == name) return kind.make(scene, case_folder / "data");
+        known.push_back(kind.name);
+    }
+    throw BadInput(
+        fmt::format("{}: unknown reference \"{}\"; known: {}", (case_folder / "case.toml").string(), name, fmt::join(known, ", ")));
+}
+
+RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, const std::filesystem::path& frames) {
+    RunResult result;
+    if (variant.sweep) result.value = variant.sweep->values[i], result.label = fmt::format("{:g}", result.value);
+    try {
+        scene::Scene scene = scene_of(variant, i, sim::schemas());
+        const Reference reference = make_reference(variant.reference, scene, c.folder);
+        result.h = mesh_width(variant, i, scene);
+        RunOptions options{.frames = frames, .time_limit = variant.time_limit};
+        for (const std::string& name : metrics_of(variant))
+            if (const Metric* m = find_metric(name); m && m->observe) options.observers.push_back(m);
+        options.at_start = [&](const RunRecord& start) {
+            for (const std::string& name : metrics_of(variant)) check_metric(name, start, reference);
+        };
+        const RunRecord record = run_scene(std::move(scene), options);
+        result.seconds = record.seconds, result.steps = record.steps(), result.failure = record.failure;
+        if (!record.failure) take(result, record, reference, variant);
+    } catch (const NumericalFailure& failure) {  // of the initial state
+        result.failure = failure.what();
+    } catch (const BadInput& wrong) {
+        result.failure = wrong.what(), result.bad_input = true;
+    }
+    return result;
+}
+
+CaseResult validate(const Case& c, const std::filesystem::path& out, const Progress& progress) {
+    CaseResult result{.plan = c};
+    for (const Variant& variant : c.variants) {
+        VariantResult v{.plan = variant, .runs = {}, .verdicts = {}};
+        for (std::size_t i = 0; i < variant.runs(); ++i) {
+            std::string label = variant.sweep ? fmt::format("{:g}", variant.sweep->values[i]) : "run";
+            if (progress) progress(fmt::format("{} {} {}", c.name, variant.name, label));
+            v.runs.push_back(run_and_measure(c, variant, i, out / c.name / (variant.name.empty() ? "case" : variant.name) / label));
+        }
+        v.verdicts = judge(variant, v.runs);
+        result.variants.push_back(std::move(v));
+    }
+    if (!c.variants.empty() && !c.variants.front().reference.empty())
+        result.source = make_reference(c.variants.front().reference, scene_of(c.variants.front(), 0, sim::schemas()), c.folder).source;
+    return result;
+}
+
+void check_case(const Case& c) {
+    for (const Variant& variant : c.variants)
+        for (std::size_t i = 0; i < variant.runs(); ++i) make_reference(variant.reference, scene_of(variant, i, sim::schemas()), c.folder);
+}
+
+}  // namespace weir::validation

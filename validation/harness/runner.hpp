@@ -1,0 +1,39 @@
+// Runs the scenes of a case and takes its measurements.
+#pragma once
+#include "scene/solver_kind.hpp"
+#include "validation/harness/case.hpp"
+#include "validation/harness/metric.hpp"
+#include "validation/harness/verdict.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace weir::validation {
+
+struct RunOptions {
+    std::filesystem::path frames{};                            // folder of this run's .pvd; empty: none is written
+    real time_limit = infinity;                                // wall seconds
+    std::vector<const Metric*> observers{};                    // metrics that watch every step
+    std::function<void(const RunRecord&)> at_start = nullptr;  // sees the initial state; may throw BadInput before a step is spent
+};
+
+/// Runs a scene to its end. A NumericalFailure or an exceeded time limit ends the run and stands in `failure`.
+RunRecord run_scene(scene::Scene scene, const RunOptions& options);
+
+/// The reference of a scene by name; throws BadInput naming those known. An empty name gives an empty reference.
+Reference make_reference(const std::string& name, const scene::Scene& scene, const std::filesystem::path& case_folder);
+
+/// Run `i` of a variant, measured. Never throws for what a run does wrong: that stands in the result and fails its claims.
+RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, const std::filesystem::path& frames);
+
+/// Called before each run: "taylor_green maccormack 64".
+using Progress = std::function<void(const std::string&)>;
+
+/// All runs of a case, judged. Frames go to out/<case>/<variant>/<value>/.
+CaseResult validate(const Case& c, const std::filesystem::path& out, const Progress& progress);
+
+/// What can be known without running: every scene of the case reads, every reference exists. Throws BadInput.
+void check_case(const Case& c);
+
+}  // namespace weir::validation

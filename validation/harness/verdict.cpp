@@ -1,0 +1,144 @@
+// The judge: one function a kind of test.
+#include "validation/harness/verdict.hpp"
+
+#include "validation/harness/generic_metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace weir::validation {
+namespace {
+
+using Test = Criterion::Test;
+
+// GCI23 / (r^p GCI12) outside this band: the grids are too coarse for their order to be quoted (NPARC asks for "about 1").
+constexpr real asymptotic_low = 0.8, asymptotic_high = 1.25;
+
+bool is_order(Test t) { return t == Test::order_at_least || t == Test::order_within; }
+bool is_monotone(Test t) { return t == Test::never_increases || t == Test::never_decreases; }
+
+/// The runs that a claim rests on.
+std::vector<const RunResult*> runs_of(const Criterion& c, const std::vector<RunResult>& runs) {
+    std::vector<const RunResult*> chosen;
+    for (const RunResult& r : runs)
+        if (c.every || is_order(c.test) || c.test == Test::gci_at_most || (c.at && r.value == *c.at)) chosen.push_back(&r);
+    if (chosen.empty() && !runs.empty()) chosen.push_back(&runs.back());
+    return chosen;
+}
+
+real measured_in(const RunResult& run, const Criterion& c) {
+    if (is_monotone(c.test)) {
+        const auto at = run.series.find(c.metric);
+        return at == run.series.end() ? std::nan("") : largest_rise(at->second, c.test == Test::never_decreases);
+    }
+    const auto at = run.measured.find(c.metric);
+    return at == run.measured.end() ? std::nan("") : at->second;
+}
+
+/// How far outside the bound (negative: inside); NaN counts as farthest.
+real excess(real x, const Criterion& c) {
+    const real e = std::max(c.low - x, x - c.high);
+    return std::isnan(e) ? infinity : e;
+}
+
+void judge_values(Verdict& v, const Criterion& c, const std::vector<const RunResult*>& runs) {
+    const auto worst = std::max_element(runs.begin(), runs.end(), [&](const RunResult* a, const RunResult* b) {
+        return excess(measured_in(*a, c), c) < excess(measured_in(*b, c), c);
+    });
+    v.measured = measured_in(**worst, c);
+    v.at = (*worst)->label;
+    v.pass = v.measured >= c.low && v.measured <= c.high;
+    if (std::isnan(v.measured)) v.note = "not a number";
+}
+
+void judge_orders(Verdict& v, const Criterion& c, const std::vector<RunResult>& runs) {
+    const OrderTable table = order_table(runs, c.metric);
+    const Extrapolation x = table.extrapolate(c.formal_order);
+    v.measured = c.test == Test::gci_at_most ? x.gci_fine : table.order();
+    v.pass = v.measured >= c.low && v.measured <= c.high;
+    v.at = runs.back().label;
+    if (std::isnan(v.measured)) v.note = "these grids give no order";
+    if (table.quantity() == Quantity::error || runs.size() < 3) return;
+    const bool asymptotic = x.monotone && x.asymptotic > asymptotic_low && x.asymptotic < asymptotic_high;
+    if (asymptotic) return;
+    v.note = fmt::format("not in the asymptotic range (GCI ratio {:.3g}{}): its order may not be quoted", x.asymptotic,
+                         x.monotone ? "" : ", oscillating");
+    v.pass = false;
+}
+
+Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<RunResult>& runs) {
+    Verdict v{.variant = plan.name, .metric = c.metric, .criterion = std::string(name(c.test)), .low = c.low, .high = c.high, .why = c.why};
+    const auto chosen = runs_of(c, runs);
+    for (const RunResult* r : chosen) v.seconds += r->seconds;
+    const auto failed = std::find_if(chosen.begin(), chosen.end(), [](const RunResult* r) { return r->failure.has_value(); });
+    if (chosen.empty() || failed != chosen.end()) {
+        v.note = chosen.empty() ? "nothing was run" : *(*failed)->failure;
+        v.at = chosen.empty() ? "" : (*failed)->label;
+        return v;
+    }
+    if (is_order(c.test) || c.test == Test::gci_at_most)
+        judge_orders(v, c, runs);
+    else
+        judge_values(v, c, chosen);
+    return v;
+}
+
+}  // namespace
+
+std::string Verdict::bound() const {
+    if (criterion.starts_with("never_")) return fmt::format("<= {:.3g} a step", high);
+    if (low == -infinity) return fmt::format("<= {:.4g}", high);
+    if (high == infinity) return fmt::format(">= {:.4g}", low);
+    return fmt::format("in [{:.6g}, {:.6g}]", low, high);
+}
+
+std::vector<Verdict> judge(const Variant& plan, const std::vector<RunResult>& runs) {
+    std::vector<Verdict> verdicts;
+    for (const Criterion& c : plan.accept) verdicts.push_back(judge_one(c, plan, runs));
+    return verdicts;
+}
+
+OrderTable order_table(const std::vector<RunResult>& runs, const std::string& metric) {
+    OrderTable table(quantity_of(metric));
+    for (const RunResult& r : runs) {
+        const auto at = r.measured.find(metric);
+        table.add(r.h, at == r.measured.end() ? std::nan("") : at->second);
+    }
+    return table;
+}
+
+real largest_rise(const Curve& series, bool falls) {
+    real rise = -infinity, scale = 0;
+    for (std::size_t i = 0; i < series.y.size(); ++i) {
+        if (std::isnan(series.y[i])) return std::nan("");
+        scale = std::max(scale, std::abs(series.y[i]));
+        if (i > 0) rise = std::max(rise, (falls ? -1 : 1) * (series.y[i] - series.y[i - 1]));
+    }
+    if (series.y.size() < 2) return std::nan("");  // one value proves nothing about change
+    return scale > 0 ? rise / scale : 0;
+}
+
+bool CaseResult::pass() const {
+    for (const auto& v : variants)
+        for (const auto& verdict : v.verdicts)
+            if (!verdict.pass) return false;
+    return !variants.empty();
+}
+
+bool CaseResult::bad_input() const {
+    for (const auto& v : variants)
+        for (const auto& run : v.runs)
+            if (run.bad_input) return true;
+    return false;
+}
+
+double CaseResult::seconds() const {
+    double sum = 0;
+    for (const auto& v : variants)
+        for (const auto& run : v.runs) sum += run.seconds;
+    return sum;
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,122 @@
+// Writes a gnuplot program with its data inside and runs it.
+#include "validation/report/svg.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+namespace weir::validation {
+namespace {
+
+// Okabe & Ito 2008: told apart by colour-blind readers too.
+constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999"};
+constexpr int panel_width = 560, panel_height = 420;  // pixels
+
+std::string quoted(std::string text) {
+    std::replace(text.begin(), text.end(), '"', '\'');
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return "\"" + text + "\"";
+}
+
+/// A point can be drawn: finite, and positive where an axis is logarithmic.
+bool drawable(const Panel& p, real x, real y) { return std::isfinite(x) && std::isfinite(y) && (!p.x.log || x > 0) && (!p.y.log || y > 0); }
+
+std::size_t drawable_points(const Panel& p, const Curve& c) {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < c.size(); ++i) n += drawable(p, c.x[i], c.y[i]);
+    return n;
+}
+
+/// Ticks and scale of one axis that spans low..high.
+std::string axis(const char* name, bool log, real low, real high) {
+    const std::string plain = fmt::format("set {0}tics auto; set format {0} '%g'\n", name);
+    if (!log) {
+        if (!(low == high)) return plain;
+        const real half = std::max(1e-12, std::abs(low));  // a flat line in mid-panel, not on its edge
+        return plain + fmt::format("set {}range [{}:{}]\n", name, low - half, high + half);
+    }
+    std::string s = plain + fmt::format("set logscale {}\n", name);
+    if (high / low > 100) return s + fmt::format("set format {} '10^{{%T}}'\n", name);
+    // Less than two decades: ticks at 1, 2, 5 of each, or the axis would have one label or none.
+    s += fmt::format("set {}tics (", name);
+    const char* comma = "";
+    for (real decade = std::pow(10.0, std::floor(std::log10(low)) - 1); decade <= high * 10; decade *= 10)
+        for (const int digit : {1, 2, 5}) s += fmt::format("{0}'{1:.4g}' {1:.4g}", comma, digit * decade), comma = ", ";
+    return s + ")\n";
+}
+
+std::string axes_of(const Panel& p) {
+    real low[2] = {infinity, infinity}, high[2] = {-infinity, -infinity};
+    for (const Curve& c : p.curves)
+        for (std::size_t i = 0; i < c.size(); ++i) {
+            if (!drawable(p, c.x[i], c.y[i])) continue;
+            const real at[2] = {c.x[i], c.y[i]};
+            for (int a : {0, 1}) low[a] = std::min(low[a], at[a]), high[a] = std::max(high[a], at[a]);
+        }
+    return "set autoscale; unset logscale\n" + axis("x", p.x.log, low[0], high[0]) + axis("y", p.y.log, low[1], high[1]);
+}
+
+std::string style_of(const Curve& c, std::size_t number) {
+    const char* colour = colours[number % std::size(colours)];
+    if (c.points) return fmt::format("with points pt {} ps 0.8 lc rgb '{}'", 4 + 2 * (number % 6), colour);
+    if (c.dashed) return "with lines dt 2 lw 1.5 lc rgb '#777777'";
+    if (c.size() <= 12) return fmt::format("with linespoints pt 7 ps 0.6 lw 2 lc rgb '{}'", colour);
+    return fmt::format("with lines lw 2 lc rgb '{}'", colour);
+}
+
+std::string panel_program(const Panel& p, std::size_t number) {
+    std::string data, plots;
+    std::size_t drawn = 0;
+    for (const Curve& c : p.curves) {
+        if (drawable_points(p, c) == 0) continue;
+        const std::string block = fmt::format("$p{}c{}", number, drawn);
+        data += block + " << EOD\n";
+        for (std::size_t i = 0; i < c.size(); ++i)
+            if (drawable(p, c.x[i], c.y[i])) data += fmt::format("{:.9g} {:.9g}\n", c.x[i], c.y[i]);
+        data += "EOD\n";
+        plots += fmt::format("{}{} using 1:2 {} title {} noenhanced", drawn ? ", \\\n     " : "plot ", block, style_of(c, drawn),
+                             quoted(c.label));
+        ++drawn;
+    }
+    if (drawn == 0) return "set multiplot next\n";
+    std::string s = data + axes_of(p);
+    s += fmt::format("set title {} noenhanced\nset xlabel {} noenhanced offset 0,0.5\nset ylabel {} noenhanced\n", quoted(p.title),
+                     quoted(p.x.label), quoted(p.y.label));
+    s += "set key outside below maxcols 3 samplen 2 font ',11'\n";  // never over the data
+    return s + plots + "\n";
+}
+
+}  // namespace
+
+std::string gnuplot_program(const std::string& title, const std::vector<Panel>& panels, const std::filesystem::path& svg) {
+    const int columns = panels.size() > 1 ? 2 : 1;
+    const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+    std::string s = fmt::format("set terminal svg size {},{} font 'sans,13' background '#ffffff'\nset output {}\n", columns * panel_width,
+                                rows * panel_height + 30, quoted(svg.string()));
+    s += "set grid lc rgb '#dddddd'; set border lw 1\n";
+    s += fmt::format("set multiplot layout {},{} title {} noenhanced font ',16'\n", rows, columns, quoted(title));
+    for (std::size_t i = 0; i < panels.size(); ++i) s += panel_program(panels[i], i);
+    return s + "unset multiplot\n";
+}
+
+void draw(const std::string& title, const std::vector<Panel>& panels, const std::filesystem::path& svg) {
+    std::filesystem::create_directories(svg.parent_path());
+    auto program = svg;
+    program.replace_extension(".gnuplot");
+    {
+        std::ofstream file(program);
+        file << gnuplot_program(title, panels, svg);
+        if (!file.flush()) throw OutputError("cannot write " + program.string());
+    }
+    const std::string command = "gnuplot '" + program.string() + "'";
+    const int status = std::system(command.c_str());  // the path is ours: folder chosen by the user, name of a case
+    if (status != 0)
+        throw OutputError("gnuplot could not draw " + svg.string() + " (is gnuplot-nox installed?); its program is " + program.string());
+    std::filesystem::remove(program);
+}
+
+}  // namespace weir::validation
