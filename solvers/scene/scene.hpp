@@ -15,19 +15,20 @@
 
 namespace weir::scene {
 
-/// Where a value stands in its file; line 0: it is a default or came from --set.
+/// Where a value stands in its file, or in the text of an override; line 0 and override -1: it is a default. Columns count characters.
 struct Place {
     int line = 0;
     int column = 0;
+    int override_number = -1;
 };
 
 /// One thing wrong with a scene, and what would be right.
 struct Problem {
-    std::string file;
-    Place place;
-    int width = 1;        // characters to underline
-    std::string message;  // what was found and what is allowed
-    std::string hint;     // "known: ...", shown behind the underline; may be empty
+    std::string file{};     // or "--set key=value" of the override that is wrong
+    Place place{};          // line 0: no line is shown, unless it is an override
+    int width = 0;          // characters to underline; 0: the word, text or list that begins there
+    std::string message{};  // what was found and what is allowed
+    std::string hint{};     // "known: ...", shown behind the underline; may be empty
 };
 
 /// All problems of one scene at once. what() is the whole report, as a user sees it (STYLE: file:line:column: message, line, underline).
@@ -74,31 +75,44 @@ public:
     /// Keys in the order of the file, then defaults in schema order.
     std::vector<std::string> keys() const;
 
-    void set(const std::string& key, Value value, Place place);
+    void set(const std::string& key, Value value, Place place = {});
     const Value* find(std::string_view path) const;
+    Table* find_table(std::string_view path);  // nullptr where there is none
 
 private:
     struct Entry;
-    std::vector<std::pair<std::string, Entry>> entries_;
+    const Entry* entry(std::string_view path) const;
+    std::vector<Entry> entries_;
+};
+
+struct Table::Entry {
+    std::string key;
+    Value value;
+    Place place;
 };
 
 struct Override {
     std::string key;    // "grid.cells", "effects.buoyancy.alpha", "solids[0].centre"
     std::string value;  // a TOML value: "[64, 64]", "true", "\"pic\"" (a bare word is taken as a string)
 };
+/// "grid.cells=[64, 64]" as it stands on the command line. Throws BadInput where there is no '=' or no key.
+Override to_override(std::string_view text);
 
 /// A read scene. root() has every key; the shortcuts are what every solver asks first.
 class Scene {
 public:
-    const Table& root() const { return root_; }
+    const Table& root() const { return root_; }  // every key, defaults filled in
     const std::string& file() const { return file_; }
     const std::string& source() const { return source_; }
     const std::string& solver() const { return solver_; }
     int dim() const { return dim_; }
     /// Parameters of an effect that the scene names; nullptr where it does not.
     const Table* effect(std::string_view name) const;
-    /// A problem at a key of this scene, for checks that need geometry; throws BadScene.
+    /// A problem at a key of this scene ("solids[0].centre"), for checks that need more than the schema, such as geometry. Where the
+    /// key is a default, the problem stands at the nearest table around it. `refuse` throws BadScene.
+    Problem problem(std::string_view path, const std::string& message, const std::string& hint = "") const;
     [[noreturn]] void refuse(std::string_view path, const std::string& message, const std::string& hint = "") const;
+    [[noreturn]] void refuse(std::vector<Problem> problems) const;
     const std::vector<Override>& overrides() const { return overrides_; }
 
     bool has(std::string_view path) const { return root_.has(path); }
@@ -126,7 +140,15 @@ private:
 /// Reads and checks a scene from text; `file` is its name in messages. Throws BadScene with every problem found.
 Scene parse(std::string_view source, const std::string& file, const std::vector<SolverSchema>& solvers,
             const std::vector<Override>& overrides = {});
+/// Any TOML text against any keys: what `parse` does without the rules of scenes. For files of our own beside a scene.
+Table parse_table(std::string_view source, const std::string& file, const std::vector<Key>& keys, int dim = 0);
 /// A folder stands for its scene.toml. Throws BadInput when it cannot be read.
 Scene read(const std::filesystem::path& path, const std::vector<SolverSchema>& solvers, const std::vector<Override>& overrides = {});
+/// The whole text of a file that people write. Throws BadInput when it cannot be read, is empty, too long, or no text.
+std::string read_text(const std::filesystem::path& path);
+
+/// A table as text that reads back as the same table: numbers in their shortest exact form.
+std::string to_toml(const Table& table);
+std::string to_json(const Table& table);
 
 }  // namespace weir::scene

@@ -1,7 +1,9 @@
 // The schema: one table that the reader, the error messages, `weir describe` and the manual page are all made from.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -21,45 +23,64 @@ enum class Type {
     named,     // table whose own keys are names out of `variants`, each with that variant's keys (effects)
 };
 
-/// A default as the scene would write it. monostate: no default; the key is absent unless given.
+/// A default as the scene would write it. monostate: no default; the key is absent unless given. For a list as long as the scene's
+/// dimension, one entry stands for all. For a table with `selector`: the variant taken when the scene does not choose.
 using Default = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
 
 struct Key;
-
-/// One kind of shape, motion, effect, probe ... with the keys that belong to it.
-struct Variant {
-    std::string name;
-    std::string doc;
-    std::vector<Key> keys;
-};
+struct Variant;
 
 /// One key of a scene. Only `name` and `type` are obligatory.
 struct Key {
-    std::string name;
+    std::string name{};
     Type type = Type::number;
-    std::string doc;
-    std::string unit;  // "m", "s", "kg/m^3"; empty: none
-    Default fallback;  // used when the key is absent
+    std::string doc{};
+    std::string unit{};  // "m", "s", "kg/m^3"; empty: none
+    Default fallback{};  // used when the key is absent
     bool required = false;
-    std::optional<double> min, max;  // for numbers and integers, and each entry of lists
-    bool min_open = false;           // min itself is not allowed (a size > 0)
-    int length = 0;                  // of lists; see Type
-    std::vector<std::string> choices;
-    std::vector<Key> keys;          // of table and tables
-    std::string selector;           // table, tables: the key whose value picks one of `variants`, whose keys are allowed too
-    std::vector<Variant> variants;  // with selector: its values; with Type::named: the known names
+    std::optional<double> min{}, max{};  // for numbers and integers, and each entry of lists
+    bool min_open = false;               // min itself is not allowed (a size > 0)
+    int length = 0;                      // of lists; see Type
+    std::vector<std::string> choices{};
+    std::vector<Key> keys{};          // of table and tables
+    std::string selector{};           // table, tables: the key whose value picks one of `variants`, whose keys are allowed too.
+                                      // A text where such a table is expected stands for a table with only this key.
+    std::vector<Variant> variants{};  // with selector: its values; with Type::named: the known names
+    const std::vector<Variant>& (*variants_from)() = nullptr;  // in place of `variants`, where those contain themselves (union of shapes)
+    int only_dim = 0;                                          // 2 or 3: the key exists only in scenes of that dimension
+    std::string example{};                                     // as a scene would write it; shown where a required key is missing
 };
 
-/// What a solver adds to the common keys, and the effects that it has.
+/// One kind of shape, motion, effect, probe ... with the keys that belong to it.
+struct Variant {
+    std::string name{};
+    std::string doc{};
+    std::vector<Key> keys{};
+};
+
+/// What a solver adds to the common keys, and the effects that it has. A key with the name of a common one changes that one: its
+/// default, its bounds, its choices, and adds nested keys and variants (a "mac_water" scene has cfl = 1 by default; a solver adds
+/// "initial.ink" or another `initial.velocity`).
 struct SolverSchema {
-    std::string name;
-    std::string doc;
-    std::vector<int> dims;  // 2, 3
-    std::vector<Key> keys;  // top level: "scheme", ...
-    std::vector<Variant> effects;
+    std::string name{};
+    std::string doc{};
+    std::vector<int> dims{2, 3};
+    std::vector<Key> keys{};  // top level: "scheme", ...
+    std::vector<Variant> effects{};
 };
 
-/// The keys that every scene has (title, solver, dim, grid, time, fluid, gravity, sides, liquid, solids, emitters, probes, output, ...).
+/// The keys that every scene has (title, solver, dim, grid, time, fluid, sides, liquid, solids, emitters, initial, probes, output).
 const std::vector<Key>& common_keys();
+const std::vector<Variant>& shapes();   // box, sphere, plane, ... for liquid, solids, emitters and wherever an effect acts in a place
+const std::vector<Variant>& motions();  // constant, sinusoidal, rotation, keyframes
+
+/// Common keys with a solver's own laid over them, and its effects as the last key.
+std::vector<Key> keys_of(const SolverSchema& solver);
+/// The keys of `base`, changed and completed by those of `more`.
+std::vector<Key> overlay(std::vector<Key> base, const std::vector<Key>& more);
+
+const std::vector<Variant>& variants_of(const Key& key);
+const Key* find_key(const std::vector<Key>& keys, std::string_view name);
+const Variant* find_variant(const Key& key, std::string_view name);
 
 }  // namespace weir::scene

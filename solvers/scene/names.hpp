@@ -1,0 +1,24 @@
+// Names that a user may have meant.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir::scene {
+
+/// Fewest insertions, deletions, replacements and swaps of neighbours that turn one word into the other, no letter being changed twice
+/// (Damerau 1964; Levenshtein 1966; the "optimal string alignment" variant). Letters' case costs nothing.
+int edit_distance(std::string_view a, std::string_view b);
+
+/// The name nearest to `word`, if it is near enough to be meant: at most one mistake in three letters. Empty: none.
+std::string nearest(std::string_view word, const std::vector<std::string>& names);
+
+/// `; did you mean "x"?` or nothing.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
+/// `known: a, b, c`, shortened beyond a line's length.
+std::string known(const std::vector<std::string>& names);
+std::string quote(std::string_view text);                      // "text", control characters escaped, long texts cut
+std::string quote_all(const std::vector<std::string>& names);  // "a", "b"
+std::string number_text(double value);                         // shortest text that reads back exactly
+
+}  // namespace weir::scene

@@ -1,0 +1,67 @@
+// A tree of TOML against the schema: every value checked, every default filled in, every problem kept with its place.
+#pragma once
+#include "scene/document.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir::scene {
+
+class Reader {
+public:
+    /// dim 0: not known, 2 and 3 are both accepted. `complete` false: lines of the file could not be read, so a missing key is no news.
+    Reader(std::string file, int dim, bool complete, std::vector<Problem>& problems)
+        : file_(std::move(file)), dim_(dim), complete_(complete), problems_(problems) {}
+
+    /// `solvers` and `solver` word the messages about keys and effects that only other solvers have.
+    void know(const std::vector<SolverSchema>& solvers, std::string solver) { solvers_ = &solvers, solver_ = std::move(solver); }
+
+    Table table(const Node& node, const std::vector<Key>& keys, const std::string& path);
+
+private:
+    /// The keys that may stand in one table: its own, and those of the variant that it chose.
+    struct Allowed {
+        std::vector<const Key*> keys;
+        const Key* owner = nullptr;        // the key whose value the table is, if it has variants
+        const Variant* variant = nullptr;  // what was chosen
+        std::string name() const { return variant ? variant->name : std::string(); }
+    };
+
+    void fill(const Node& node, const Allowed& allowed, const std::string& path, Table& out);
+    void absent(const Key& key, const Node& around, const std::string& path, const std::string& owner_path, Table& out);
+    std::optional<Value> value(const Node& node, const Key& key, const std::string& path);
+    std::optional<Value> scalar(const Node& node, const Key& key, const std::string& path);
+    std::optional<Value> list(const Node& node, const Key& key, const std::string& path);
+    std::optional<Table> table_of(const Node& node, const Key& key, const std::string& path);
+    std::optional<Table> chosen(const Node& node, const Key& key, const std::string& path);
+    std::optional<Table> named(const Node& node, const Key& key, const std::string& path);
+    std::optional<Value> tables(const Node& node, const Key& key, const std::string& path);
+    Value default_value(const Key& key) const;
+
+    bool in_range(double v, const Node& node, const Key& key, const std::string& path);
+    bool right_length(const Node& node, const Key& key, const std::string& path);
+    void unknown_key(const Member& member, const Allowed& allowed, const std::string& path);
+    void unknown_variant(const Node& node, const Key& key, std::string_view name, const std::string& path);
+    void unknown_effect(const Member& member, const Key& key, const std::string& path);
+    void wrong_type(const Node& node, const Key& key, const std::string& path);
+    std::vector<std::string> solvers_with(std::string_view key, bool effect) const;
+    void report(Place place, std::string message, std::string hint = "", int width = 0);
+
+    std::string file_;
+    int dim_;
+    bool complete_;
+    std::vector<Problem>& problems_;
+    const std::vector<SolverSchema>* solvers_ = nullptr;
+    std::string solver_;
+};
+
+/// "a list of 2 numbers [m]", "true or false", ...: what a key asks for.
+std::string expected(const Key& key, int dim);
+/// "greater than 0 m", "between 0 and 1"; empty where everything is allowed.
+std::string allowed_range(const Key& key);
+/// "the text \"64\"", "a list of 3 entries", ...: what a value is.
+std::string found(const Node& node);
+
+}  // namespace weir::scene

@@ -1,0 +1,144 @@
+// From a file to a checked scene: text, tree, overrides, schema, rules; every problem found on the way is reported at once.
+#include "scene/scene.hpp"
+
+#include "scene/document.hpp"
+#include "scene/names.hpp"
+#include "scene/reader.hpp"
+#include "scene/rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace weir::scene {
+namespace {
+
+std::string set_text(const Override& o) { return fmt::format("--set {}={}", o.key, o.value); }
+
+/// Problems of overrides name the override in place of the file.
+void name_overrides(std::vector<Problem>& problems, const std::vector<Override>& overrides) {
+    for (Problem& p : problems)
+        if (p.place.override_number >= 0) p.file = set_text(overrides[static_cast<std::size_t>(p.place.override_number)]);
+}
+
+const SolverSchema* chosen_solver(const Node& root, const std::string& file, const std::vector<SolverSchema>& solvers,
+                                  std::vector<Problem>& problems) {
+    const Member* member = root.member("solver");
+    if (!member || member->value.kind != Node::Kind::text) return nullptr;  // missing, or no text: the reader says so
+    std::vector<std::string> names;
+    for (const SolverSchema& s : solvers) {
+        if (s.name == member->value.text) return &s;
+        names.push_back(s.name);
+    }
+    problems.push_back({.file = file,
+                        .place = member->value.place,
+                        .message = fmt::format("unknown solver {}{}", quote(member->value.text), did_you_mean(member->value.text, names)),
+                        .hint = known(names)});
+    return nullptr;
+}
+
+/// 2 or 3; 0 where the scene does not say, or says something else, which is reported.
+int dimension(const Node& root, const std::string& file, const SolverSchema* solver, std::vector<Problem>& problems) {
+    const Member* member = root.member("dim");
+    if (!member || member->value.kind != Node::Kind::integer) return 0;
+    const auto dim = member->value.integer;
+    if (dim != 2 && dim != 3) return 0;
+    if (solver && std::find(solver->dims.begin(), solver->dims.end(), dim) == solver->dims.end()) {
+        problems.push_back({.file = file,
+                            .place = member->value.place,
+                            .message = fmt::format("solver \"{}\" works only with dim = {}", solver->name, fmt::join(solver->dims, ", "))});
+    }
+    return static_cast<int>(dim);
+}
+
+}  // namespace
+
+Scene parse(std::string_view source, const std::string& file, const std::vector<SolverSchema>& solvers,
+            const std::vector<Override>& overrides) {
+    Document document = parse_document(source, file);
+    std::vector<Problem>& problems = document.problems;
+    if (!document.readable) throw BadScene(problems, source);
+    for (std::size_t i = 0; i < overrides.size(); ++i) apply_override(document.root, overrides[i], static_cast<int>(i), problems);
+
+    Scene scene;
+    const SolverSchema* solver = chosen_solver(document.root, file, solvers, problems);
+    scene.dim_ = dimension(document.root, file, solver, problems);
+    Reader reader(file, scene.dim_, document.complete, problems);
+    reader.know(solvers, solver ? solver->name : "");
+    scene.root_ = reader.table(document.root, keys_of(solver ? *solver : SolverSchema{}), "");
+    check_rules(scene.root_, scene.dim_, file, problems);
+    name_overrides(problems, overrides);
+    if (!problems.empty()) throw BadScene(problems, source);
+
+    scene.file_ = file;
+    scene.source_ = source;
+    scene.solver_ = scene.root_.text("solver");
+    scene.overrides_ = overrides;
+    return scene;
+}
+
+Table parse_table(std::string_view source, const std::string& file, const std::vector<Key>& keys, int dim) {
+    Document document = parse_document(source, file);
+    if (!document.readable) throw BadScene(document.problems, source);
+    Table table = Reader(file, dim, document.complete, document.problems).table(document.root, keys, "");
+    if (!document.problems.empty()) throw BadScene(document.problems, source);
+    return table;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) throw BadInput(fmt::format("{}: there is no such file", name));
+    if (std::filesystem::is_directory(path, ignored)) throw BadInput(fmt::format("{}: this is a folder, not a file", name));
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw BadInput(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));
+    std::string text;
+    std::vector<char> block(std::size_t{1} << 16);
+    while (in && text.size() <= max_source_bytes) {  // a device may never end
+        in.read(block.data(), static_cast<std::streamsize>(block.size()));
+        text.append(block.data(), static_cast<std::size_t>(in.gcount()));
+    }
+    if (in.bad()) throw BadInput(fmt::format("{}: cannot be read to its end", name));
+    if (text.empty()) throw BadInput(fmt::format("{}: the file is empty", name));
+    return text;
+}
+
+Scene read(const std::filesystem::path& path, const std::vector<SolverSchema>& solvers, const std::vector<Override>& overrides) {
+    std::error_code ignored;
+    auto file = path;
+    if (std::filesystem::is_directory(path, ignored)) {
+        file = path / "scene.toml";
+        if (!std::filesystem::exists(file, ignored)) throw BadInput(fmt::format("{}: this folder has no scene.toml", path.string()));
+    }
+    return parse(read_text(file), file.string(), solvers, overrides);
+}
+
+const Table* Scene::effect(std::string_view name) const {
+    const Value* effects = root_.find("effects");
+    const Value* found = effects ? std::get<Table>(*effects).find(name) : nullptr;
+    return found ? &std::get<Table>(*found) : nullptr;
+}
+
+Problem Scene::problem(std::string_view path, const std::string& message, const std::string& hint) const {
+    Place place = root_.place(path);
+    std::string_view around = path;
+    while (place.column == 0 && around.find_last_of(".[") != std::string_view::npos) {
+        around = around.substr(0, around.find_last_of(".["));
+        place = root_.place(around);
+    }
+    Problem p{.file = file_, .place = place, .width = around == path ? 0 : 1, .message = message, .hint = hint};
+    if (place.override_number >= 0) p.file = set_text(overrides_[static_cast<std::size_t>(place.override_number)]);
+    return p;
+}
+
+void Scene::refuse(std::string_view path, const std::string& message, const std::string& hint) const {
+    refuse({problem(path, message, hint)});
+}
+
+void Scene::refuse(std::vector<Problem> problems) const { throw BadScene(std::move(problems), source_); }
+
+}  // namespace weir::scene

@@ -1,0 +1,126 @@
+// Schema of shapes and of prescribed motions. A sphere is a circle in 2D; a shape of shapes contains this same list again.
+#include "scene/schema.hpp"
+
+namespace weir::scene {
+namespace {
+
+Key point(std::string name, std::string doc) {
+    return {.name = std::move(name), .type = Type::numbers, .doc = std::move(doc), .unit = "m", .required = true, .length = -1};
+}
+
+Key radius(std::string doc) {
+    return {.name = "radius", .type = Type::number, .doc = std::move(doc), .unit = "m", .required = true, .min = 0, .min_open = true};
+}
+
+Key shape_list(std::string name, std::string doc) {
+    return {.name = std::move(name),
+            .type = Type::tables,
+            .doc = std::move(doc),
+            .required = true,
+            .selector = "shape",
+            .variants_from = &shapes};
+}
+
+std::vector<Key> keyframe_keys() {
+    return {
+        {.name = "t", .type = Type::number, .doc = "Time of the frame; frames stand in increasing order.", .unit = "s", .required = true},
+        {.name = "offset",
+         .type = Type::numbers,
+         .doc = "Displacement from the place that the scene gives.",
+         .unit = "m",
+         .fallback = std::vector<double>{0},
+         .length = -1},
+        {.name = "angle",
+         .type = Type::number,
+         .doc = "Rotation about the motion's centre (and axis), anticlockwise.",
+         .unit = "rad",
+         .fallback = 0.0}};
+}
+
+Key turning_centre() {
+    return {.name = "centre",
+            .type = Type::numbers,
+            .doc = "The point about which it turns; the middle of the shape where absent.",
+            .unit = "m",
+            .length = -1};
+}
+
+Key axis() {
+    return {.name = "axis",
+            .type = Type::numbers,
+            .doc = "Axis of rotation; its length does not matter.",
+            .fallback = std::vector<double>{0, 0, 1},
+            .length = 3,
+            .only_dim = 3};
+}
+
+}  // namespace
+
+const std::vector<Variant>& shapes() {
+    static const std::vector<Variant> list = {
+        {"box",
+         "All points between two corners.",
+         {point("min", "Lower corner."), point("max", "Upper corner; greater than `min` along every axis.")}},
+        {"sphere", "A ball; a disc in 2D.", {point("centre", "Centre."), radius("Radius.")}},
+        {"plane",
+         "The half space behind a plane (a line in 2D), on the side away from its normal.",
+         {point("point", "A point of the plane."),
+          {.name = "normal",
+           .type = Type::numbers,
+           .doc = "Points out of the shape; not zero, its length does not matter.",
+           .required = true,
+           .length = -1}}},
+        {"capsule",
+         "All points within `radius` of a segment.",
+         {point("from", "One end of the segment."), point("to", "Its other end."), radius("Radius.")}},
+        {"cylinder",
+         "A cylinder with flat ends; a rectangle in 2D.",
+         {point("from", "Centre of one end."), point("to", "Centre of the other end."), radius("Radius; half the width in 2D.")}},
+        {"union", "Inside any of several shapes.", {shape_list("of", "The shapes.")}},
+        {"difference",
+         "Inside one shape, outside all others.",
+         {{.name = "from",
+           .type = Type::table,
+           .doc = "The shape that is cut.",
+           .required = true,
+           .selector = "shape",
+           .variants_from = &shapes},
+          shape_list("minus", "What is cut away.")}},
+    };
+    return list;
+}
+
+const std::vector<Variant>& motions() {
+    static const std::vector<Variant> list = {
+        {"constant",
+         "x(t) = x(0) + velocity t",
+         {{.name = "velocity", .type = Type::numbers, .doc = "Velocity.", .unit = "m/s", .required = true, .length = -1}}},
+        {"sinusoidal",
+         "x(t) = x(0) + amplitude (sin(2 pi frequency t + phase) - sin(phase)): it starts where the scene puts it.",
+         {{.name = "amplitude",
+           .type = Type::numbers,
+           .doc = "Greatest displacement along each axis.",
+           .unit = "m",
+           .required = true,
+           .length = -1},
+          {.name = "frequency",
+           .type = Type::number,
+           .doc = "Periods a second.",
+           .unit = "1/s",
+           .required = true,
+           .min = 0,
+           .min_open = true},
+          {.name = "phase", .type = Type::number, .doc = "Phase at t = 0.", .unit = "rad", .fallback = 0.0}}},
+        {"rotation",
+         "Turns about a point (2D) or an axis through it (3D), anticlockwise seen against the axis.",
+         {turning_centre(), axis(), {.name = "rate", .type = Type::number, .doc = "Angular velocity.", .unit = "rad/s", .required = true}}},
+        {"keyframes",
+         "Linear between frames, at rest before the first and after the last.",
+         {{.name = "frames", .type = Type::tables, .doc = "At least one frame.", .required = true, .keys = keyframe_keys()},
+          turning_centre(),
+          axis()}},
+    };
+    return list;
+}
+
+}  // namespace weir::scene

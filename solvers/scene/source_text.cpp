@@ -1,0 +1,197 @@
+#include "scene/source_text.hpp"
+
+#include "scene/document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace weir::scene {
+namespace {
+
+bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+
+/// Length of the UTF-8 sequence that begins here (Unicode 15, table 3-7), 0 where none is valid.
+std::size_t sequence_length(std::string_view s) {
+    const auto byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0U; };
+    const auto tail = [&](std::size_t i, unsigned low = 0x80, unsigned high = 0xBF) { return byte(i) >= low && byte(i) <= high; };
+    const unsigned b = byte(0);
+    if (b < 0x80) return 1;
+    if (b >= 0xC2 && b <= 0xDF) return tail(1) ? 2 : 0;
+    if (b >= 0xE0 && b <= 0xEF) return tail(1, b == 0xE0 ? 0xA0 : 0x80, b == 0xED ? 0x9F : 0xBF) && tail(2) ? 3 : 0;
+    if (b >= 0xF0 && b <= 0xF4) return tail(1, b == 0xF0 ? 0x90 : 0x80, b == 0xF4 ? 0x8F : 0xBF) && tail(2) && tail(3) ? 4 : 0;
+    return 0;
+}
+
+bool is_text_byte(char c) { return static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\n' || c == '\r'; }
+
+}  // namespace
+
+int count_characters(std::string_view text) {
+    return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return !is_continuation(c); }));
+}
+
+std::size_t byte_of_column(std::string_view line, int column) {
+    std::size_t i = 0;
+    for (int c = 1; i < line.size(); ++i) {
+        if (is_continuation(line[i])) continue;
+        if (c++ == column) return i;
+    }
+    return line.size();
+}
+
+int token_width(std::string_view line, int column) {
+    const std::string_view rest = line.substr(byte_of_column(line, column));
+    if (rest.empty()) return 1;
+    std::size_t end = 0;
+    int depth = 0;
+    char quote = 0;
+    for (; end < rest.size(); ++end) {
+        const char c = rest[end];
+        if (quote) {
+            if (c == '\\' && quote == '"')
+                ++end;
+            else if (c == quote)
+                quote = 0;
+            if (!quote && depth == 0) return count_characters(rest.substr(0, end + 1));
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '[' || c == '{') {
+            ++depth;
+        } else if (c == ']' || c == '}') {
+            if (--depth <= 0) return count_characters(rest.substr(0, depth < 0 ? std::max<std::size_t>(end, 1) : end + 1));
+        } else if (c == '#' && depth > 0) {
+            break;
+        } else if (depth == 0 &&
+                   (c == ',' || c == '=' || c == ' ' || c == '\t' || c == '#' || (c == '.' && end > 0 && !isdigit(rest[0])))) {
+            return count_characters(rest.substr(0, std::max<std::size_t>(end, 1)));
+        }
+    }
+    std::string_view token = rest.substr(0, std::min(end, rest.size()));
+    while (token.size() > 1 && (token.back() == ' ' || token.back() == '\t')) token.remove_suffix(1);
+    return std::max(1, count_characters(token));
+}
+
+SourceText::SourceText(std::string_view text) : text_(text) {
+    if (text_.size() <= max_source_bytes) scan();
+}
+
+std::string_view SourceText::line(int number) const {
+    if (number < 1 || number > line_count()) return {};
+    const auto i = static_cast<std::size_t>(number - 1);
+    const std::size_t end = i + 1 < starts_.size() ? starts_[i + 1] : text_.size();
+    std::string_view line = std::string_view(text_).substr(starts_[i], end - starts_[i]);
+    while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
+    return line;
+}
+
+/// One pass over the text: where lines begin, which brackets and texts are open there, and whether dotted keys are absurdly deep.
+void SourceText::scan() {
+    constexpr int max_dots = 16;
+    enum class In { nothing, comment, basic, literal, long_basic, long_literal } in = In::nothing;
+    starts_ = {0};
+    line_starts_ = {{}};
+    std::vector<Place> open;
+    int line = 1, column = 0, dots = 0;
+    const std::string_view s = text_;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        const char c = s[i];
+        if (!is_continuation(c)) ++column;
+        if (c == '\n') {
+            if (in != In::long_basic && in != In::long_literal) in = In::nothing;
+            starts_.push_back(i + 1);
+            line_starts_.push_back({in != In::nothing, open});
+            ++line, column = 0, dots = 0;
+            continue;
+        }
+        const bool tripled = s.substr(i, 3) == "\"\"\"" || s.substr(i, 3) == "'''";
+        switch (in) {
+            case In::comment:
+                break;
+            case In::basic:
+                if (c == '\\') {
+                    if (i + 1 < s.size() && s[i + 1] != '\n') ++i, ++column;
+                } else if (c == '"') {
+                    in = In::nothing;
+                }
+                break;
+            case In::literal:
+                if (c == '\'') in = In::nothing;
+                break;
+            case In::long_basic:
+            case In::long_literal:
+                if (c == '\\' && in == In::long_basic) {
+                    if (i + 1 < s.size() && s[i + 1] != '\n') ++i, ++column;
+                } else if (tripled && c == (in == In::long_basic ? '"' : '\'')) {
+                    i += 2, column += 2, in = In::nothing;
+                }
+                break;
+            case In::nothing:
+                if (c == '#') {
+                    in = In::comment;
+                } else if (c == '"' || c == '\'') {
+                    if (tripled) {
+                        in = c == '"' ? In::long_basic : In::long_literal;
+                        text_began_ = {line, column};
+                        i += 2, column += 2;
+                    } else {
+                        in = c == '"' ? In::basic : In::literal;
+                    }
+                } else if (c == '[' || c == '{') {
+                    open.push_back({line, column});
+                } else if ((c == ']' || c == '}') && !open.empty()) {
+                    open.pop_back();
+                }
+                if (c == '.' && ++dots > max_dots && !too_deep_)
+                    too_deep_ =
+                        Problem{.place = {line, column}, .width = 1, .message = fmt::format("a key of more than {} parts", max_dots)};
+                if (c == ',' || c == '=' || c == '[' || c == ']' || c == '{' || c == '}') dots = 0;
+        }
+    }
+    line_starts_.push_back({in == In::long_basic || in == In::long_literal, open});
+}
+
+std::optional<Problem> SourceText::unreadable() const {
+    if (text_.size() > max_source_bytes)
+        return Problem{.message = fmt::format("the text is {} bytes long; at most {} are read", text_.size(), max_source_bytes)};
+    int line = 1, column = 1;
+    for (std::size_t i = 0; i < text_.size();) {
+        const auto length = sequence_length(std::string_view(text_).substr(i, 4));
+        const auto byte = static_cast<unsigned char>(text_[i]);
+        if (length == 0)
+            return Problem{.place = {line, column},
+                           .width = 1,
+                           .message = fmt::format("byte 0x{:02x} is not valid UTF-8", byte),
+                           .hint = "a scene is a text file in UTF-8"};
+        if (!is_text_byte(text_[i]))
+            return Problem{.place = {line, column},
+                           .width = 1,
+                           .message = fmt::format("control character 0x{:02x}", byte),
+                           .hint = "a scene is a text file in UTF-8"};
+        ++column;
+        if (text_[i] == '\n') ++line, column = 1;
+        i += length;
+    }
+    return too_deep_;
+}
+
+bool SourceText::blank_statement(int number) {
+    if (number < 1 || number > line_count()) return false;
+    const auto i = static_cast<std::size_t>(number);
+    const auto closed = [](const LineStart& start) { return !start.in_text && start.open.empty(); };
+    if (!closed(line_starts_[i - 1]) || !closed(line_starts_[i])) return false;
+    const auto content = line(number);
+    const auto first = content.find_first_not_of(" \t");
+    if (first == std::string_view::npos || content[first] == '[') return false;
+    std::fill_n(text_.begin() + static_cast<std::ptrdiff_t>(starts_[i - 1]), content.size(), ' ');
+    return true;
+}
+
+Place SourceText::open_at(int number) const {
+    if (number < 1 || number > line_count() + 1) return {};
+    const LineStart& start = line_starts_[static_cast<std::size_t>(number - 1)];
+    if (start.in_text) return text_began_;
+    return start.open.empty() ? Place{} : start.open.back();
+}
+
+}  // namespace weir::scene
