@@ -21,13 +21,13 @@ using ScalarField = std::function<real(const Vec<3>& x, real t)>;
 using VectorField = std::function<Vec<3>(const Vec<3>& x, real t)>;
 
 struct Reference {
-    std::string source;                          // citation, shown in the report: "Taylor & Green 1937"
-    std::map<std::string, ScalarField> scalars;  // by field name: "pressure", "temperature", ...
-    std::map<std::string, VectorField> vectors;  // "velocity"
-    std::map<std::string, Curve> curves;         // published tables, exact profiles, exact histories
-    std::map<std::string, real> numbers;         // "nusselt", "frequency", ...
-    std::set<std::string> up_to_a_constant;      // fields whose mean means nothing (pressure in a closed box): both means are removed
-    std::function<bool(const Vec<3>& x, real t)> covers;  // where the fields hold; empty: everywhere
+    std::string source;                               // citation, shown in the report: "Taylor & Green 1937"
+    std::map<std::string, ScalarField> scalars = {};  // by field name: "pressure", "temperature", ...
+    std::map<std::string, VectorField> vectors = {};  // "velocity"
+    std::map<std::string, Curve> curves = {};         // published tables, exact profiles, exact histories
+    std::map<std::string, real> numbers = {};         // "nusselt", "frequency", ...
+    std::set<std::string> up_to_a_constant = {};      // fields whose mean means nothing (pressure in a closed box): both means are removed
+    std::function<bool(const Vec<3>& x, real t)> covers = {};  // where the fields hold; empty: everywhere
 
     const ScalarField& scalar(const std::string& field) const { return find(scalars, field, "scalar field"); }
     const VectorField& vector(const std::string& field) const { return find(vectors, field, "vector field"); }

@@ -1,0 +1,63 @@
+#include "validation/references/channel.hpp"
+
+#include "validation/harness/reference.hpp"
+
+namespace weir::validation {
+namespace {
+
+constexpr real negligible = 40;     // exp(-40) = 4e-18: further terms do not change a double
+constexpr int most_terms = 200000;  // at t = 0, where Poiseuille's terms fall as 1/n^3 and Couette's sum is not used
+
+}  // namespace
+
+real poiseuille_startup(real y, real t, real H, real G, real nu) {
+    real u = G / (2 * nu) * y * (H - y);
+    for (int n = 0; n < most_terms; ++n) {
+        const real k = (2 * n + 1) * pi / H;
+        if (nu * k * k * t > negligible) break;
+        u -= 4 * G / (nu * H * k * k * k) * std::sin(k * y) * std::exp(-nu * k * k * t);
+    }
+    return u;
+}
+
+real couette_startup(real y, real t, real H, real U, real nu) {
+    if (t <= 0) return y < H ? 0 : U;
+    real u = U * y / H;
+    for (int n = 1; n < most_terms; ++n) {
+        const real k = n * pi / H;
+        if (nu * k * k * t > negligible) break;
+        u += 2 * U / (n * pi) * (n % 2 ? -1 : 1) * std::sin(k * y) * std::exp(-nu * k * k * t);
+    }
+    return u;
+}
+
+}  // namespace weir::validation
+
+using namespace weir;
+using namespace weir::validation;
+
+namespace {
+
+/// A flow along x that depends on the height above the lower plate only.
+Reference parallel_flow(const scene::Scene& scene, std::string source, std::function<real(real y, real t)> u) {
+    Reference ref{.source = std::move(source)};
+    const real floor = scene.vec<2>("grid.origin")[1];
+    ref.vectors["velocity"] = [u = std::move(u), floor](const Vec<3>& x, real t) { return Vec<3>{u(x[1] - floor, t), 0, 0}; };
+    return ref;
+}
+
+}  // namespace
+
+REFERENCE(poiseuille) {
+    const real H = scene.vec<2>("grid.size")[1], nu = scene.number("fluid.viscosity");
+    const real G = scene.effect("gravity")->vec<2>("g")[0];
+    return parallel_flow(scene, "plane Poiseuille flow from rest (exact series; Batchelor 1967, sec. 4.3)",
+                         [=](real y, real t) { return poiseuille_startup(y, t, H, G, nu); });
+}
+
+REFERENCE(couette) {
+    const real H = scene.vec<2>("grid.size")[1], nu = scene.number("fluid.viscosity");
+    const real U = scene.vec<2>("sides.y_max.velocity")[0];
+    return parallel_flow(scene, "plane Couette flow from rest (exact series; Batchelor 1967, sec. 4.3)",
+                         [=](real y, real t) { return couette_startup(y, t, H, U, nu); });
+}

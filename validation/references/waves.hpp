@@ -1,0 +1,16 @@
+// Small waves on a free surface. Linear dispersion (Lamb 1932, sec. 228 and 267) and the viscous initial-value solution of
+// Prosperetti 1981 (Phys. Fluids 24, 1217) for one fluid of infinite depth.
+#pragma once
+#include "core/types.hpp"
+
+namespace weir::validation {
+
+/// omega^2 = (g k + sigma k^3 / rho) tanh(k d)   [1/s^2 under the root]
+real wave_frequency(real g, real k, real depth, real sigma_over_rho = 0);
+
+/// Amplitude a(t) of a standing wave released at rest with amplitude a0 [m]:
+///   a = 4 n^2 / (8 n^2 + w0^2) a0 erfc(sqrt(n t)) + sum_i z_i/Z_i w0^2 a0/(z_i^2 - n) exp((z_i^2 - n) t) erfc(z_i sqrt t),
+/// n = nu k^2, z_i the roots of z^4 + 2 n z^2 + 4 n^(3/2) z + n^2 + w0^2 = 0, Z_i = prod_(j != i) (z_j - z_i).
+real prosperetti(real t, real nu, real k, real omega0, real a0);
+
+}  // namespace weir::validation
