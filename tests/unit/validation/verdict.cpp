@@ -1,0 +1,117 @@
+// The judge on runs whose numbers are made up.
+#include "validation/harness/verdict.hpp"
+
+#include "support/test.hpp"
+
+using namespace weir;
+using namespace weir::validation;
+using Test = Criterion::Test;
+
+namespace {
+
+Criterion claim(Test test, real low, real high) {
+    Criterion c{.metric = "velocity.l2", .test = test, .low = low, .high = high, .why = "a test"};
+    return c;
+}
+
+RunResult run(real n, real error) {
+    RunResult r{.label = std::to_string(static_cast<int>(n)), .value = n, .h = 1 / n, .seconds = 2};
+    r.measured["velocity.l2"] = error;
+    return r;
+}
+
+Verdict judged(const Criterion& c, const std::vector<RunResult>& runs) {
+    const auto verdicts = judge({.name = "v", .accept = {c}}, runs);
+    EXPECT_EQ(verdicts.size(), 1u);
+    return verdicts.at(0);
+}
+
+constexpr real inf = infinity;
+
+}  // namespace
+
+TEST("a bound holds on its edge and fails just beyond it") {
+    EXPECT_TRUE(judged(claim(Test::at_most, -inf, 0.1), {run(8, 0.1)}).pass);
+    EXPECT_FALSE(judged(claim(Test::at_most, -inf, 0.1), {run(8, std::nextafter(0.1, 1))}).pass);
+    EXPECT_FALSE(judged(claim(Test::at_least, 0.2, inf), {run(8, 0.1)}).pass);
+    EXPECT_FALSE(judged(claim(Test::within, 0.2, 0.3), {run(8, 0.31)}).pass);
+    EXPECT_TRUE(judged(claim(Test::within, 0.2, 0.3), {run(8, 0.25)}).pass);
+}
+
+TEST("NaN, infinity and a metric that was not measured fail every kind of claim") {
+    for (const Test test : {Test::at_most, Test::at_least, Test::within, Test::order_at_least, Test::gci_at_most, Test::never_increases}) {
+        const real low = test == Test::at_most ? -inf : -10, high = test == Test::at_least ? inf : 10;
+        const Verdict v = judged(claim(test, low, high), {run(8, 0.1), run(16, std::nan(""))});
+        EXPECT_FALSE(v.pass) << name(test);
+        EXPECT_TRUE(std::isnan(v.measured)) << name(test);
+        RunResult empty = run(16, 0);
+        empty.measured.clear();
+        EXPECT_FALSE(judged(claim(test, low, high), {run(8, 0.1), empty}).pass) << name(test);
+    }
+    EXPECT_FALSE(judged(claim(Test::at_most, -inf, 10), {run(8, inf)}).pass);
+}
+
+TEST("a run that failed fails the claims that rest on it, with its message, and no other") {
+    RunResult broken = run(16, 0.01);
+    broken.failure = "step 41: the velocity is not finite";
+    const Verdict last = judged(claim(Test::at_most, -inf, 1), {run(8, 0.1), broken});
+    EXPECT_FALSE(last.pass);
+    EXPECT_EQ(last.note, "step 41: the velocity is not finite");
+    EXPECT_FALSE(judged(claim(Test::order_at_least, 0.1, inf), {broken, run(32, 1e-4), run(64, 1e-5)}).pass);
+    Criterion first = claim(Test::at_most, -inf, 1);
+    first.at = 8;
+    EXPECT_TRUE(judged(first, {run(8, 0.1), broken}).pass);
+}
+
+TEST("a claim speaks of the last run, of the one it names, or of the worst of all") {
+    const std::vector<RunResult> runs = {run(8, 0.3), run(16, 0.5), run(32, 0.1)};
+    Criterion c = claim(Test::at_most, -inf, 0.2);
+    EXPECT_EQ(judged(c, runs).measured, 0.1);
+    c.at = 8;
+    EXPECT_EQ(judged(c, runs).measured, 0.3);
+    c.at.reset();
+    c.every = true;
+    const Verdict worst = judged(c, runs);
+    EXPECT_EQ(worst.measured, 0.5);
+    EXPECT_EQ(worst.at, "16");
+    EXPECT_FALSE(worst.pass);
+    EXPECT_EQ(worst.seconds, 6);
+}
+
+TEST("an order is taken from the finest pair, and a stalled one fails") {
+    const std::vector<RunResult> runs = {run(8, 1), run(16, 0.3), run(32, 0.075)};
+    EXPECT_NEAR(judged(claim(Test::order_at_least, 1.9, inf), runs).measured, 2, 1e-12);
+    EXPECT_TRUE(judged(claim(Test::order_at_least, 1.9, inf), runs).pass);
+    EXPECT_FALSE(judged(claim(Test::order_at_least, 1.9, inf), {run(8, 1), run(16, 0.25), run(32, 0.24)}).pass);
+    EXPECT_FALSE(judged(claim(Test::order_within, 1.98, 2.02), {run(8, 1), run(16, 0.25), run(32, 0.05)}).pass);
+}
+
+TEST("the order of a value whose grids oscillate may not be quoted") {
+    Criterion c = claim(Test::order_at_least, 0.5, inf);
+    c.metric = "nusselt";  // not an error: its limit is unknown
+    std::vector<RunResult> runs;
+    const std::vector<std::pair<real, real>> swinging = {{8, 6.0909}, {16, 5.9624}, {32, 6.0042}},
+                                             clean = {{8, 2.16}, {16, 2.04}, {32, 2.01}};
+    for (const auto& [n, value] : swinging) runs.push_back(run(n, 0)), runs.back().measured["nusselt"] = value;
+    const Verdict v = judged(c, runs);
+    EXPECT_FALSE(v.pass);
+    EXPECT_NE(v.note.find("oscillating"), std::string::npos);
+    runs.clear();
+    for (const auto& [n, value] : clean) runs.push_back(run(n, 0)), runs.back().measured["nusselt"] = value;
+    EXPECT_NEAR(judged(c, runs).measured, 2, 1e-6);
+    EXPECT_TRUE(judged(c, runs).pass);
+}
+
+TEST("a series that rises once fails never_increases, by how much it rose") {
+    const Curve falling{.label = "e", .x = {0, 1, 2}, .y = {4, 2, 1}}, rising{.label = "e", .x = {0, 1, 2}, .y = {4, 2, 2.5}};
+    EXPECT_LT(largest_rise(falling), 0);
+    EXPECT_NEAR(largest_rise(rising), 0.5 / 4, 1e-15);
+    EXPECT_NEAR(largest_rise(falling, true), 0.5, 1e-15);
+    EXPECT_TRUE(std::isnan(largest_rise(Curve{.label = "e", .x = {0, 1}, .y = {1, std::nan("")}})));
+    EXPECT_TRUE(std::isnan(largest_rise(Curve{.label = "e", .x = {0}, .y = {1}})));
+    RunResult r = run(8, 0);
+    r.series["velocity.l2"] = rising;
+    EXPECT_FALSE(judged(claim(Test::never_increases, -inf, 1e-12), {r}).pass);
+    r.series["velocity.l2"] = falling;
+    EXPECT_TRUE(judged(claim(Test::never_increases, -inf, 1e-12), {r}).pass);
+}
