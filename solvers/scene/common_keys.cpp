@@ -273,7 +273,17 @@ Key output() {
                       .type = Type::texts,
                       .doc = "Fields to write; all that the solver has where empty.",
                       .fallback = std::vector<std::string>{}},
-                     {.name = "faces", .type = Type::flag, .doc = "Write the face components of the velocity too.", .fallback = false}}};
+                     {.name = "faces", .type = Type::flag, .doc = "Write the face components of the velocity too.", .fallback = false},
+                     {.name = "precision",
+                      .type = Type::choice,
+                      .doc = "Of the numbers in frames; checkpoints are always exact.",
+                      .fallback = std::string("double"),
+                      .choices = {"double", "single"}},
+                     {.name = "compression",
+                      .type = Type::choice,
+                      .doc = "Of frames: zlib is understood everywhere, lz4 is faster.",
+                      .fallback = std::string("zlib"),
+                      .choices = {"zlib", "lz4", "none"}}}};
 }
 
 }  // namespace

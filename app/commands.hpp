@@ -1,0 +1,10 @@
+// The subcommands of `weir`: each adds itself to the command line and returns the exit code when it is called.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace weir::app {
+
+void add_run(CLI::App& app, int& exit_code);
+void add_list(CLI::App& app, int& exit_code);
+
+}  // namespace weir::app

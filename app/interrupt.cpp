@@ -1,0 +1,32 @@
+#include "app/interrupt.hpp"
+
+#include <csignal>
+
+#include <unistd.h>
+
+namespace weir::app {
+
+namespace {
+volatile std::sig_atomic_t count = 0;
+
+extern "C" void count_signal(int) {
+    static constexpr char once[] = "\nfinishing the frame; once more: stop after this step; twice more: stop at once\n";
+    count = count + 1;
+    if (count == 1) [[maybe_unused]]
+        const auto ignored = write(STDERR_FILENO, once, sizeof once - 1);
+    if (count == 3) _exit(exit_interrupted);
+}
+
+}  // namespace
+
+void catch_interrupts() {
+    struct sigaction action {};
+    action.sa_handler = count_signal;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
+int interruptions() { return count; }
+
+}  // namespace weir::app

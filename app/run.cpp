@@ -1,0 +1,171 @@
+// weir run SCENE: simulates a scene and writes frames, probes and run.json.
+#include "app/commands.hpp"
+#include "app/interrupt.hpp"
+#include "app/progress.hpp"
+#include "core/parallel.hpp"
+#include "output/atomic_file.hpp"
+#include "output/frames.hpp"
+#include "output/run_log.hpp"
+#include "sim/loop.hpp"
+#include "sim/probe_files.hpp"
+#include "sim/registry.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+namespace weir::app {
+
+namespace {
+
+struct RunArguments {
+    std::string scene, restart, out;
+    std::vector<std::string> set;
+    int threads = 0;
+    std::int64_t checkpoint_every = 0;
+    bool quiet = false;
+};
+
+output::FrameOptions frame_options(const scene::Scene& scene) {
+    output::FrameOptions options;
+    options.fields = scene.root().texts("output.fields");
+    options.faces = scene.flag("output.faces");
+    options.single_precision = scene.text("output.precision") == "single";
+    const std::string& compression = scene.text("output.compression");
+    options.compression = compression == "none"  ? output::Compression::none
+                          : compression == "lz4" ? output::Compression::lz4
+                                                 : output::Compression::zlib;
+    return options;
+}
+
+/// Writes everything that a run leaves behind, and shows how it goes.
+class Recorder final : public sim::Watcher {
+public:
+    Recorder(const Simulation& simulation, const std::filesystem::path& folder, bool restarted, bool quiet)
+        : frames_(restarted ? output::Frames::resume(folder, frame_options(simulation.scene()), simulation.frame() + 1)
+                            : output::Frames(folder, frame_options(simulation.scene()))),
+          probes_(folder / "probes"),
+          log_(folder / "run.json", simulation.scene()),
+          progress_(simulation.time(), simulation.end_time(), quiet) {
+        log_.set_solver_bytes(simulation.solver().bytes());
+        if (restarted) log_.resume(simulation.steps());
+    }
+    void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
+        log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
+        progress_.show(simulation.time(), simulation.steps());
+    }
+    void on_frame(const Simulation& simulation) override {
+        frames_.write(simulation.fields(), simulation.time());
+        probes_.update(simulation.probes());
+        // the log of a long run is long: not more than a few per cent of the time goes into replacing it
+        const auto now = clock::now();
+        if (now - written_ > 20 * write_time_) write_log("running");
+    }
+    void end(const Simulation& simulation, const std::string& status) {
+        progress_.end();
+        probes_.update(simulation.probes());
+        log_.set_solver_bytes(simulation.solver().bytes());
+        write_log(status);
+    }
+    std::vector<std::filesystem::path> series() const { return frames_.series(); }
+
+private:
+    using clock = std::chrono::steady_clock;
+    void write_log(const std::string& status) {
+        const auto start = clock::now();
+        std::vector<std::string> names;
+        for (const auto& path : frames_.series()) names.push_back(path.filename().string());
+        log_.set_series(names);
+        log_.set_status(status);
+        log_.write();
+        written_ = clock::now();
+        write_time_ = written_ - start;
+    }
+    output::Frames frames_;
+    sim::ProbeFiles probes_;
+    output::RunLog log_;
+    Progress progress_;
+    clock::time_point written_{};
+    clock::duration write_time_{};
+};
+
+/// "cases/plume" and "cases/plume/scene.toml" are both called plume.
+std::string scene_name(const scene::Scene& scene) {
+    const std::filesystem::path path = std::filesystem::path(scene.file()).lexically_normal();
+    const std::string stem = path.stem().string();
+    const std::string folder = path.parent_path().filename().string();
+    return stem == "scene" && !folder.empty() ? folder : stem;
+}
+
+std::filesystem::path find_checkpoint(const std::filesystem::path& path) {
+    if (!std::filesystem::is_directory(path)) return path;
+    const auto newest = sim::checkpoint_file(path);
+    return std::filesystem::exists(newest) ? newest : sim::last_good_file(path);
+}
+
+/// Where --out says; else beside the checkpoint that is continued; else out/<name of the scene>.
+std::filesystem::path output_folder(const RunArguments& arguments, const scene::Scene& scene) {
+    if (!arguments.out.empty()) return arguments.out;
+    if (!arguments.restart.empty()) return find_checkpoint(arguments.restart).parent_path();
+    return std::filesystem::path("out") / scene_name(scene);
+}
+
+int simulate(const RunArguments& arguments) {
+    if (arguments.threads > 0) set_threads(arguments.threads);
+    std::vector<scene::Override> overrides;
+    for (const auto& text : arguments.set) overrides.push_back(scene::to_override(text));
+    std::optional<Checkpoint> checkpoint;
+    if (!arguments.restart.empty()) checkpoint = Checkpoint::read(find_checkpoint(arguments.restart));
+    if (arguments.scene.empty() && !checkpoint)
+        throw BadInput("weir run needs a scene (a file, or a folder with a scene.toml), or --restart");
+
+    Simulation simulation(arguments.scene.empty() ? scene_of(*checkpoint, overrides)
+                                                  : scene::read(arguments.scene, sim::schemas(), overrides));
+    if (checkpoint) simulation.restore(*checkpoint);
+    output::check(frame_options(simulation.scene()), simulation.fields());
+    const std::filesystem::path folder = output_folder(arguments, simulation.scene());
+    output::require_writable(folder);
+
+    Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
+    catch_interrupts();
+    sim::LoopOptions options;
+    options.folder = folder;
+    options.checkpoint_every = arguments.checkpoint_every;
+    options.restarted = checkpoint.has_value();
+    options.stop_requests = interruptions;
+    sim::Ending ending;
+    try {
+        ending = sim::run(simulation, recorder, options);
+    } catch (const NumericalFailure& failure) {
+        recorder.end(simulation, std::string("failed: ") + failure.what());
+        throw;
+    }
+    const bool finished = ending == sim::Ending::finished;
+    recorder.end(simulation, finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
+    if (!arguments.quiet)
+        for (const auto& series : recorder.series()) std::printf("%s\n", series.string().c_str());
+    if (finished) return exit_success;
+    std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
+                 folder.c_str());
+    return exit_interrupted;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+    auto arguments = std::make_shared<RunArguments>();
+    CLI::App* run = app.add_subcommand("run", "Simulate a scene: frames (.pvd), probes (.csv) and run.json");
+    run->add_option("scene", arguments->scene, "A scene file, or a folder with a scene.toml");
+    run->add_option("--out", arguments->out, "Output folder (default: out/<name of the scene>)");
+    run->add_option("--set", arguments->set, "Override a key: --set grid.cells=[64,64]; may be repeated")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    run->add_option("--threads", arguments->threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
+    run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
+    run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
+    run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files");
+    run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
+}
+
+}  // namespace weir::app

@@ -1,0 +1,101 @@
+#include "output/frames.hpp"
+
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/series_file.hpp"
+#include "output/vtk_bytes.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+namespace weir::output {
+
+namespace {
+
+std::string file_name(const std::string& series, std::int64_t frame, const std::string& extension) {
+    char number[24];
+    std::snprintf(number, sizeof number, "_%06lld", static_cast<long long>(frame));
+    return std::string(frame_folder) + '/' + series + number + extension;
+}
+
+/// Particle sets of these fields, in the order in which they appear.
+std::vector<std::string> particle_sets(const FieldSet& fields) {
+    std::vector<std::string> sets;
+    for (const auto& field : fields.fields)
+        if (field.where == Where::particle && std::find(sets.begin(), sets.end(), field.set) == sets.end()) sets.push_back(field.set);
+    return sets;
+}
+
+bool has_grid_fields(const FieldSet& fields, const FrameOptions& options, bool faces_only) {
+    return fields.grid.dim > 0 && std::any_of(fields.fields.begin(), fields.fields.end(), [&](const FieldView& field) {
+               return field.where != Where::particle && (!faces_only || field.where == Where::face) && chosen(options, field);
+           });
+}
+
+}  // namespace
+
+void check(const FrameOptions& options, const FieldSet& fields) {
+    if (!can_write_frames()) throw BadInput("this weir was built without VTK (WEIR_VTK=OFF) and writes no frames");
+    std::set<std::string> known;
+    for (const auto& field : fields.fields) known.insert(field.name);
+    for (const auto& name : options.fields) {
+        if (known.count(name)) continue;
+        std::string list;
+        for (const auto& field : known) list += (list.empty() ? "" : ", ") + field;
+        throw BadInput("output.fields: this scene has no field \"" + name + "\"; known: " + list);
+    }
+}
+
+Frames::Frames(std::filesystem::path folder, FrameOptions options) : Frames(std::move(folder), std::move(options), Resume{}) {
+    require_writable(folder_ / frame_folder);
+    for (const auto& old : series_in(folder_)) truncate_series(folder_ / old, 0);
+}
+
+Frames Frames::resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept) {
+    Frames frames(std::move(folder), std::move(options), Resume{});
+    require_writable(frames.folder_ / frame_folder);
+    for (const auto& name : series_in(frames.folder_)) {
+        const auto entries = truncate_series(frames.folder_ / name, kept);
+        if (static_cast<std::int64_t>(entries.size()) != kept)
+            throw BadInput((frames.folder_ / name).string() + " has " + std::to_string(entries.size()) +
+                           " frames, and the checkpoint was taken after " + std::to_string(kept) +
+                           ": continue in the folder of the first run, or in a new one");
+        frames.times_.clear();
+        for (const auto& entry : entries) frames.times_.push_back(entry.time);
+        frames.pieces_[name.stem().string()] = std::filesystem::path(entries.empty() ? "" : entries[0].file).extension().string();
+    }
+    return frames;
+}
+
+void Frames::write(const FieldSet& fields, real t) {
+    if (has_grid_fields(fields, options_, false)) write_piece("grid", ".vti", image_bytes(fields, t, options_));
+    if (options_.faces && has_grid_fields(fields, options_, true))
+        for (int axis = 0; axis < fields.grid.dim; ++axis)
+            write_piece(std::string("faces_") + "xyz"[axis], ".vti", face_image_bytes(fields, axis, t, options_));
+    for (const auto& set : particle_sets(fields)) write_piece(set, ".vtp", particle_bytes(fields, set, t, options_));
+    times_.push_back(t);
+    write_series();
+}
+
+void Frames::write_piece(const std::string& name, const char* extension, const std::string& bytes) {
+    write_file(folder_ / file_name(name, count(), extension), bytes);
+    pieces_[name] = extension;
+}
+
+void Frames::write_series() const {
+    for (const auto& [name, extension] : pieces_) {
+        std::vector<SeriesEntry> entries;
+        for (std::int64_t frame = 0; frame < count(); ++frame)
+            entries.push_back({times_[static_cast<std::size_t>(frame)], file_name(name, frame, extension)});
+        write_file(folder_ / (name + ".pvd"), series_text(entries));
+    }
+}
+
+std::vector<std::filesystem::path> Frames::series() const {
+    std::vector<std::filesystem::path> list;
+    for (const auto& [name, extension] : pieces_) list.push_back(folder_ / (name + ".pvd"));
+    return list;
+}
+
+}  // namespace weir::output

@@ -1,0 +1,55 @@
+// Frames of a run as VTK files: one image (.vti) of the grid, one (.vtp) of each particle set, and a .pvd series of each. A frame's files
+// stand before the series names them, and the series is replaced whole, so a killed run leaves a readable one.
+#pragma once
+#include "core/solver.hpp"
+#include "core/types.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir::output {
+
+enum class Compression { none, zlib, lz4 };
+
+struct FrameOptions {
+    std::vector<std::string> fields;  // names to write; all where empty. Positions of particles are always written
+    bool faces = false;               // also an image for each axis with the face components as they are, at the faces' centres
+    Compression compression = Compression::zlib;
+    bool single_precision = false;
+};
+
+/// Whether this build can write frames at all (WEIR_VTK).
+bool can_write_frames();
+
+/// The names that can be written of these fields. Throws BadInput when `options` asks for others, or when this build has no VTK.
+void check(const FrameOptions& options, const FieldSet& fields);
+
+class Frames {
+public:
+    /// A new series in `folder` (which must be writable); files of an older series of ours there are removed.
+    Frames(std::filesystem::path folder, FrameOptions options);
+    /// Continues the series in `folder` with frame number `kept`; later frames there are removed.
+    static Frames resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept);
+
+    /// Writes frame `count()` at time t [s]. Throws OutputError; earlier frames stay readable then.
+    void write(const FieldSet& fields, real t);
+    std::int64_t count() const { return static_cast<std::int64_t>(times_.size()); }
+    /// The series written so far: grid.pvd, markers.pvd, ...
+    std::vector<std::filesystem::path> series() const;
+
+private:
+    struct Resume {};
+    Frames(std::filesystem::path folder, FrameOptions options, Resume) : folder_(std::move(folder)), options_(std::move(options)) {}
+    void write_piece(const std::string& name, const char* extension, const std::string& bytes);
+    void write_series() const;
+
+    std::filesystem::path folder_;
+    FrameOptions options_;
+    std::vector<real> times_;
+    std::map<std::string, std::string> pieces_;  // series by name, and the extension of its files
+};
+
+}  // namespace weir::output

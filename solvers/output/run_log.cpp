@@ -1,0 +1,88 @@
+#include "output/run_log.hpp"
+
+#include "output/atomic_file.hpp"
+#include "output/machine.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+namespace weir::output {
+
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json scene_json(const scene::Scene& scene) {
+    json overrides = json::array();
+    for (const auto& change : scene.overrides()) overrides.push_back(change.key + " = " + change.value);
+    return {{"file", scene.file()}, {"overrides", overrides}, {"values", json::parse(scene::to_json(scene.root()))}};
+}
+
+json machine_json(const Machine& machine) {
+    return {{"processor", machine.processor}, {"logical_cores", machine.logical_cores},
+            {"threads", machine.threads},     {"memory_gib", machine.memory_gib},
+            {"system", machine.system},       {"compiler", machine.compiler},
+            {"build", machine.build}};
+}
+
+/// Quantities that the solver does not have (NaN) are left out.
+void put(json& to, const char* key, real value) {
+    if (std::isfinite(value)) to[key] = value;
+}
+
+json step_json(std::int64_t step, real t, const StepReport& report, double seconds) {
+    json j = {{"step", step}, {"time", t}, {"dt", report.dt}};
+    put(j, "cfl", report.cfl);
+    put(j, "max_divergence", report.max_divergence);
+    put(j, "density_error", report.density_error);
+    put(j, "max_density_error", report.max_density_error);
+    j["iterations"] = report.iterations;
+    put(j, "residual_before", report.residual_before);
+    put(j, "residual_after", report.residual_after);
+    put(j, "residual_max", report.residual_max);
+    j["milliseconds"] = 1e3 * seconds;
+    return j;
+}
+
+}  // namespace
+
+RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene) : file_(std::move(file)) {
+    const Machine machine = this_machine();
+    json head = {{"weir", machine.version}, {"commit", machine.commit}, {"machine", machine_json(machine)}, {"scene", scene_json(scene)}};
+    head_ = head.dump(1);
+    head_.erase(head_.rfind('\n'));  // open at its end: more keys follow
+}
+
+void RunLog::add_step(std::int64_t step, real t, const StepReport& report, const Passes& passes, double seconds) {
+    json milliseconds = json::object();
+    const auto& list = passes.list();
+    seconds_before_.resize(list.size(), 0);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const double spent =
+            list[i].seconds >= seconds_before_[i] ? list[i].seconds - seconds_before_[i] : list[i].seconds;  // or: were reset
+        if (spent > 0) milliseconds[list[i].name] = 1e3 * spent;
+        seconds_before_[i] = list[i].seconds;
+    }
+    json j = step_json(step, t, report, seconds);
+    j["passes"] = milliseconds;
+    steps_.push_back(j.dump());
+}
+
+void RunLog::resume(std::int64_t last) {
+    std::ifstream old(file_);
+    const json j = json::parse(old, nullptr, false);
+    if (!j.is_object() || !j.contains("steps") || !j["steps"].is_array()) return;
+    for (const auto& step : j["steps"])
+        if (step.is_object() && step.value("step", std::int64_t{0}) <= last) steps_.push_back(step.dump());
+}
+
+void RunLog::write() const {
+    std::string text = head_ + ",\n \"status\": " + json(status_).dump() + ",\n \"series\": " + json(series_).dump() +
+                       ",\n \"solver_bytes\": " + std::to_string(solver_bytes_) + ",\n \"steps\": [";
+    for (std::size_t i = 0; i < steps_.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + steps_[i];
+    write_file(file_, text + "\n ]\n}\n");
+}
+
+}  // namespace weir::output

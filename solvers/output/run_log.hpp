@@ -1,0 +1,40 @@
+// run.json: the scene as understood, the machine, and what every step answered.
+#pragma once
+#include "core/passes.hpp"
+#include "core/solver.hpp"
+#include "scene/scene.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace weir::output {
+
+class RunLog {
+public:
+    /// Nothing is written before the first write().
+    RunLog(std::filesystem::path file, const scene::Scene& scene);
+
+    /// What step number `step`, which ended at t, answered; `passes` as they accumulate in the solver, `seconds` of the whole step.
+    void add_step(std::int64_t step, real t, const StepReport& report, const Passes& passes, double seconds);
+    /// The state of the run: "running", "finished", "interrupted at step 7", "failed: ...".
+    void set_status(const std::string& status) { status_ = status; }
+    void set_series(std::vector<std::string> files) { series_ = std::move(files); }
+    void set_solver_bytes(std::size_t bytes) { solver_bytes_ = bytes; }
+    /// Takes over the steps up to `last` of an earlier run's file, where it can be read.
+    void resume(std::int64_t last);
+    /// Replaces the file. Throws OutputError.
+    void write() const;
+
+private:
+    std::filesystem::path file_;
+    std::string head_;                    // scene and machine: they never change
+    std::vector<std::string> steps_;      // one JSON object each, as text, so that a long run is not encoded again for each frame
+    std::vector<double> seconds_before_;  // of each pass, when the last step was added
+    std::string status_ = "running";
+    std::vector<std::string> series_;
+    std::size_t solver_bytes_ = 0;
+};
+
+}  // namespace weir::output

@@ -1,0 +1,10 @@
+// Is everything still a number? Asked after every step.
+#pragma once
+#include "core/solver.hpp"
+
+namespace weir::sim {
+
+/// Throws NumericalFailure naming the first quantity that is not finite: a field, or a number of the report.
+void check_finite(const FieldSet& fields, const StepReport& report);
+
+}  // namespace weir::sim

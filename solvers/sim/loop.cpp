@@ -1,0 +1,86 @@
+#include "sim/loop.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+namespace weir::sim {
+
+namespace {
+
+/// A copy of the state costs about as much memory traffic as a few passes of a step: every 50 steps that is lost in the noise.
+constexpr std::int64_t good_state_every = 50;
+
+std::string brief(real value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+/// The last state known to be good, kept in memory: a failed step leaves whatever it reached.
+struct GoodState {
+    Checkpoint state;
+    std::int64_t step = 0;
+    real time = 0;
+    void keep(const Simulation& simulation) {
+        state = {};
+        simulation.save(state);
+        step = simulation.steps();
+        time = simulation.time();
+    }
+};
+
+[[noreturn]] void fail(const NumericalFailure& failure, const GoodState& good, const std::filesystem::path& folder) {
+    std::string message =
+        "step " + std::to_string(failure.step) + ", t = " + brief(failure.time) + " s: " + failure.quantity + ": " + failure.what();
+    try {
+        std::filesystem::create_directories(folder);
+        good.state.write(last_good_file(folder));
+        message += "\nThe last good state (step " + std::to_string(good.step) + ", t = " + brief(good.time) + " s) is saved in " +
+                   last_good_file(folder).string();
+    } catch (const std::exception& error) {
+        message += std::string("\nThe last good state could not be saved: ") + error.what();
+    }
+    NumericalFailure located(failure.quantity, message);
+    located.step = failure.step;
+    located.time = failure.time;
+    throw located;
+}
+
+void save(const Simulation& simulation, const std::filesystem::path& folder) {
+    Checkpoint checkpoint;
+    simulation.save(checkpoint);
+    checkpoint.write(checkpoint_file(folder));
+}
+
+}  // namespace
+
+std::filesystem::path checkpoint_file(const std::filesystem::path& folder) { return folder / "checkpoint.weir"; }
+std::filesystem::path last_good_file(const std::filesystem::path& folder) { return folder / "last_good.weir"; }
+
+Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options) {
+    using clock = std::chrono::steady_clock;
+    if (!options.restarted) watcher.on_frame(simulation);
+    GoodState good;
+    good.keep(simulation);
+    while (!simulation.finished()) {
+        const auto start = clock::now();
+        StepReport report;
+        try {
+            report = simulation.step();
+        } catch (const NumericalFailure& failure) {
+            fail(failure, good, options.folder);
+        }
+        watcher.on_step(simulation, report, std::chrono::duration<double>(clock::now() - start).count());
+        if (simulation.at_frame()) watcher.on_frame(simulation);
+        if (simulation.at_frame() || simulation.steps() % good_state_every == 0) good.keep(simulation);
+        const bool asked = options.checkpoint_every > 0 && simulation.steps() % options.checkpoint_every == 0;
+        const int stops = options.stop_requests();
+        const bool stop = !simulation.finished() && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
+        if (asked || stop) save(simulation, options.folder);
+        if (stop) return Ending::interrupted;
+    }
+    return Ending::finished;
+}
+
+}  // namespace weir::sim

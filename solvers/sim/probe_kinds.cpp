@@ -1,0 +1,244 @@
+#include "sim/probe_kinds.hpp"
+
+#include "geometry/solids.hpp"
+#include "sim/sampling.hpp"
+#include "sim/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::sim {
+
+namespace {
+
+std::string column(const std::string& name, const std::string& unit) { return unit.empty() ? name : name + " [" + unit + "]"; }
+
+std::string component_name(const std::string& field, int components, int component) {
+    return components == 1 ? field : field + '_' + "xyz"[component];
+}
+
+/// A grid field at fixed points.
+class Points final : public ProbeKind {
+public:
+    Points(const FieldView& field, std::vector<Vec<3>> points) : field_(field), points_(std::move(points)) { field_.data.clear(); }
+    void describe(ProbeSeries& series) const override {
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            for (int c = 0; c < components_; ++c) {
+                const std::string number = points_.size() > 1 ? '#' + std::to_string(i) : "";
+                series.columns.push_back(column(component_name(field_.name, components_, c) + number, field_.unit));
+                series.positions.push_back(points_[i]);
+            }
+    }
+    std::vector<real> measure(const Solver&, const FieldSet& fields) const override {
+        const FieldView& field = *fields.find(field_.name);
+        std::vector<real> row;
+        for (const auto& x : points_)
+            for (int c = 0; c < components_; ++c) row.push_back(sample(field, fields.grid, c, x));
+        return row;
+    }
+
+private:
+    FieldView field_;
+    std::vector<Vec<3>> points_;
+    int components_ = field_.components();
+};
+
+/// Height of the liquid's surface above the domain's floor on a vertical line: along y, the axis that notation.md calls up.
+class Gauge final : public ProbeKind {
+public:
+    explicit Gauge(const Vec<3>& at) : at_(at) {}
+    void describe(ProbeSeries& series) const override {
+        series.columns = {"height [m]"};
+        series.positions = {at_};
+    }
+    std::vector<real> measure(const Solver&, const FieldSet& fields) const override {
+        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1]};
+    }
+
+private:
+    Vec<3> at_;
+};
+
+class Front final : public ProbeKind {
+public:
+    explicit Front(int axis) : axis_(axis) {}
+    void describe(ProbeSeries& series) const override { series.columns = {std::string("front_") + "xyz"[axis_] + " [m]"}; }
+    std::vector<real> measure(const Solver&, const FieldSet& fields) const override { return {front(fields, axis_)}; }
+
+private:
+    int axis_;
+};
+
+/// An integral that the solver states, or a cell field summed over the cells times their volume.
+class IntegralProbe final : public ProbeKind {
+public:
+    IntegralProbe(std::string name, std::vector<std::string> columns) : name_(std::move(name)), columns_(std::move(columns)) {}
+    void describe(ProbeSeries& series) const override { series.columns = columns_; }
+    std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
+        for (const auto& integral : solver.integrals())
+            if (integral.name == name_) return {integral.value};
+        std::vector<real> sums;
+        for (const auto& values : fields.find(name_)->data) {
+            real sum = 0;
+            for (const real value : values) sum += value;
+            sums.push_back(sum * cell_volume(fields.grid));
+        }
+        return sums;
+    }
+
+private:
+    std::string name_;
+    std::vector<std::string> columns_;
+};
+
+/// Pressure on the nearest wall: linear from two samples along its normal. On a side of the domain these are the first two cell centres;
+/// near a body they stand 1.5 and 2.5 cells out, where no sample of the interpolation is inside it.
+template <int D>
+class WallPressure final : public ProbeKind {
+public:
+    WallPressure(const scene::Scene& scene, const Vec<D>& at) : solids_(scene.root().tables("solids")), at_(at) {}
+    void describe(ProbeSeries& series) const override {
+        series.columns = {"pressure [Pa]"};
+        series.positions.resize(1);
+        for (int d = 0; d < D; ++d) series.positions[0][d] = at_[d];
+    }
+    std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
+        const GridView& grid = fields.grid;
+        const FieldView& pressure = *fields.find("pressure");
+        auto [wall, normal, first] = nearest_side(grid);
+        solids_.set_time(solver.time());
+        const real eps = 1e-3 * grid.spacing[0];  // of the normal's central differences: small beside a cell, large beside rounding
+        if (!solids_.empty() && std::abs(solids_.distance(at_)) < norm(wall - at_)) {
+            normal = solids_.normal(at_, eps);
+            wall = at_ - solids_.distance(at_) * normal;
+            first = 1.5;
+        }
+        const auto pressure_at = [&](real cells_out, const Vec<D>& on_wall, const Vec<D>& n) {
+            Vec<3> x{};
+            for (int d = 0; d < D; ++d) x[d] = on_wall[d] + cells_out * grid.spacing[static_cast<std::size_t>(d)] * n[d];
+            return sample(pressure, grid, 0, x);
+        };
+        const real p1 = pressure_at(first, wall, normal), p2 = pressure_at(first + 1, wall, normal);
+        return {p1 - first * (p2 - p1)};
+    }
+
+private:
+    struct Wall {
+        Vec<D> point, normal;
+        real first;  // distance of the first sample [cells]
+    };
+    Wall nearest_side(const GridView& grid) const {
+        Wall best{at_, {}, 0.5};
+        real nearest = infinity;
+        for (int a = 0; a < D; ++a)
+            for (int end = 0; end < 2; ++end) {
+                const auto axis = static_cast<std::size_t>(a);
+                const real side = grid.origin[axis] + end * grid.cells[axis] * grid.spacing[axis];
+                if (std::abs(at_[a] - side) >= nearest) continue;
+                nearest = std::abs(at_[a] - side);
+                best.point = at_;
+                best.point[a] = side;
+                best.normal = (end == 0 ? 1.0 : -1.0) * Vec<D>::unit(a);
+            }
+        return best;
+    }
+    mutable geometry::Solids<D> solids_;
+    Vec<D> at_;
+};
+
+/// The checks and the makers, one function a kind.
+class Maker {
+public:
+    Maker(const scene::Scene& scene, std::size_t number, const Solver& solver)
+        : scene_(scene),
+          path_("probes[" + std::to_string(number) + "]"),
+          table_(scene.root().tables("probes")[number]),
+          solver_(solver),
+          fields_(solver.fields()) {}
+
+    std::unique_ptr<ProbeKind> make() const {
+        const std::string& kind = table_.text("kind");
+        if (fields_.grid.dim == 0) scene_.refuse(path_, "solver \"" + scene_.solver() + "\" has no grid to measure on");
+        if (kind == "point") return std::make_unique<Points>(grid_field(), std::vector{inside("at")});
+        if (kind == "line") return line();
+        if (kind == "gauge") return surface(), std::make_unique<Gauge>(inside("at"));
+        if (kind == "front") return surface(), std::make_unique<Front>(static_cast<int>(table_.text("axis")[0] - 'x'));
+        if (kind == "integral") return integral();
+        if (kind == "wall_pressure") return wall_pressure();
+        throw std::logic_error("probe \"" + kind + "\" is in the schema but has no maker");
+    }
+
+private:
+    std::unique_ptr<ProbeKind> line() const {
+        const Vec<3> from = inside("from"), to = inside("to");
+        const auto count = table_.integer("count");
+        std::vector<Vec<3>> points;
+        for (std::int64_t i = 0; i < count; ++i) {
+            const real s = static_cast<real>(i) / static_cast<real>(count - 1);
+            points.push_back((1 - s) * from + s * to);
+        }
+        return std::make_unique<Points>(grid_field(), std::move(points));
+    }
+    std::unique_ptr<ProbeKind> integral() const {
+        const std::string& name = table_.text("field");
+        for (const auto& integral : solver_.integrals())
+            if (integral.name == name) return std::make_unique<IntegralProbe>(name, std::vector{column(name, integral.unit)});
+        const FieldView* field = fields_.find(name);
+        std::string known;
+        for (const auto& integral : solver_.integrals()) known += integral.name + ", ";
+        if (!field || field->where != Where::cell)
+            scene_.refuse(path_ + ".field",
+                          "solver \"" + scene_.solver() + "\" has no integral or cell field \"" + name + "\" in this scene",
+                          known + known_fields({Where::cell}));
+        std::vector<std::string> columns;
+        for (int c = 0; c < field->components(); ++c) columns.push_back("integral of " + component_name(name, field->components(), c));
+        return std::make_unique<IntegralProbe>(name, std::move(columns));
+    }
+    std::unique_ptr<ProbeKind> wall_pressure() const {
+        if (!fields_.find("pressure")) scene_.refuse(path_ + ".kind", "solver \"" + scene_.solver() + "\" has no pressure");
+        const Vec<3> at = inside("at");
+        if (fields_.grid.dim == 2) return std::make_unique<WallPressure<2>>(scene_, Vec<2>{{at[0], at[1]}});
+        return std::make_unique<WallPressure<3>>(scene_, at);
+    }
+
+    const FieldView& grid_field() const {
+        const std::string& name = table_.text("field");
+        const FieldView* field = fields_.find("", name);
+        if (!field)
+            scene_.refuse(path_ + ".field", "solver \"" + scene_.solver() + "\" has no field \"" + name + "\" in this scene",
+                          "known: " + known_fields({Where::cell, Where::face}));
+        return *field;
+    }
+    std::string known_fields(std::initializer_list<Where> where) const {
+        std::string list;
+        for (const auto& field : fields_.fields)
+            if (std::find(where.begin(), where.end(), field.where) != where.end()) list += (list.empty() ? "" : ", ") + field.name;
+        return list;
+    }
+    Vec<3> inside(const std::string& key) const {
+        const Vec<3> x = table_.vec<3>(key);
+        const GridView& grid = fields_.grid;
+        for (int a = 0; a < grid.dim; ++a) {
+            const real lower = grid.origin[static_cast<std::size_t>(a)], upper = upper_corner(grid)[a];
+            if (x[a] < lower || x[a] > upper) scene_.refuse(path_ + '.' + key, "the probe is outside the domain");
+        }
+        return x;
+    }
+    void surface() const {
+        if (!has_surface(fields_)) scene_.refuse(path_ + ".kind", "solver \"" + scene_.solver() + "\" has no free surface to measure");
+    }
+
+    const scene::Scene& scene_;
+    std::string path_;
+    const scene::Table& table_;
+    const Solver& solver_;
+    FieldSet fields_;
+};
+
+}  // namespace
+
+std::unique_ptr<ProbeKind> make_probe(const scene::Scene& scene, std::size_t number, const Solver& solver) {
+    return Maker(scene, number, solver).make();
+}
+
+}  // namespace weir::sim

@@ -1,0 +1,13 @@
+// The kinds of probes: points, lines, vertical water gauges, wall pressure, integrals, front.
+#pragma once
+#include "scene/scene.hpp"
+#include "sim/probes.hpp"
+
+#include <memory>
+
+namespace weir::sim {
+
+/// The probe that entry `number` of the scene's "probes" describes. Refuses (BadScene) what the solver cannot answer.
+std::unique_ptr<ProbeKind> make_probe(const scene::Scene& scene, std::size_t number, const Solver& solver);
+
+}  // namespace weir::sim

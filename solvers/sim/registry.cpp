@@ -1,0 +1,27 @@
+#include "sim/registry.hpp"
+
+#include <stdexcept>
+
+namespace weir::sim {
+
+const std::vector<scene::SolverKind>& registry() {
+    static const std::vector<scene::SolverKind> kinds = {};
+    return kinds;
+}
+
+const std::vector<scene::SolverSchema>& schemas() {
+    static const std::vector<scene::SolverSchema> list = [] {
+        std::vector<scene::SolverSchema> all;
+        for (const auto& kind : registry()) all.push_back(kind.schema);
+        return all;
+    }();
+    return list;
+}
+
+const scene::SolverKind& kind_named(std::string_view name, const std::vector<scene::SolverKind>& kinds) {
+    for (const auto& kind : kinds)
+        if (kind.schema.name == name) return kind;
+    throw std::logic_error("no solver is registered as \"" + std::string(name) + "\"");
+}
+
+}  // namespace weir::sim

@@ -1,0 +1,16 @@
+// Every solver of the program, by name: one line each in registry.cpp. Reader, messages, describe, run and validate find it here.
+#pragma once
+#include "scene/solver_kind.hpp"
+
+#include <string_view>
+#include <vector>
+
+namespace weir::sim {
+
+const std::vector<scene::SolverKind>& registry();
+/// Their schemas, as the scene reader wants them.
+const std::vector<scene::SolverSchema>& schemas();
+/// The solver of that name, which a checked scene always has; std::logic_error otherwise.
+const scene::SolverKind& kind_named(std::string_view name, const std::vector<scene::SolverKind>& kinds = registry());
+
+}  // namespace weir::sim

@@ -1,0 +1,132 @@
+#include "sim/simulation.hpp"
+
+#include "sim/finite.hpp"
+#include "sim/registry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace weir {
+
+namespace {
+
+/// Times closer than this are the same time: what rounding leaves of t + (T - t).
+real slack(real t) { return 16 * std::numeric_limits<real>::epsilon() * std::max(std::abs(t), std::numeric_limits<real>::min()); }
+
+/// A step may be this much longer than asked for, so that a sum of rounded steps leaves no sliver before a frame.
+constexpr real stretch = 1 + 1e-9;
+
+void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
+
+std::string get_text(const Checkpoint& from, const std::string& name) {
+    std::vector<char> text;
+    from.get(name, text);
+    return {text.begin(), text.end()};
+}
+
+}  // namespace
+
+Simulation::Simulation(const std::filesystem::path& scene, const std::vector<scene::Override>& overrides)
+    : Simulation(scene::read(scene, sim::schemas(), overrides)) {}
+
+Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::registry()) {}
+
+Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
+    : scene_(std::move(scene)),
+      solver_(sim::kind_named(scene_.solver(), kinds).make(scene_)),
+      probes_(scene_, *solver_),
+      end_(scene_.number("time.end")),
+      every_(scene_.root().number_or("output.every", infinity)) {
+    probes_.sample(*solver_);
+}
+
+StepReport Simulation::step() { return step_towards(next_target()); }
+
+void Simulation::run_until(real t) {
+    while (!reached(t)) step_towards(std::min(t, finished() ? infinity : next_target()));
+}
+
+StepReport Simulation::step_towards(real target) {
+    const real frame_target = next_target();
+    const real dt = next_dt(target);
+    StepReport report;
+    try {
+        report = solver_->step(dt);
+        sim::check_finite(fields(), report);
+    } catch (NumericalFailure& failure) {
+        failure.step = steps_ + 1;
+        failure.time = time();
+        throw;
+    }
+    ++steps_;
+    at_frame_ = reached(frame_target);
+    if (at_frame_) ++frame_;
+    probes_.sample(*solver_);
+    return report;
+}
+
+bool Simulation::reached(real t) const { return time() >= t - slack(t); }
+
+/// The next frame, or the end where that comes first. A frame that rounding puts just before the end is the end.
+real Simulation::next_target() const {
+    if (every_ == infinity || finished()) return end_;
+    real k = std::floor(time() / every_) + 1;
+    while (reached(k * every_)) ++k;
+    const real frame = k * every_;
+    return frame >= end_ - 1e-9 * every_ ? end_ : frame;
+}
+
+real Simulation::next_dt(real target) const {
+    const real remaining = target - time();
+    const scene::Table& root = scene_.root();
+    const bool fixed = root.has("time.dt");
+    const real dt = fixed ? root.number("time.dt") : std::min(solver_->advised_dt(), root.number_or("time.max_dt", infinity));
+    if (!(dt > slack(time())) && remaining > 0)
+        throw NumericalFailure("time step", "the advised time step is " + std::to_string(dt) + " s: time no longer advances");
+    if (remaining <= 0) return dt;
+    if (dt * stretch >= remaining) return remaining;
+    return !fixed && 2 * dt > remaining ? remaining / 2 : dt;  // two equal steps rather than one step and a sliver
+}
+
+void Simulation::save(Checkpoint& to) const {
+    put_text(to, "sim.source", scene_.source());
+    put_text(to, "sim.file", scene_.file());
+    std::string overrides;
+    for (const auto& o : scene_.overrides()) overrides += o.key + '=' + o.value + '\0';
+    put_text(to, "sim.overrides", overrides);
+    to.put_value("sim.steps", steps_);
+    to.put_value("sim.frame", frame_);
+    to.put_value("sim.at_frame", at_frame_);
+    probes_.save(to);
+    solver_->save(to);
+}
+
+void Simulation::restore(const Checkpoint& from) {
+    try {
+        solver_->restore(from);
+        probes_.restore(from);
+        steps_ = from.get_value<std::int64_t>("sim.steps");
+        frame_ = from.get_value<std::int64_t>("sim.frame");
+        at_frame_ = from.get_value<bool>("sim.at_frame");
+    } catch (const BadInput&) {
+        throw;
+    } catch (const std::runtime_error& error) {
+        throw BadInput(std::string("the checkpoint does not fit the scene: ") + error.what());
+    }
+}
+
+scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Override>& more) {
+    std::vector<scene::Override> overrides;
+    const std::string lines = get_text(checkpoint, "sim.overrides");
+    for (std::size_t at = 0; at < lines.size();) {
+        const std::size_t stop = lines.find('\0', at), equals = lines.find('=', at);
+        overrides.push_back({lines.substr(at, equals - at), lines.substr(equals + 1, stop - equals - 1)});
+        at = stop + 1;
+    }
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return scene::parse(get_text(checkpoint, "sim.source"), get_text(checkpoint, "sim.file"), sim::schemas(), overrides);
+}
+
+}  // namespace weir

@@ -1,0 +1,75 @@
+// The public face of weir: a scene in, step by step, fields out.
+//
+//   weir::Simulation simulation("cases/dam_break_2d");
+//   while (!simulation.finished()) simulation.step();
+//   const weir::FieldSet fields = simulation.fields();
+#pragma once
+#include "core/error.hpp"
+#include "core/solver.hpp"
+#include "scene/scene.hpp"
+#include "scene/solver_kind.hpp"
+#include "sim/probes.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace weir {
+
+class Simulation {
+public:
+    /// A scene file, or a folder with a scene.toml. Throws BadInput.
+    explicit Simulation(const std::filesystem::path& scene, const std::vector<scene::Override>& overrides = {});
+    explicit Simulation(scene::Scene scene);
+    /// With solvers that are not in the registry.
+    Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds);
+
+    /// One step of next_dt(). Throws NumericalFailure, with step and time, when a field is no longer finite or a solve fails.
+    StepReport step();
+    /// Steps until time t [s] is reached exactly; past the end of the scene too.
+    void run_until(real t);
+    /// time.dt, or what solver and effects advise and time.max_dt allows; cut or halved so that frames and the end are hit exactly.
+    real next_dt() const { return next_dt(next_target()); }
+
+    bool finished() const { return reached(end_); }
+    real time() const { return solver_->time(); }  // [s]
+    real end_time() const { return end_; }         // [s]
+    std::int64_t steps() const { return steps_; }
+    /// Frames stand at 0, every output.every seconds, and at the end. frame() counts them from 0; it is the last one that was reached.
+    bool at_frame() const { return at_frame_; }
+    bool has_frames() const { return every_ < infinity; }  // others than the first and the last
+    std::int64_t frame() const { return frame_; }
+
+    FieldSet fields() const { return static_cast<const Solver&>(*solver_).fields(); }
+    Solver& solver() { return *solver_; }
+    const Solver& solver() const { return *solver_; }
+    const scene::Scene& scene() const { return scene_; }
+    /// What the scene's probes have measured so far.
+    const std::vector<ProbeSeries>& probes() const { return probes_.series(); }
+    const ProbeSeries& probe_series(std::string_view name) const { return probes_.series(name); }
+
+    /// Everything that the next step depends on, the scene included.
+    void save(Checkpoint& to) const;
+    /// Continues where save() was called. Throws BadInput when the checkpoint belongs to another kind of scene.
+    void restore(const Checkpoint& from);
+
+private:
+    real next_target() const;
+    real next_dt(real target) const;
+    bool reached(real t) const;
+    StepReport step_towards(real target);
+
+    scene::Scene scene_;
+    std::unique_ptr<Solver> solver_;
+    sim::Probes probes_;
+    real end_ = 0, every_ = infinity;
+    std::int64_t steps_ = 0, frame_ = 0;
+    bool at_frame_ = true;
+};
+
+/// The scene that a checkpoint was made from, as its text and overrides. Throws BadInput.
+scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Override>& more = {});
+
+}  // namespace weir

@@ -1,0 +1,82 @@
+#include "sim/surface.hpp"
+
+#include "sim/sampling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::sim {
+
+namespace {
+
+/// The uppermost zero of phi(i), i = n-1 .. 0, as a fractional index; -1 where all are air. Beyond the outermost centres nothing is known,
+/// so a liquid outermost cell is full.
+template <class Phi>
+real uppermost_zero(int n, const Phi& phi) {
+    for (int i = n - 1; i >= 0; --i) {
+        const real below = phi(i);
+        if (!(below < 0)) continue;
+        if (i == n - 1) return n - 0.5;
+        const real above = phi(i + 1);
+        return i + below / (below - above);
+    }
+    return -1;
+}
+
+real coordinate(const Lattice& lattice, int axis, real index) {
+    return lattice.first[axis] + index * lattice.spacing[static_cast<std::size_t>(axis)];
+}
+
+const FieldView* marker_positions(const FieldSet& fields) { return fields.find(marker_set_name, "position"); }
+
+/// Highest marker no farther than half a cell from the line through x along `axis`.
+real highest_marker(const FieldSet& fields, const Vec<3>& x, int axis) {
+    const auto& position = marker_positions(fields)->data;
+    real highest = fields.grid.origin[static_cast<std::size_t>(axis)];
+    for (std::size_t m = 0; m < position[0].size(); ++m) {
+        bool near = true;
+        for (std::size_t a = 0; a < position.size(); ++a)
+            if (static_cast<int>(a) != axis && std::abs(position[a][m] - x[a]) > 0.5 * fields.grid.spacing[a]) near = false;
+        if (near) highest = std::max(highest, position[static_cast<std::size_t>(axis)][m]);
+    }
+    return highest;
+}
+
+}  // namespace
+
+bool has_surface(const FieldSet& fields) { return fields.find(level_set_name) || marker_positions(fields); }
+
+real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
+    const FieldView* level_set = fields.find(level_set_name);
+    if (!level_set) return highest_marker(fields, x, axis);
+    const Lattice lattice = Lattice::of_cells(fields.grid);
+    const real zero = uppermost_zero(lattice.n[static_cast<std::size_t>(axis)], [&](int i) {
+        Vec<3> at = x;
+        at[axis] = coordinate(lattice, axis, i);
+        return sample(level_set->data[0], lattice, at);
+    });
+    return zero < 0 ? fields.grid.origin[static_cast<std::size_t>(axis)] : coordinate(lattice, axis, zero);
+}
+
+real front(const FieldSet& fields, int axis) {
+    const auto along = static_cast<std::size_t>(axis), b = (along + 1) % 3, c = (along + 2) % 3;
+    real farthest = fields.grid.origin[along];
+    if (const FieldView* level_set = fields.find(level_set_name)) {
+        const Lattice lattice = Lattice::of_cells(fields.grid);
+        std::array<int, 3> I{};
+        for (I[c] = 0; I[c] < lattice.n[c]; ++I[c])
+            for (I[b] = 0; I[b] < lattice.n[b]; ++I[b]) {
+                const real zero = uppermost_zero(lattice.n[along], [&](int i) {
+                    auto at = I;
+                    at[along] = i;
+                    return level_set->data[0][lattice.linear(at)];
+                });
+                if (zero >= 0) farthest = std::max(farthest, coordinate(lattice, axis, zero));
+            }
+        return farthest;
+    }
+    for (const real x : marker_positions(fields)->data[along]) farthest = std::max(farthest, x);
+    return farthest;
+}
+
+}  // namespace weir::sim

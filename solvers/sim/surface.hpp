@@ -1,0 +1,20 @@
+// Where the free surface stands: from the solver's level set (linear between cell centres), or from its markers where it has none.
+#pragma once
+#include "core/solver.hpp"
+#include "core/types.hpp"
+
+#include <array>
+
+namespace weir::sim {
+
+/// The names by which solvers show them: a cell field, signed distance to the surface [m], negative in the liquid; and a particle set.
+inline constexpr const char* level_set_name = "level_set";
+inline constexpr const char* marker_set_name = "markers";
+
+bool has_surface(const FieldSet& fields);
+/// The highest coordinate along `axis` that liquid reaches on the line through x along that axis [m]; the lower end where it is dry.
+real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis);
+/// The highest coordinate along `axis` that liquid reaches anywhere [m]; the lower end of the domain where there is none.
+real front(const FieldSet& fields, int axis);
+
+}  // namespace weir::sim

@@ -1,0 +1,116 @@
+#include "sim/simulation.hpp"
+
+#include "support/fake_solver.hpp"
+#include "support/test.hpp"
+
+namespace {
+
+using weir::real;
+using weir::test::fake_simulation;
+
+std::vector<real> times_of_frames(weir::Simulation& simulation) {
+    std::vector<real> times{simulation.time()};
+    while (!simulation.finished()) {
+        simulation.step();
+        if (simulation.at_frame()) times.push_back(simulation.time());
+    }
+    return times;
+}
+
+TEST("every frame and the end are hit: to the last bit or, where t + (T - t) rounds, to the one before") {
+    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.1 }");
+    const auto times = times_of_frames(simulation);
+    ASSERT_EQ(times.size(), 11u);
+    for (std::size_t k = 0; k < times.size(); ++k) EXPECT_DOUBLE_EQ(times[k], 0.1 * static_cast<real>(k));
+    EXPECT_EQ(simulation.frame(), 10);
+}
+
+TEST("a run whose last frame falls just before the end, by rounding, has no frame too many") {
+    auto simulation = fake_simulation("time = { end = 0.3 }\noutput = { every = 0.1 }");  // 3 * 0.1 > 0.3 in double precision
+    EXPECT_EQ(times_of_frames(simulation).size(), 4u);
+}
+
+TEST("a fixed step is taken as given, and cut only before a frame or the end") {
+    auto simulation = fake_simulation("time = { end = 0.25, dt = 0.1 }");
+    EXPECT_EQ(simulation.step().dt, 0.1);
+    EXPECT_EQ(simulation.step().dt, 0.1);
+    EXPECT_NEAR(simulation.step().dt, 0.05, 1e-15);  // the rest
+    EXPECT_TRUE(simulation.finished());
+    EXPECT_EQ(simulation.steps(), 3);
+}
+
+TEST("sums of rounded fixed steps leave no sliver before the end: 1000 steps of 0.001 make 1 s") {
+    auto simulation = fake_simulation("time = { end = 1.0, dt = 0.001 }\noutput = { every = 0.05 }");
+    real smallest = 1;
+    while (!simulation.finished()) smallest = std::min(smallest, simulation.step().dt);
+    EXPECT_EQ(simulation.steps(), 1000);
+    EXPECT_GT(smallest, 0.000999);
+}
+
+TEST("an advised step that would leave a sliver is halved with the rest, so no step is below half the advice") {
+    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.033 }");
+    while (!simulation.finished()) {
+        const real advised = simulation.solver().advised_dt();
+        const real remaining = std::min(0.033 * static_cast<real>(simulation.frame() + 1), 1.0) - simulation.time();
+        const real dt = simulation.step().dt;
+        EXPECT_GE(dt * (1 + 1e-9), std::min(remaining, advised / 2));
+        EXPECT_LE(dt, advised * (1 + 1e-9));
+    }
+}
+
+TEST("time.max_dt bounds the advised step") {
+    auto simulation = fake_simulation("time = { end = 0.1, max_dt = 0.004 }");
+    while (!simulation.finished()) EXPECT_LE(simulation.step().dt, 0.004 * (1 + 1e-9));
+}
+
+TEST("run_until stops exactly there, between frames as well") {
+    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.1 }");
+    simulation.run_until(0.25);
+    EXPECT_DOUBLE_EQ(simulation.time(), 0.25);
+    EXPECT_EQ(simulation.frame(), 2);
+    EXPECT_FALSE(simulation.at_frame());
+}
+
+TEST("a field that is no longer finite is a numerical failure with quantity, step and time") {
+    auto simulation = fake_simulation("fail_at = 3\ntime = { end = 1.0, dt = 0.1 }");
+    simulation.step();
+    simulation.step();
+    try {
+        simulation.step();
+        FAIL() << "the NaN passed";
+    } catch (const weir::NumericalFailure& failure) {
+        EXPECT_EQ(failure.quantity, "pressure");
+        EXPECT_EQ(failure.step, 3);
+        EXPECT_NEAR(failure.time, 0.3, 1e-15);
+    }
+}
+
+TEST_IN_2D_AND_3D("a restored simulation continues bit for bit: times, steps, frames, fields, probes") {
+    const std::string scene =
+        "time = { end = 0.5 }\noutput = { every = 0.07 }\nprobes = [ { name = \"m\", kind = \"integral\", field = \"mass\", every = 0.03 } "
+        "]";
+    auto whole = fake_simulation(scene, D), first = fake_simulation(scene, D), second = fake_simulation(scene, D);
+    while (!whole.finished()) whole.step();
+    for (int i = 0; i < 7; ++i) first.step();
+    weir::Checkpoint state;
+    first.save(state);
+    second.restore(state);
+    EXPECT_EQ(second.steps(), 7);
+    while (!second.finished()) second.step();
+    EXPECT_EQ(second.time(), whole.time());
+    EXPECT_EQ(second.steps(), whole.steps());
+    EXPECT_EQ(second.frame(), whole.frame());
+    EXPECT_EQ(second.probe_series("m").times, whole.probe_series("m").times);
+    EXPECT_EQ(second.probe_series("m").values, whole.probe_series("m").values);
+    const auto a = whole.fields(), b = second.fields();
+    for (std::size_t f = 0; f < a.fields.size(); ++f)
+        for (std::size_t c = 0; c < a.fields[f].data.size(); ++c)
+            EXPECT_TRUE(std::equal(a.fields[f].data[c].begin(), a.fields[f].data[c].end(), b.fields[f].data[c].begin()));
+}
+
+TEST("a checkpoint of another scene is refused as bad input") {
+    auto flat = fake_simulation("time = { end = 0.5 }");
+    EXPECT_THROW(flat.restore(weir::Checkpoint{}), weir::BadInput);
+}
+
+}  // namespace
