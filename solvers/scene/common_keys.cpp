@@ -125,6 +125,8 @@ Key fluid() {
                  .min = 0}}};
 }
 
+Key side_temperature(std::string doc) { return {.name = "temperature", .type = Type::number, .doc = std::move(doc), .unit = "K"}; }
+
 const std::vector<Variant>& side_kinds() {
     static const std::vector<Variant> list = {
         {"wall",
@@ -133,10 +135,17 @@ const std::vector<Variant>& side_kinds() {
            .type = Type::choice,
            .doc = "free: fluid glides along the wall; no: it sticks to it.",
            .fallback = std::string("free"),
-           .choices = {"free", "no"}}}},
+           .choices = {"free", "no"}},
+          side_temperature("Temperature of the wall; without it no heat passes.")}},
         {"moving_wall",
          "A wall that moves along itself; fluid sticks to it.",
-         {{.name = "velocity", .type = Type::numbers, .doc = "Velocity of the wall.", .unit = "m/s", .required = true, .length = -1}}},
+         {{.name = "velocity",
+           .type = Type::numbers,
+           .doc = "Velocity of the wall, along it.",
+           .unit = "m/s",
+           .required = true,
+           .length = -1},
+          side_temperature("Temperature of the wall; without it no heat passes.")}},
         {"inflow",
          "Fluid enters with a given velocity.",
          {{.name = "velocity",
@@ -149,9 +158,10 @@ const std::vector<Variant>& side_kinds() {
            .type = Type::text,
            .doc = "uniform, parabolic (zero at the neighbouring walls), or a velocity field that the solver knows by name.",
            .fallback = std::string("uniform")},
-          {.name = "smoke", .type = Type::number, .doc = "Smoke in the entering fluid.", .min = 0}}},
-        {"outflow", "Open: the pressure is 0 and fluid passes both ways.", {}},
-        {"open", "Another word for outflow.", {}},
+          {.name = "smoke", .type = Type::number, .doc = "Smoke in the entering fluid.", .min = 0},
+          side_temperature("Temperature of the entering fluid.")}},
+        {"outflow", "Open: the pressure is 0 and fluid passes both ways.", {side_temperature("Temperature of fluid that comes in.")}},
+        {"open", "Another word for outflow.", {side_temperature("Temperature of fluid that comes in.")}},
         {"periodic", "What leaves here enters at the opposite side, which must be periodic too.", {}},
     };
     return list;
@@ -165,10 +175,6 @@ Key sides() {
                                 .type = Type::table,
                                 .doc = "The " + std::string(end == "min" ? "lower" : "upper") + " side along " + axis + ".",
                                 .fallback = std::string("wall"),
-                                .keys = {{.name = "temperature",
-                                          .type = Type::number,
-                                          .doc = "Temperature held at this side; without it no heat passes through a wall.",
-                                          .unit = "K"}},
                                 .selector = "kind",
                                 .variants_from = &side_kinds,
                                 .only_dim = axis == "z" ? 3 : 0});

@@ -19,7 +19,7 @@ struct Node {
     double number = 0;
     std::string text{};
     std::vector<Node> list{};
-    std::vector<Member> members{};  // in the order of the file
+    std::vector<Member> members;  // in the order of the file
     Place place{};
 
     Member* member(std::string_view key);

@@ -213,7 +213,8 @@ std::optional<Value> Reader::tables(const Node& node, const Key& key, const std:
     for (std::size_t i = 0; i < node.list.size(); ++i) {
         Key one = key;
         one.type = Type::table;
-        if (auto t = table_of(node.list[i], one, fmt::format("{}[{}]", path, i))) out.push_back(std::move(*t));
+        auto t = table_of(node.list[i], one, fmt::format("{}[{}]", path, i));
+        out.push_back(t ? std::move(*t) : Table{});  // an empty one in place of a bad one: rules speak of entries by index
     }
     if (key.required && node.list.empty()) report(node.place, fmt::format("{} is an empty list; it needs at least one entry", path));
     return out;

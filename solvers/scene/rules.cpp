@@ -4,88 +4,106 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <limits>
 
 namespace weir::scene {
 namespace {
 
-class Rules {
-public:
-    Rules(Table& root, int dim, const std::string& file, std::vector<Problem>& problems)
-        : root_(root), dim_(dim), file_(file), problems_(problems) {}
+double physical_memory() { return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)); }
 
-    void periodic_axes() {
-        std::vector<std::string> both;
-        for (int axis = 0; axis < dim_; ++axis) {
-            const std::string name = axis_name(axis);
-            const bool listed = contains(listed_axes(), name);
-            std::array<bool, 2> side{};
-            for (int end = 0; end < 2; ++end) side[static_cast<std::size_t>(end)] = kind(axis, end) == "periodic";
-            if (side[0] != side[1] && !listed) one_end(axis, side[0] ? 0 : 1);
-            if (listed) make_sides_periodic(axis);
-            if (listed || (side[0] && side[1])) both.push_back(name);
+Domain domain_of(const Table& root) {
+    if (!root.has("grid.size") || !root.has("grid.origin")) return {};
+    Domain domain{root.numbers("grid.origin"), root.numbers("grid.origin")};
+    const auto& size = root.numbers("grid.size");
+    if (size.size() != domain.min.size()) return {};  // their lengths are checked against dim, which may be unknown
+    for (std::size_t d = 0; d < size.size(); ++d) domain.max[d] += size[d];
+    return domain;
+}
+
+/// Cells are indexed by int, and the smallest solver keeps about ten numbers a cell.
+void check_cells(const Table& root, const Report& report) {
+    constexpr double most = std::numeric_limits<std::int32_t>::max(), bytes_a_cell = 80;
+    if (!root.has("grid.cells")) return;
+    double cells = 1;
+    for (const double n : root.numbers("grid.cells")) cells *= n;
+    const double needed = cells * bytes_a_cell, there = physical_memory();
+    constexpr double gigabyte = 1e9;
+    if (cells > most)
+        report(root.place("grid.cells"), fmt::format("grid.cells makes {:.3g} cells; at most {:.0f} can be numbered", cells, most));
+    else if (needed > there)
+        report(root.place("grid.cells"),
+               fmt::format("grid.cells makes {:.3g} cells, which need at least {:.3g} GB of memory; this machine has {:.3g} GB", cells,
+                           needed / gigabyte, there / gigabyte));
+}
+
+/// A cell must be wider than the rounding of its own coordinates, with three digits to spare.
+void check_resolution(const Table& root, const Domain& domain, const Report& report) {
+    if (!domain.known() || !root.has("grid.cells") || root.numbers("grid.cells").size() != domain.min.size()) return;
+    for (std::size_t d = 0; d < domain.min.size(); ++d) {
+        const double width = root.numbers("grid.size")[d] / root.numbers("grid.cells")[d];
+        const double farthest = std::max(std::abs(domain.min[d]), std::abs(domain.max[d]));
+        if (!std::isfinite(farthest) || width < 1e3 * std::numeric_limits<double>::epsilon() * farthest)
+            return report(root.place("grid.size"),
+                          fmt::format("cells of {:.3g} m along {} cannot be told apart at x = {:.3g} m in double precision", width,
+                                      axis_name(static_cast<int>(d)), farthest));
+    }
+}
+
+void check_time(const Table& root, const Report& report) {
+    if (root.has("time.dt") && root.has("time.max_dt") && root.number("time.dt") > root.number("time.max_dt"))
+        report(root.place("time.dt"), fmt::format("time.dt is {} s, above time.max_dt = {} s", number_text(root.number("time.dt")),
+                                                  number_text(root.number("time.max_dt"))));
+}
+
+/// Liquid and emitters make fluid only where they reach into the domain.
+void check_reach(const Table& shape, const std::string& path, const Domain& domain, const Report& report) {
+    if (domain.known() && misses(shape, domain))
+        report(shape.place("shape"), fmt::format("{} lies outside the domain, so it adds no fluid", path),
+               fmt::format("the domain reaches from {} to {}", point_text(domain.min), point_text(domain.max)));
+}
+
+void check_bodies(const Table& root, const Domain& domain, const Report& report) {
+    const auto each = [&](const char* list, const auto& check) {
+        const auto& tables = root.tables(list);
+        for (std::size_t i = 0; i < tables.size(); ++i) {
+            const auto path = fmt::format("{}[{}]", list, i);
+            check_shape(tables[i], path, report);
+            check(tables[i], path);
         }
-        if (auto* grid = root_.find_table("grid")) grid->set("periodic", both, grid->place("periodic"));
-    }
-
-    void open_is_outflow() {
-        for (int axis = 0; axis < dim_; ++axis)
-            for (int end = 0; end < 2; ++end)
-                if (Table* side = root_.find_table(side_path(axis, end)); side && kind(axis, end) == "open")
-                    side->set("kind", std::string("outflow"), side->place("kind"));
-    }
-
-private:
-    static std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
-    static std::string side_path(int axis, int end) { return fmt::format("sides.{}_{}", axis_name(axis), end ? "max" : "min"); }
-    static bool contains(const std::vector<std::string>& list, const std::string& name) {
-        return std::find(list.begin(), list.end(), name) != list.end();
-    }
-    std::string kind(int axis, int end) const { return root_.text_or(side_path(axis, end) + ".kind", ""); }
-    std::vector<std::string> listed_axes() const {
-        return root_.has("grid.periodic") ? root_.texts("grid.periodic") : std::vector<std::string>{};
-    }
-
-    void report(const std::string& path, std::string message, std::string hint = "") {
-        problems_.push_back({.file = file_, .place = root_.place(path), .message = std::move(message), .hint = std::move(hint)});
-    }
-
-    void one_end(int axis, int end) {
-        const auto other = side_path(axis, 1 - end);
-        report(side_path(axis, end) + ".kind",
-               fmt::format("{} is periodic, but {} is {}", side_path(axis, end), other, quote(kind(axis, 1 - end))),
-               "both ends of an axis are periodic, or neither");
-    }
-
-    /// `grid.periodic` names the axis: its sides may say so too, but nothing else.
-    void make_sides_periodic(int axis) {
-        for (int end = 0; end < 2; ++end) {
-            Table* side = root_.find_table(side_path(axis, end));
-            if (!side || kind(axis, end) == "periodic") continue;
-            if (root_.place(side_path(axis, end)).column > 0) {
-                report(side_path(axis, end), fmt::format("{} is {}, but grid.periodic names {}", side_path(axis, end),
-                                                         quote(kind(axis, end)), quote(axis_name(axis))));
-                continue;
-            }
-            Table periodic;
-            periodic.set("kind", std::string("periodic"));
-            *side = periodic;
-        }
-    }
-
-    Table& root_;
-    int dim_;
-    const std::string& file_;
-    std::vector<Problem>& problems_;
-};
+    };
+    each("liquid", [&](const Table& t, const std::string& path) { check_reach(t, path, domain, report); });
+    each("solids", [&](const Table& t, const std::string& path) {
+        if (t.has("motion")) check_motion(t.table("motion"), path + ".motion", report);
+    });
+    each("emitters", [&](const Table& t, const std::string& path) {
+        check_reach(t, path, domain, report);
+        if (t.has("start") && t.has("end") && t.number("end") <= t.number("start"))
+            report(t.place("end"), fmt::format("{}.end is {} s, not after its start at {} s", path, number_text(t.number("end")),
+                                               number_text(t.number("start"))));
+    });
+}
 
 }  // namespace
 
+std::string point_text(const std::vector<double>& point) {
+    std::string out = "[";
+    for (const double x : point) out += (out.size() > 1 ? ", " : "") + number_text(x);
+    return out + "] m";
+}
+
 void check_rules(Table& root, int dim, const std::string& file, std::vector<Problem>& problems) {
-    Rules rules(root, dim, file, problems);
-    rules.periodic_axes();
-    rules.open_is_outflow();
+    const Report report(file, problems);
+    const Domain domain = domain_of(root);
+    check_cells(root, report);
+    check_resolution(root, domain, report);
+    check_time(root, report);
+    check_sides(root, dim, report);
+    check_bodies(root, domain, report);
+    check_probes(root, domain, dim, report);
 }
 
 }  // namespace weir::scene

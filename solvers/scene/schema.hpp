@@ -28,7 +28,13 @@ enum class Type {
 using Default = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
 
 struct Key;
-struct Variant;
+
+/// One kind of shape, motion, effect, probe ... with the keys that belong to it.
+struct Variant {
+    std::string name{};
+    std::string doc{};
+    std::vector<Key> keys;
+};
 
 /// One key of a scene. Only `name` and `type` are obligatory.
 struct Key {
@@ -49,13 +55,6 @@ struct Key {
     const std::vector<Variant>& (*variants_from)() = nullptr;  // in place of `variants`, where those contain themselves (union of shapes)
     int only_dim = 0;                                          // 2 or 3: the key exists only in scenes of that dimension
     std::string example{};                                     // as a scene would write it; shown where a required key is missing
-};
-
-/// One kind of shape, motion, effect, probe ... with the keys that belong to it.
-struct Variant {
-    std::string name{};
-    std::string doc{};
-    std::vector<Key> keys{};
 };
 
 /// What a solver adds to the common keys, and the effects that it has. A key with the name of a common one changes that one: its
