@@ -39,12 +39,21 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
     return options;
 }
 
+/// The frames of a run; none, with a word about it, where this build has no VTK.
+std::optional<output::Frames> open_frames(const Simulation& simulation, const std::filesystem::path& folder, bool restarted) {
+    const auto options = frame_options(simulation.scene());
+    if (!output::can_write_frames()) {
+        std::fprintf(stderr, "this weir was built without VTK (WEIR_VTK=OFF): probes and run.json are written, frames are not\n");
+        return std::nullopt;
+    }
+    return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
+}
+
 /// Writes everything that a run leaves behind, and shows how it goes.
 class Recorder final : public sim::Watcher {
 public:
     Recorder(const Simulation& simulation, const std::filesystem::path& folder, bool restarted, bool quiet)
-        : frames_(restarted ? output::Frames::resume(folder, frame_options(simulation.scene()), simulation.frame() + 1)
-                            : output::Frames(folder, frame_options(simulation.scene()))),
+        : frames_(open_frames(simulation, folder, restarted)),
           probes_(folder / "probes"),
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
@@ -56,7 +65,7 @@ public:
         progress_.show(simulation.time(), simulation.steps());
     }
     void on_frame(const Simulation& simulation) override {
-        frames_.write(simulation.fields(), simulation.time());
+        if (frames_) frames_->write(simulation.fields(), simulation.time());
         probes_.update(simulation.probes());
         // the log of a long run is long: not more than a few per cent of the time goes into replacing it
         const auto now = clock::now();
@@ -68,21 +77,21 @@ public:
         log_.set_solver_bytes(simulation.solver().bytes());
         write_log(status);
     }
-    std::vector<std::filesystem::path> series() const { return frames_.series(); }
+    std::vector<std::filesystem::path> series() const { return frames_ ? frames_->series() : std::vector<std::filesystem::path>{}; }
 
 private:
     using clock = std::chrono::steady_clock;
     void write_log(const std::string& status) {
         const auto start = clock::now();
         std::vector<std::string> names;
-        for (const auto& path : frames_.series()) names.push_back(path.filename().string());
+        for (const auto& path : series()) names.push_back(path.filename().string());
         log_.set_series(names);
         log_.set_status(status);
         log_.write();
         written_ = clock::now();
         write_time_ = written_ - start;
     }
-    output::Frames frames_;
+    std::optional<output::Frames> frames_;
     sim::ProbeFiles probes_;
     output::RunLog log_;
     Progress progress_;

@@ -15,7 +15,7 @@ namespace weir::output {
 enum class Compression { none, zlib, lz4 };
 
 struct FrameOptions {
-    std::vector<std::string> fields;  // names to write; all where empty. Positions of particles are always written
+    std::vector<std::string> fields = {};  // names to write; all where empty. Positions of particles are always written
     bool faces = false;               // also an image for each axis with the face components as they are, at the faces' centres
     Compression compression = Compression::zlib;
     bool single_precision = false;
@@ -24,7 +24,7 @@ struct FrameOptions {
 /// Whether this build can write frames at all (WEIR_VTK).
 bool can_write_frames();
 
-/// The names that can be written of these fields. Throws BadInput when `options` asks for others, or when this build has no VTK.
+/// Throws BadInput when `options` ask for names that these fields do not have.
 void check(const FrameOptions& options, const FieldSet& fields);
 
 class Frames {

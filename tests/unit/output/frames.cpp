@@ -1,0 +1,203 @@
+#include "output/frames.hpp"
+
+#include "core/error.hpp"
+#include "support/fake_solver.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test.hpp"
+#include "support/vtk_files.hpp"
+
+#include <csignal>
+#include <fstream>
+
+#include <sys/resource.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using weir::real;
+using weir::output::Frames;
+using weir::test::fake_simulation;
+using weir::test::FakeSolver;
+using weir::test::TemporaryFolder;
+
+TEST_IN_2D_AND_3D("a grid frame holds cell fields to the last bit, and the velocity as the mean of the faces, as a 3-vector") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }", D);
+    simulation.step();
+    Frames frames(folder, {});
+    frames.write(simulation.fields(), simulation.time());
+    const auto image = weir::test::read_image(folder.path() / "frames/grid_000000.vti");
+    const auto fields = simulation.fields();
+    auto* pressure = image->GetCellData()->GetArray("pressure");
+    auto* velocity = image->GetCellData()->GetArray("velocity");
+    const auto& expected = fields.find("pressure")->data[0];
+    ASSERT_EQ(static_cast<std::size_t>(image->GetNumberOfCells()), expected.size());
+    ASSERT_EQ(velocity->GetNumberOfComponents(), 3);
+    for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i) {
+        EXPECT_EQ(pressure->GetTuple1(i), expected[static_cast<std::size_t>(i)]);
+        double bounds[6];
+        image->GetCellBounds(i, bounds);
+        for (int a = 0; a < 3; ++a) {
+            const real centre = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
+            EXPECT_NEAR(velocity->GetComponent(i, a), a < D ? FakeSolver::velocity(a, centre, simulation.time()) : 0.0, 1e-14);
+        }
+    }
+    EXPECT_EQ(image->GetFieldData()->GetArray("TimeValue")->GetTuple1(0), simulation.time());
+}
+
+TEST_IN_2D_AND_3D("with output.faces each face component stands at its face, to the last bit") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }", D);
+    Frames frames(folder, {.fields = {"velocity"}, .faces = true});
+    frames.write(simulation.fields(), 0);
+    const auto fields = simulation.fields();
+    for (int a = 0; a < D; ++a) {
+        const std::string axis(1, "xyz"[a]);
+        const auto image = weir::test::read_image(folder.path() / ("frames/faces_" + axis + "_000000.vti"));
+        auto* values = image->GetPointData()->GetArray(("velocity_" + axis).c_str());
+        const auto& expected = fields.find("velocity")->data[static_cast<std::size_t>(a)];
+        ASSERT_EQ(static_cast<std::size_t>(values->GetNumberOfTuples()), expected.size());
+        for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) {
+            EXPECT_EQ(values->GetTuple1(i), expected[static_cast<std::size_t>(i)]);
+            EXPECT_NEAR(values->GetTuple1(i), FakeSolver::velocity(a, image->GetPoint(i)[a], 0), 1e-14);
+        }
+    }
+}
+
+TEST("markers are vertices at their positions") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }");
+    Frames frames(folder, {});
+    frames.write(simulation.fields(), 0);
+    const auto markers = weir::test::read_particles(folder.path() / "frames/markers_000000.vtp");
+    const auto fields = simulation.fields();
+    const auto& position = fields.find("markers", "position")->data;
+    ASSERT_EQ(markers->GetNumberOfVerts(), 10);
+    for (vtkIdType i = 0; i < 10; ++i) EXPECT_EQ(markers->GetPoint(i)[1], position[1][static_cast<std::size_t>(i)]);
+}
+
+TEST("every compression reads back the same numbers; single precision halves them") {
+    auto simulation = fake_simulation("time = { end = 1.0 }");
+    std::vector<std::uintmax_t> sizes;
+    for (const auto compression : {weir::output::Compression::none, weir::output::Compression::zlib, weir::output::Compression::lz4}) {
+        TemporaryFolder folder;
+        Frames frames(folder, {.fields = {"pressure"}, .compression = compression});
+        frames.write(simulation.fields(), 0);
+        const auto image = weir::test::read_image(folder.path() / "frames/grid_000000.vti");
+        const auto fields = simulation.fields();
+        for (vtkIdType i = 0; i < 64; ++i)
+            EXPECT_EQ(image->GetCellData()->GetArray("pressure")->GetTuple1(i),
+                      fields.find("pressure")->data[0][static_cast<std::size_t>(i)]);
+    }
+    TemporaryFolder folder;
+    Frames frames(folder, {.single_precision = true});
+    frames.write(simulation.fields(), 0);
+    EXPECT_EQ(weir::test::read_image(folder.path() / "frames/grid_000000.vti")->GetCellData()->GetArray("pressure")->GetDataTypeSize(), 4);
+}
+
+TEST("only the fields that are asked for are written, and unknown ones are refused with the known") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }");
+    Frames frames(folder, {.fields = {"level_set"}});
+    frames.write(simulation.fields(), 0);
+    const auto image = weir::test::read_image(folder.path() / "frames/grid_000000.vti");
+    EXPECT_EQ(image->GetCellData()->GetNumberOfArrays(), 1);
+    try {
+        weir::output::check({.fields = {"smoke"}}, simulation.fields());
+        FAIL() << "accepted";
+    } catch (const weir::BadInput& bad) {
+        EXPECT_NE(std::string(bad.what()).find("no field \"smoke\"; known: level_set, position, pressure, velocity"), std::string::npos)
+            << bad.what();
+    }
+}
+
+TEST("the series is readable after every frame, names exact times, and a new run leaves no frame of an older one") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }");
+    {
+        Frames frames(folder, {});
+        for (int k = 0; k < 3; ++k) {
+            frames.write(simulation.fields(), 0.1 * k);
+            EXPECT_EQ(weir::test::read_whole_series(folder.path() / "grid.pvd"), k + 1);
+            EXPECT_EQ(weir::test::read_whole_series(folder.path() / "markers.pvd"), k + 1);
+        }
+        EXPECT_EQ(weir::output::read_series(folder.path() / "grid.pvd")[2].time, 0.1 * 2);
+    }
+    Frames again(folder, {});
+    again.write(simulation.fields(), 0);
+    EXPECT_EQ(weir::test::read_whole_series(folder.path() / "grid.pvd"), 1);
+    EXPECT_FALSE(fs::exists(folder.path() / "frames/grid_000001.vti"));
+}
+
+TEST("files that are not ours are never removed, whatever a foreign .pvd names") {
+    TemporaryFolder folder;
+    std::ofstream(folder.path() / "precious.txt") << "x";
+    std::ofstream(folder.path() / "foreign.pvd") << weir::output::series_text({{0, "precious.txt"}, {1, "frames/../precious.txt"}});
+    Frames frames(folder, {});
+    EXPECT_TRUE(fs::exists(folder.path() / "precious.txt"));
+    EXPECT_TRUE(fs::exists(folder.path() / "foreign.pvd"));
+}
+
+TEST("a resumed series keeps the frames up to the checkpoint and goes on from there") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }");
+    {
+        Frames frames(folder, {});
+        for (int k = 0; k < 5; ++k) frames.write(simulation.fields(), 0.1 * k);
+    }
+    auto frames = Frames::resume(folder, {}, 3);
+    EXPECT_FALSE(fs::exists(folder.path() / "frames/grid_000003.vti"));
+    frames.write(simulation.fields(), 0.7);
+    const auto entries = weir::output::read_series(folder.path() / "grid.pvd");
+    ASSERT_EQ(entries.size(), 4u);
+    EXPECT_EQ(entries[3].time, 0.7);
+    EXPECT_EQ(weir::test::read_whole_series(folder.path() / "markers.pvd"), 4);
+}
+
+/// The largest file that this process may write, while it lives; writes beyond fail as on a full disk (EFBIG, not ENOSPC).
+struct SmallDisk {
+    explicit SmallDisk(rlim_t bytes) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before);
+        rlimit small{bytes, before.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before); }
+    rlimit before{};
+};
+
+TEST("when writing fails the error names file and reason, earlier frames stay readable, no half file is left") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }");
+    Frames frames(folder, {.compression = weir::output::Compression::none});
+    frames.write(simulation.fields(), 0);
+    {
+        const SmallDisk small(1000);
+        try {
+            frames.write(simulation.fields(), 0.1);
+            FAIL() << "the frame of several thousand bytes was written";
+        } catch (const weir::OutputError& error) {
+            EXPECT_NE(std::string(error.what()).find("grid_000001.vti: File too large"), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_EQ(weir::test::read_whole_series(folder.path() / "grid.pvd"), 1);
+    EXPECT_FALSE(fs::exists(folder.path() / "frames/grid_000001.vti"));
+    EXPECT_FALSE(fs::exists(folder.path() / "frames/grid_000001.vti.part"));
+}
+
+TEST("an output folder that cannot be written is refused, with the system's reason") {
+    TemporaryFolder folder;
+    std::ofstream(folder.path() / "file") << "x";
+    try {
+        Frames frames(folder.path() / "file" / "out", {});
+        FAIL() << "accepted";
+    } catch (const weir::OutputError& error) {
+        EXPECT_NE(std::string(error.what()).find("Not a directory"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace

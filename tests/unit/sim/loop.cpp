@@ -1,0 +1,114 @@
+#include "sim/loop.hpp"
+
+#include "sim/probe_files.hpp"
+#include "support/fake_solver.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test.hpp"
+
+#include <fstream>
+#include <iterator>
+
+namespace {
+
+using weir::real;
+using weir::test::fake_simulation;
+using weir::test::TemporaryFolder;
+
+/// Counts what it is told.
+struct Counter final : weir::sim::Watcher {
+    void on_step(const weir::Simulation&, const weir::StepReport&, double) override { ++steps; }
+    void on_frame(const weir::Simulation& simulation) override { frames.push_back(simulation.time()); }
+    int steps = 0;
+    std::vector<real> frames;
+};
+
+std::string text_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+const std::string scene = "time = { end = 1.0 }\noutput = { every = 0.25 }\n";
+
+TEST("a run tells of each step, and of frames at the start, at each output time and at the end") {
+    auto simulation = fake_simulation(scene);
+    Counter counter;
+    EXPECT_EQ(weir::sim::run(simulation, counter, {}), weir::sim::Ending::finished);
+    EXPECT_EQ(counter.steps, simulation.steps());
+    EXPECT_EQ(counter.frames, (std::vector<real>{0, 0.25, 0.5, 0.75, 1.0}));
+}
+
+TEST("asked once to stop, a run ends with its next frame; asked twice, with the step; both save where they continue bit for bit") {
+    for (const int requests : {1, 2}) {
+        TemporaryFolder folder;
+        auto whole = fake_simulation(scene), simulation = fake_simulation(scene), continued = fake_simulation(scene);
+        Counter counter;
+        weir::sim::run(whole, counter, {});
+        weir::sim::LoopOptions options;
+        options.folder = folder;
+        options.stop_requests = [&] { return simulation.steps() >= 3 ? requests : 0; };
+        EXPECT_EQ(weir::sim::run(simulation, counter, options), weir::sim::Ending::interrupted);
+        EXPECT_EQ(simulation.at_frame(), requests == 1);
+        EXPECT_EQ(simulation.steps() == 3, requests == 2);
+        continued.restore(weir::Checkpoint::read(weir::sim::checkpoint_file(folder)));
+        Counter rest;
+        weir::sim::LoopOptions restarted;
+        restarted.restarted = true;
+        weir::sim::run(continued, rest, restarted);
+        EXPECT_EQ(continued.time(), whole.time());
+        EXPECT_EQ(continued.steps(), whole.steps());
+        EXPECT_EQ(continued.solver().advised_dt(), whole.solver().advised_dt());
+        EXPECT_NE(rest.frames.front(), simulation.at_frame() ? simulation.time() : -1);  // no frame is told twice
+    }
+}
+
+TEST("at a numerical failure the last good state is saved, and the message tells step, time, quantity and file") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("fail_at = 30\n" + scene);
+    Counter counter;
+    weir::sim::LoopOptions options;
+    options.folder = folder;
+    try {
+        weir::sim::run(simulation, counter, options);
+        FAIL() << "the NaN passed";
+    } catch (const weir::NumericalFailure& failure) {
+        const std::string text = failure.what();
+        EXPECT_EQ(failure.step, 30);
+        EXPECT_NE(text.find("step 30, t = "), std::string::npos) << text;
+        EXPECT_NE(text.find("pressure is no longer finite"), std::string::npos) << text;
+        EXPECT_NE(text.find(weir::sim::last_good_file(folder).string()), std::string::npos) << text;
+    }
+    auto good = fake_simulation(scene);
+    good.restore(weir::Checkpoint::read(weir::sim::last_good_file(folder)));
+    EXPECT_GT(good.steps(), 0);
+    EXPECT_LT(good.steps(), 30);
+    EXPECT_TRUE(good.at_frame());
+}
+
+TEST("checkpoints are saved every so many steps") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0, dt = 0.1 }");
+    Counter counter;
+    weir::sim::LoopOptions options;
+    options.folder = folder;
+    options.checkpoint_every = 4;
+    weir::sim::run(simulation, counter, options);
+    EXPECT_EQ(weir::Checkpoint::read(weir::sim::checkpoint_file(folder)).get_value<std::int64_t>("sim.steps"), 8);
+}
+
+TEST("probe files appended to step by step equal those written at once, and hold every digit") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 0.1 }\nprobes = [ { name = \"m\", kind = \"integral\", field = \"mass\" } ]");
+    weir::sim::ProbeFiles growing(folder.path() / "a");
+    while (!simulation.finished()) {
+        simulation.step();
+        growing.update(simulation.probes());
+    }
+    weir::sim::ProbeFiles(folder.path() / "b").update(simulation.probes());
+    const std::string text = text_of(folder.path() / "a/m.csv");
+    EXPECT_EQ(text, text_of(folder.path() / "b/m.csv"));
+    EXPECT_NE(text.find("t [s],mass [kg]\n0,1.3\n"), std::string::npos) << text;
+    const std::size_t last = text.rfind(',');
+    EXPECT_EQ(std::stod(text.substr(last + 1)), simulation.probe_series("m").values.back()[0]);
+}
+
+}  // namespace
