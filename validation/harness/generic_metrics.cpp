@@ -2,6 +2,7 @@
 #include "validation/harness/generic_metrics.hpp"
 
 #include "core/grid.hpp"
+#include "validation/metrics/samples.hpp"
 
 #include <fmt/format.h>
 
@@ -21,27 +22,6 @@ Name split(std::string_view name) {
     const auto dot = name.rfind('.');
     if (dot == std::string_view::npos) return {std::string(name), ""};
     return {std::string(name.substr(0, dot)), std::string(name.substr(dot + 1))};
-}
-
-/// f(x, weight, i) for each sample of one component of a field on the grid.
-template <class F>
-void for_each_sample(const GridView& g, int face_axis, F&& f) {
-    std::array<int, 3> n = g.cells;
-    if (face_axis >= 0) ++n[static_cast<std::size_t>(face_axis)];
-    std::size_t i = 0;
-    for (int z = 0; z < n[2]; ++z)
-        for (int y = 0; y < n[1]; ++y)
-            for (int x = 0; x < n[0]; ++x, ++i) {
-                const std::array<int, 3> at{x, y, z};
-                Vec<3> position{};
-                for (int d = 0; d < g.dim; ++d) {
-                    const auto u = static_cast<std::size_t>(d);
-                    position[d] = g.origin[u] + g.spacing[u] * (at[u] + (d == face_axis ? 0.0 : 0.5));
-                }
-                const bool end = face_axis >= 0 && (at[static_cast<std::size_t>(face_axis)] == 0 ||
-                                                    at[static_cast<std::size_t>(face_axis)] == n[static_cast<std::size_t>(face_axis)] - 1);
-                f(position, end ? 0.5 : 1.0, i);
-            }
 }
 
 /// Running sums of one norm.

@@ -1,10 +1,16 @@
 // Every metric that belongs to one kind of case: one line a file.
-#include "validation/harness/metric.hpp"
+#include "validation/metrics/lists.hpp"
 
 namespace weir::validation {
 
 const std::vector<Metric>& metrics() {
-    static const std::vector<Metric> all = {};
+    static const std::vector<Metric> all = [] {
+        std::vector<Metric> list;
+        for (const auto& part : {cavity_metrics(), energy_metrics(), wave_metrics(), dam_break_metrics(), growth_metrics(), shape_metrics(),
+                                 exactness_metrics(), obstacle_metrics()})
+            list.insert(list.end(), part.begin(), part.end());
+        return list;
+    }();
     return all;
 }
 

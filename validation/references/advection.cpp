@@ -82,7 +82,7 @@ void add_baselines(Reference& ref, const std::filesystem::path& file, const std:
 
 REFERENCE(zalesak) {
     Reference ref{.source = "Zalesak 1979; errors of the same schemes by an independent implementation (cases/zalesak/data)"};
-    ref.scalars["phi"] = [](const Vec<3>& x, real t) { return slotted_disk(unturned({x[0], x[1]}, t)); };
+    ref.scalars["level_set"] = [](const Vec<3>& x, real t) { return slotted_disk(unturned({x[0], x[1]}, t)); };
     ref.numbers["area"] = slotted_disk_area();
     add_baselines(ref, data / "advection_baseline_errors.csv", "zalesak_1rev");
     return ref;
@@ -90,7 +90,7 @@ REFERENCE(zalesak) {
 
 REFERENCE(single_vortex) {
     Reference ref{.source = "LeVeque 1996, Rider & Kothe 1998; errors of the same schemes by an independent implementation"};
-    ref.scalars["phi"] = [](const Vec<3>& x, real) { return vortex_disk({x[0], x[1]}); };  // at t = 0 and T
+    ref.scalars["level_set"] = [](const Vec<3>& x, real) { return vortex_disk({x[0], x[1]}); };  // at t = 0 and T
     ref.numbers["area"] = vortex_disk_area();
     add_baselines(ref, data / "advection_baseline_errors.csv", "single_vortex_T8");
     return ref;

@@ -1,0 +1,16 @@
+// The lists of which the registry is made: one function for each file of metrics.
+#pragma once
+#include "validation/harness/metric.hpp"
+
+namespace weir::validation {
+
+std::vector<Metric> cavity_metrics();
+std::vector<Metric> energy_metrics();
+std::vector<Metric> wave_metrics();
+std::vector<Metric> dam_break_metrics();
+std::vector<Metric> growth_metrics();
+std::vector<Metric> shape_metrics();
+std::vector<Metric> exactness_metrics();
+std::vector<Metric> obstacle_metrics();
+
+}  // namespace weir::validation

@@ -1,0 +1,47 @@
+// Moving bodies in smoke: nothing inside them, and the fluid's momentum answers to the forces on it.
+#include "geometry/solids.hpp"
+#include "validation/metrics/lists.hpp"
+#include "validation/metrics/samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::validation {
+namespace {
+
+/// Largest |smoke| in cells that lie wholly inside a body (deeper than half a diagonal).
+template <int D>
+real smoke_inside(const FieldSet& fields, const scene::Scene& scene, real t) {
+    geometry::Solids<D> solids(scene.root().tables("solids"));
+    solids.set_time(t);
+    const FieldView* smoke = fields.find("smoke");
+    if (!smoke) throw BadInput("the solver shows no field \"smoke\"");
+    real diagonal = 0;
+    for (int d = 0; d < D; ++d) diagonal += std::pow(fields.grid.spacing[static_cast<std::size_t>(d)], 2);
+    real worst = 0;
+    for_each_sample(fields.grid, -1, [&](const Vec<3>& x, real, std::size_t i) {
+        Vec<D> at;
+        for (int d = 0; d < D; ++d) at[d] = x[d];
+        if (solids.distance(at) < -std::sqrt(diagonal) / 2) worst = std::max(worst, std::abs(smoke->data[0][i]));
+    });
+    return worst;
+}
+
+}  // namespace
+
+std::vector<Metric> obstacle_metrics() {
+    return {
+        {.name = "smoke.inside_solids",
+         .unit = "",
+         .doc = "Largest amount of smoke at any step in cells wholly inside a body.",
+         .measure =
+             [](const RunRecord& run, const Reference&) {
+                 const Curve s = run.series("smoke.inside_solids");
+                 return *std::max_element(s.y.begin(), s.y.end());
+             },
+         .observe = [](const FieldSet& fields, const scene::Scene& scene,
+                       real t) { return scene.dim() == 2 ? smoke_inside<2>(fields, scene, t) : smoke_inside<3>(fields, scene, t); }},
+    };
+}
+
+}  // namespace weir::validation
