@@ -1,0 +1,179 @@
+// The layer rule (DESIGN section 2): a folder may include what its target links, directly or through public links, and nothing else of
+// ours; and the link lists themselves keep to the levels.
+#include "support/test.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Library {
+    std::string folder;  // "solvers/mac"
+    std::set<std::string> links, public_links;
+};
+
+/// "weir::core" and "weir_core" are the target weir_core; others are not ours.
+std::set<std::string> ours(const std::string& list) {
+    std::set<std::string> names;
+    std::istringstream plain(std::regex_replace(list, std::regex("weir::"), "weir_"));
+    for (std::string word; plain >> word;)
+        if (word.starts_with("weir_") && word != "weir_flags") names.insert(word);
+    return names;
+}
+
+/// What CMake wrote: "target|folder|links|public links" a line.
+std::map<std::string, Library> read_libraries() {
+    std::map<std::string, Library> libraries;
+    std::ifstream file(WEIR_LINKS);
+    for (std::string line; std::getline(file, line);) {
+        std::vector<std::string> part(1);
+        for (const char c : line)
+            if (c == '|')
+                part.emplace_back();
+            else
+                part.back() += c;
+        if (part.size() == 4) libraries[part[0]] = {part[1], ours(part[2]), ours(part[3])};
+    }
+    return libraries;
+}
+
+/// Folders that a target sees: its own, its links', and whatever those pass on.
+std::set<std::string> seen_by(const std::string& target, const std::map<std::string, Library>& libraries) {
+    std::set<std::string> folders{libraries.at(target).folder}, done;
+    std::vector<std::string> open(libraries.at(target).links.begin(), libraries.at(target).links.end());
+    while (!open.empty()) {
+        const std::string next = open.back();
+        open.pop_back();
+        if (!done.insert(next).second || !libraries.count(next)) continue;
+        folders.insert(libraries.at(next).folder);
+        open.insert(open.end(), libraries.at(next).public_links.begin(), libraries.at(next).public_links.end());
+    }
+    return folders;
+}
+
+struct Include {
+    std::string file, what;
+    int line = 0;
+    bool angled = false;
+};
+
+std::vector<Include> includes_of(const fs::path& folder) {
+    static const std::regex pattern(R"(^\s*#\s*include\s*([<"])([^">]+)[">])");
+    std::vector<Include> list;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const auto extension = entry.path().extension();
+        if (extension != ".hpp" && extension != ".cpp" && extension != ".inl" && extension != ".h") continue;
+        std::ifstream file(entry.path());
+        int number = 0;
+        for (std::string line; std::getline(file, line);) {
+            ++number;
+            std::smatch match;
+            if (std::regex_search(line, match, pattern)) list.push_back({entry.path().string(), match[2], number, match[1] == "<"});
+        }
+    }
+    return list;
+}
+
+/// The folder of ours that an include names, relative to the root; empty where it is none.
+std::string folder_of(const std::string& what) {
+    const std::string folder = fs::path(what).parent_path().string();
+    if (folder.empty()) return "";
+    for (const std::string& candidate : {"solvers/" + folder, folder})
+        if (fs::exists(fs::path(WEIR_SOURCE_DIR) / candidate / fs::path(what).filename())) return candidate;
+    return "";
+}
+
+/// The types that references and metrics are written in. They stand beside the harness that calls them, but are data of core and scene
+/// only, so that no reference sees a solver through them; the last test of this file holds them to that.
+const std::set<std::string> contract_headers{"validation/harness/curve.hpp", "validation/harness/metric.hpp",
+                                             "validation/harness/reference.hpp", "validation/harness/run_record.hpp"};
+
+TEST("every #include names a folder that the target links") {
+    const auto libraries = read_libraries();
+    ASSERT_GE(libraries.size(), 8u) << "CMake wrote no link lists";
+    int checked = 0;
+    for (const auto& [target, library] : libraries) {
+        const auto seen = seen_by(target, libraries);
+        for (const auto& include : includes_of(fs::path(WEIR_SOURCE_DIR) / library.folder)) {
+            const std::string folder = folder_of(include.what);
+            if (folder.empty() || contract_headers.count(include.what)) continue;
+            ++checked;
+            EXPECT_TRUE(seen.count(folder)) << include.file << ':' << include.line << ": " << library.folder << " includes \""
+                                            << include.what << "\", but " << target << " does not link the target of " << folder;
+        }
+    }
+    EXPECT_GT(checked, 100);  // else the pattern finds nothing
+}
+
+/// Who may see whom, apart from what the link lists say. Peers of one level never see each other, but for scene below geometry.
+const std::map<std::string, std::set<std::string>>& allowed() {
+    static const std::set<std::string> below_solvers{"solvers/core", "solvers/scene", "solvers/geometry", "solvers/poisson"};
+    static const std::set<std::string> all_solvers{"solvers/core", "solvers/scene", "solvers/geometry", "solvers/poisson", "solvers/mac"};
+    static const std::set<std::string> validation{"solvers/core",       "solvers/scene",      "solvers/sim",      "solvers/output",
+                                                  "solvers/geometry",   "solvers/poisson",    "solvers/mac",      "validation/references",
+                                                  "validation/metrics", "validation/harness", "validation/report"};
+    static const std::map<std::string, std::set<std::string>> table = {
+        {"solvers/core", {}},
+        {"solvers/scene", {"solvers/core"}},
+        {"solvers/geometry", {"solvers/core", "solvers/scene"}},
+        {"solvers/poisson", {"solvers/core", "solvers/scene", "solvers/geometry"}},
+        {"solvers/mac", below_solvers},
+        {"solvers/sim", all_solvers},
+        {"solvers/output", {"solvers/core", "solvers/scene"}},
+        {"validation/references", {"solvers/core", "solvers/scene"}},
+        {"validation/metrics", validation},
+        {"validation/harness", validation},
+        {"validation/report", validation},
+    };
+    return table;
+}
+
+TEST("no folder includes one above its level, whatever CMake links; a new folder must be given its place in this test") {
+    for (const auto& [target, library] : read_libraries()) {
+        ASSERT_TRUE(allowed().count(library.folder)) << library.folder << " has no place among the levels";
+        const auto& below = allowed().at(library.folder);
+        for (const auto& include : includes_of(fs::path(WEIR_SOURCE_DIR) / library.folder)) {
+            const std::string folder = folder_of(include.what);
+            if (folder.empty() || folder == library.folder || contract_headers.count(include.what)) continue;
+            EXPECT_TRUE(below.count(folder)) << include.file << ':' << include.line << ": " << library.folder << " must not see " << folder;
+        }
+    }
+}
+
+TEST("VTK is included by solvers/output and by nothing else of the library") {
+    for (const auto& [target, library] : read_libraries()) {
+        if (library.folder == "solvers/output") continue;
+        for (const auto& include : includes_of(fs::path(WEIR_SOURCE_DIR) / library.folder))
+            EXPECT_FALSE(include.what.starts_with("vtk")) << include.file << ':' << include.line;
+    }
+}
+
+TEST("every folder of sources below solvers and validation is a target of its own") {
+    std::set<std::string> folders;
+    for (const auto& [target, library] : read_libraries()) folders.insert(library.folder);
+    for (const std::string root : {"solvers", "validation"})
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(WEIR_SOURCE_DIR) / root)) {
+            if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
+            const std::string folder = fs::relative(entry.path().parent_path(), WEIR_SOURCE_DIR).string();
+            EXPECT_TRUE(folders.count(folder)) << entry.path() << " belongs to no target";
+        }
+}
+
+TEST("the contract of validation is data of core and scene only") {
+    for (const auto& include : includes_of(fs::path(WEIR_SOURCE_DIR) / "validation/harness")) {
+        const std::string header = fs::relative(include.file, WEIR_SOURCE_DIR).string(), folder = folder_of(include.what);
+        if (!contract_headers.count(header) || folder.empty()) continue;
+        EXPECT_TRUE(folder == "solvers/core" || folder == "solvers/scene" || contract_headers.count(include.what))
+            << header << " includes " << include.what;
+    }
+}
+
+}  // namespace
