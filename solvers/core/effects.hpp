@@ -58,6 +58,7 @@ public:
             for (const auto& effect : list) effect->needs(fields);
         return fields;
     }
+    bool empty(Stage stage) const { return at_[static_cast<std::size_t>(stage)].empty(); }
     void apply(Stage stage, State& s, real dt) const {
         for (const auto& effect : at_[static_cast<std::size_t>(stage)]) effect->apply(s, dt);
     }

@@ -6,6 +6,8 @@ namespace weir::mac {
 
 namespace {
 
+constexpr const char* component_names[] = {"u_x", "u_y", "u_z"};
+
 template <class Fields>
 auto find_in(Fields& fields, std::string_view name) -> decltype(&fields.front().values) {
     for (auto& field : fields)
@@ -28,10 +30,11 @@ MacState<D>::MacState(const scene::Scene& scene, const FieldPlan& plan) : sides(
     u = MacVelocity<D>(lattice.cells, lattice.h, lattice.origin);
     p = Grid<real, D>(u.cells);
     cells = Grid<poisson::Cell, D>(u.cells, poisson::Cell::fluid);
-    for (const auto& name : plan.advected_fields()) fields.push_back({name, Grid<real, D>(u.cells)});
-    for (const auto& name : plan.scratch_fields()) scratch.push_back({name, Grid<real, D>(u.cells)});
+    for (const auto& name : plan.advected_fields()) fields.push_back({name, Grid<real, D>(u.cells), {}, field_boundary(sides, name)});
+    for (const auto& name : plan.scratch_fields()) scratch.push_back({name, Grid<real, D>(u.cells), {}, {}});
     rho = scene.number("fluid.density");
     nu = scene.number("fluid.viscosity");
+    for (int a = 0; a < D; ++a) boundary[static_cast<std::size_t>(a)] = velocity_boundary(sides, u, a, nu);
 }
 
 template <int D>
@@ -66,7 +69,7 @@ void MacState<D>::allocate_solids() {
 
 template <int D>
 void MacState<D>::save(Checkpoint& to) const {
-    for (int a = 0; a < D; ++a) to.put("u" + std::to_string(a), u[a].values());
+    for (int a = 0; a < D; ++a) to.put(component_names[a], u[a].values());
     to.put("p", p.values());
     to.put("cells", cells.values());
     for (const auto& field : fields) to.put("field." + field.name, field.values.values());
@@ -75,7 +78,7 @@ void MacState<D>::save(Checkpoint& to) const {
 
 template <int D>
 void MacState<D>::restore(const Checkpoint& from) {
-    for (int a = 0; a < D; ++a) from.get("u" + std::to_string(a), u[a].values());
+    for (int a = 0; a < D; ++a) from.get(component_names[a], u[a].values());
     from.get("p", p.values());
     from.get("cells", cells.values());
     for (auto& field : fields) from.get("field." + field.name, field.values.values());
@@ -86,7 +89,8 @@ template <int D>
 std::size_t MacState<D>::bytes() const {
     std::size_t total = u.bytes() + p.size() * sizeof(real) + cells.size();
     for (const auto& grid : solid.open) total += 2 * grid.size() * sizeof(real);
-    for (const auto& field : fields) total += field.values.size() * sizeof(real);
+    for (const auto& field : fields) total += field.values.size() * sizeof(real) + field.before.bytes();
+    for (const auto& component : before.face) total += component.bytes();
     for (const auto& field : scratch) total += field.values.size() * sizeof(real);
     return total;
 }

@@ -4,6 +4,7 @@
 #include "core/effects.hpp"
 #include "core/grid.hpp"
 #include "geometry/sides.hpp"
+#include "mac/ghosts.hpp"
 #include "mac/velocity.hpp"
 #include "poisson/poisson.hpp"
 #include "scene/scene.hpp"
@@ -18,6 +19,8 @@ template <int D>
 struct NamedField {
     std::string name;
     Grid<real, D> values;
+    Padded<D> before;      // as it was when the (sub)step began, with ghosts; allocated by solvers that use it
+    Boundary<D> boundary;  // what the sides do to it
 };
 
 /// The solids as the faces see them (Batty, Bertails & Bridson 2007; Ng, Min & Gibou 2009). Empty grids without solids.
@@ -31,11 +34,13 @@ struct SolidFaces {
 /// The state of a MAC solver. Cell fields exist only if an effect (or the scene) asked for them.
 template <int D>
 struct MacState {
-    MacVelocity<D> u;                   // [m/s]
-    Grid<real, D> p;                    // pressure [Pa]
-    Grid<poisson::Cell, D> cells;       // fluid, solid (air: only with a free surface)
-    SolidFaces<D> solid;                // allocated only if the scene has solids
-    std::vector<NamedField<D>> fields;  // carried by the flow
+    MacVelocity<D> u;                     // [m/s]
+    Grid<real, D> p;                      // pressure [Pa]
+    Grid<poisson::Cell, D> cells;         // fluid, solid (air: only with a free surface)
+    PaddedVelocity<D> before;             // u as it was when the (sub)step began, with ghosts; allocated by solvers that use it
+    std::array<Boundary<D>, D> boundary;  // what the sides do to each component of u
+    SolidFaces<D> solid;                  // allocated only if the scene has solids
+    std::vector<NamedField<D>> fields;    // carried by the flow
     std::vector<NamedField<D>> scratch;
     geometry::Sides<D> sides;
     real rho = 1;   // density [kg/m³]

@@ -1,11 +1,13 @@
 #include "sim/registry.hpp"
 
+#include "mac/kinds.hpp"
+
 #include <stdexcept>
 
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {};
+    static const std::vector<scene::SolverKind> kinds = {mac::smoke_kind(), mac::transport_kind(), mac::poisson_kind()};
     return kinds;
 }
 

@@ -1,0 +1,84 @@
+// Forces on the fluid's bulk: gravity and buoyancy.
+#include "mac/effects.hpp"
+
+namespace weir::mac {
+
+namespace {
+
+using scene::Type;
+
+/// du/dt = g
+template <int D>
+struct Gravity final : MacEffect<D> {
+    Vec<D> g;
+    real cfl;
+    Gravity(const scene::Table& table, const scene::Scene& scene) : g(table.vec<D>("g")), cfl(scene.number("time.cfl")) {}
+    Stage stage() const override { return Stage::force; }
+    void apply(MacState<D>& s, real dt) override {
+        for (int a = 0; a < D; ++a) {
+            const real du = dt * g[a];
+            if (du != 0) for_each_free_face(s.u, s.sides, a, [&](const Index<D>& I) { s.u[a](I) += du; });
+        }
+    }
+    real max_dt(const MacState<D>& s) const override {
+        real limit = infinity;
+        for (int a = 0; a < D; ++a) limit = std::min(limit, acceleration_limit(std::abs(g[a]), s.u.h[a], cfl));
+        return limit;
+    }
+};
+
+/// f = (β (T − T_ambient) − α s) up     Fedkiw, Stam & Jensen 2001, eq. 8; with α = 0 and β = g × thermal expansion, Boussinesq's force.
+/// α [m/s² per unit of smoke], β [m/s² per kelvin]. A constant that is 0 asks for no field.
+template <int D>
+struct Buoyancy final : MacEffect<D> {
+    real alpha, beta, ambient, cfl;
+    static constexpr int up = 1;
+    Buoyancy(const scene::Table& table, const scene::Scene& scene)
+        : alpha(table.number("alpha")), beta(table.number("beta")), ambient(table.number("ambient")), cfl(scene.number("time.cfl")) {}
+    Stage stage() const override { return Stage::force; }
+    void needs(FieldPlan& plan) const override {
+        if (beta != 0) plan.advected("temperature");
+        if (alpha != 0) plan.advected("smoke");
+    }
+    void apply(MacState<D>& s, real dt) override {
+        const auto add = [&](const Grid<real, D>& q, real factor, real zero) {
+            for_each_free_face(s.u, s.sides, up, [&](const Index<D>& I) { s.u[up](I) += dt * factor * (at_face(q, I, up) - zero); });
+        };
+        if (beta != 0) add(s["temperature"], beta, ambient);
+        if (alpha != 0) add(s["smoke"], -alpha, 0);
+    }
+    real max_dt(const MacState<D>& s) const override {
+        real f = 0;
+        const auto strongest = [&](const Grid<real, D>& q, real factor, real zero) {
+            return std::abs(factor) * max_over(q.extent(), [&](const Index<D>& I) { return std::abs(q(I) - zero); });
+        };
+        if (beta != 0) f += strongest(*s.find("temperature"), beta, ambient);
+        if (alpha != 0) f += strongest(*s.find("smoke"), alpha, 0);
+        return acceleration_limit(f, s.u.h[up], cfl);
+    }
+};
+
+}  // namespace
+
+EffectKind gravity() {
+    return effect_kind<Gravity>({"gravity",
+                                 "A constant acceleration of all fluid.",
+                                 {{.name = "g",
+                                   .type = Type::numbers,
+                                   .doc = "Acceleration.",
+                                   .unit = "m/s^2",
+                                   .required = true,
+                                   .length = -1,
+                                   .example = "g = [0.0, -9.81]"}}});
+}
+
+EffectKind buoyancy() {
+    return effect_kind<Buoyancy>(
+        {"buoyancy",
+         "Warm fluid rises and smoke sinks along y: beta (T - ambient) - alpha smoke (Fedkiw et al. 2001).",
+         {{.name = "alpha", .type = Type::number, .doc = "Weight of smoke.", .unit = "m/s^2", .fallback = 0.0},
+          {.name = "beta", .type = Type::number, .doc = "Lift a kelvin.", .unit = "m/(s^2 K)", .fallback = 0.0},
+          {.name = "ambient", .type = Type::number, .doc = "Temperature without lift.", .unit = "K", .fallback = 0.0}}});
+}
+
+}  // namespace weir::mac
