@@ -1,0 +1,305 @@
+#include "poisson/geometric_cg.hpp"
+
+#include "poisson/packing.hpp"
+#include "poisson/products.hpp"
+
+namespace weir::poisson {
+
+namespace {
+
+/// Reduction of r after which it is replaced: single precision leaves it wrong by some 1e-5 of what it was.
+constexpr real replace_counted = 1e-4, replace_weighted = 1e-3;
+
+}  // namespace
+
+template <int D>
+bool GeometricCg<D>::setup(const Natural<D>& problem) {
+    if (!hierarchy_.build(problem)) return false;
+    const Layout<D>& at = hierarchy_.finest().at;
+    const std::size_t entries = at.entries(), skip = static_cast<std::size_t>(at.stride + lanes);
+    const std::size_t bytes = 2 * Arena::need<double>(entries) + 2 * Arena::need<float>(entries);
+    if (bytes != arena_.size() || x_[0] == nullptr) {
+        arena_.reserve(bytes);
+        for (auto& x : x_) x = arena_.take<double>(entries) + skip;
+        for (auto& p : p_) p = arena_.take<float>(entries) + skip;
+    }
+    for (float* p : p_) clear_gaps(hierarchy_.finest(), p);
+    sums_.assign(static_cast<std::size_t>(at.planes()), {});
+    return true;
+}
+
+template <int D>
+template <class F>
+real GeometricCg<D>::total(F&& of) const {
+    real sum = 0;
+    for (const PlaneSums& plane : sums_) sum += of(plane);
+    return sum;
+}
+
+/// x = p in packed order.
+template <int D>
+void GeometricCg<D>::gather(const Natural<D>& problem, const Grid<real, D>& p) {
+    const Layout<D>& at = hierarchy_.finest().at;
+    parallel_for(0, at.planes(), [&](int q) {
+        for (int j = 0; j < at.rows_in_plane(); ++j) {
+            const int row = problem.row(q, j);
+            const auto s = static_cast<std::size_t>(at.parity(q, j));
+            split(p.data() + static_cast<std::ptrdiff_t>(row) * at.n[0], at.n[0], at.width, x_[s] + at.offset(row),
+                  x_[1 - s] + at.offset(row));
+        }
+    });
+}
+
+/// p = x less its mean over each closed component; zero outside fluid.
+template <int D>
+void GeometricCg<D>::scatter(const Natural<D>& problem, Grid<real, D>& p) {
+    const Layout<D>& at = hierarchy_.finest().at;
+    const auto packed = [&](int row, int s, int i) { return x_[static_cast<std::size_t>((i ^ s) & 1)][at.offset(row) + i / 2]; };
+    const auto parity = [&](int row) { return D == 2 ? row & 1 : (row / at.n[1] + row % at.n[1]) & 1; };
+    problem.find_means([&](int row, const Run& run) {
+        const int s = parity(row);
+        real sum = 0;
+        for (int i = run.begin; i < run.end; ++i) sum += packed(row, s, i);
+        return sum;
+    });
+    parallel_for(0, at.planes(), [&](int q) {
+        for (int j = 0; j < at.rows_in_plane(); ++j) {
+            const int row = problem.row(q, j), s = parity(row);
+            real* to = p.data() + static_cast<std::ptrdiff_t>(row) * at.n[0];
+            int from = 0;
+            for (const Run* run = problem.runs_begin(row); run != problem.runs_end(row); ++run) {
+                std::fill(to + from, to + run->begin, 0.0);
+                const real mean = problem.mean(*run);
+                for (int i = run->begin; i < run->end; ++i) to[i] = packed(row, s, i) - mean;
+                from = run->end;
+            }
+            std::fill(to + from, to + at.n[0], 0.0);
+        }
+    });
+}
+
+/// r = b − A p, packed; returns r·r. The means of the problem must be those of b.
+template <int D>
+real GeometricCg<D>::replace_residual(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b) {
+    Level<D>& finest = hierarchy_.finest();
+    const Layout<D>& at = finest.at;
+    parallel_for(0, at.planes(), [&](int q) {
+        thread_local Vector natural;
+        natural.resize(static_cast<std::size_t>(at.n[0]) + 1);
+        PlaneSums sums;
+        for (int j = 0; j < at.rows_in_plane(); ++j) {
+            const int row = problem.row(q, j);
+            const auto s = static_cast<std::size_t>(at.parity(q, j));
+            problem.residual_row(q, j, p.data(), b.data(), natural.data());
+            for (int i = 0; i < at.n[0]; ++i) {
+                const real r = natural[static_cast<std::size_t>(i)];
+                sums.rr += r * r;
+                sums.largest = std::abs(r) > sums.largest ? std::abs(r) : sums.largest;
+            }
+            split(natural.data(), at.n[0], at.width, finest.r[s] + at.offset(row), finest.r[1 - s] + at.offset(row));
+        }
+        sums_[static_cast<std::size_t>(q)] = sums;
+    });
+    return total([](const PlaneSums& s) { return s.rr; });
+}
+
+/// The way down of a cycle for an r that did not come from an iteration.
+template <int D>
+void GeometricCg<D>::restart_cycle() {
+    VCycle<D>(hierarchy_).down(0, 1, [&](int, int q) { start_plane(hierarchy_.finest(), q); });
+}
+
+/// The rest of the cycle, and γ = r·u, δ = u·A u.
+template <int D>
+void GeometricCg<D>::finish_cycle() {
+    VCycle<D> cycle(hierarchy_);
+    cycle.below(0);
+    cycle.up(0, 2, [&](int stage, int q) { stage == 0 ? red_products(q) : black_products(q); });
+    gamma_ = total([](const PlaneSums& s) { return s.ru; });
+    delta_ = total([](const PlaneSums& s) { return s.uAu; });
+}
+
+/// Sums over the red cells of a plane. After the last half sweep their residual is zero, so that u·A u = u·r.
+template <int D>
+void GeometricCg<D>::red_products(int q) {
+    const Level<D>& finest = hierarchy_.finest();
+    d8 even{}, odd{};
+    for (int j = 0; j < finest.at.rows_in_plane(); ++j) {
+        const int row = finest.at.row(q, j);
+        const float *u = finest.u[0] + finest.at.offset(row), *r = finest.r[0] + finest.at.offset(row);
+        for (const Span& span : RowSpans<D>(finest, row))
+            for (int m = span.begin; m < span.end; m += lanes) {
+                even += load8(u + m) * load8(r + m);
+                odd += load8(u + m + 8) * load8(r + m + 8);
+            }
+    }
+    auto& sums = sums_[static_cast<std::size_t>(q)];
+    sums.ru = sums.uAu = sum(even + odd);
+}
+
+template <int D>
+void GeometricCg<D>::black_products(int q) {
+    const Level<D>& finest = hierarchy_.finest();
+    d8 ru{}, uAu{};
+    for (int j = 0; j < finest.at.rows_in_plane(); ++j) {
+        const int row = finest.at.row(q, j);
+        const float *u = finest.u[1] + finest.at.offset(row), *r = finest.r[1] + finest.at.offset(row);
+        with_product(finest, finest.u, q, j, 1, [&](const auto& product) {
+            for (const Span& span : RowSpans<D>(finest, row))
+                for (int m = span.begin; m < span.end; m += lanes) {
+                    const d16 Au = product(m), v = load_wide(u + m), f = load_wide(r + m);
+                    ru += v.lo * f.lo + v.hi * f.hi;
+                    uAu += v.lo * Au.lo + v.hi * Au.hi;
+                }
+        });
+    }
+    auto& sums = sums_[static_cast<std::size_t>(q)];
+    sums.ru += sum(ru);
+    sums.uAu += sum(uAu);
+}
+
+/// p = u + β p.
+template <int D>
+void GeometricCg<D>::turn_plane(int q, real beta) {
+    const Level<D>& finest = hierarchy_.finest();
+    const f16 b = splat(static_cast<float>(beta));
+    for (int j = 0; j < finest.at.rows_in_plane(); ++j) {
+        const int row = finest.at.row(q, j);
+        for (std::size_t c = 0; c < 2; ++c) {
+            const float* u = finest.u[c] + finest.at.offset(row);
+            float* p = p_[c] + finest.at.offset(row);
+            for (const Span& span : RowSpans<D>(finest, row))
+                for (int m = span.begin; m < span.end; m += lanes) store(p + m, load16(u + m) + b * load16(p + m));
+            finest.at.wrap(p);
+        }
+    }
+}
+
+/// x += α p,  r −= α A p,  r·r, and the red start of the next cycle.
+template <int D>
+void GeometricCg<D>::advance_plane(int q, real alpha) {
+    Level<D>& finest = hierarchy_.finest();
+    d8 rr{};
+    for (int j = 0; j < finest.at.rows_in_plane(); ++j) {
+        const int row = finest.at.row(q, j);
+        const std::ptrdiff_t own = finest.at.offset(row);
+        for (int colour = 0; colour < 2; ++colour) {
+            const auto c = static_cast<std::size_t>(colour);
+            double* x = x_[c] + own;
+            float* r = finest.r[c] + own;
+            const float* p = p_[c] + own;
+            with_product(finest, p_, q, j, colour, [&](const auto& product) {
+                with_row(finest, q, j, colour, [&](const auto&, const auto& diagonal) {
+                    for (const Span& span : RowSpans<D>(finest, row))
+                        for (int m = span.begin; m < span.end; m += lanes) {
+                            const d16 Ap = product(m), direction = load_wide(p + m), old = load_wide(r + m);
+                            store8(x + m, load8(x + m) + alpha * direction.lo);
+                            store8(x + m + 8, load8(x + m + 8) + alpha * direction.hi);
+                            const d8 lo = old.lo - alpha * Ap.lo, hi = old.hi - alpha * Ap.hi;
+                            const f16 inside = diagonal.inverse(m) != f16{} ? join(lo, hi) : f16{};
+                            store(r + m, inside);
+                            const d8 a = low(inside), b = high(inside);
+                            rr += a * a + b * b;
+                            if (colour == 0) store(finest.u[0] + own + m, inside * diagonal.inverse(m));
+                        }
+                });
+            });
+        }
+        finest.at.wrap(finest.u[0] + own);
+    }
+    sums_[static_cast<std::size_t>(q)].rr = sum(rr);
+}
+
+template <int D>
+real GeometricCg<D>::iterate_down(real alpha, real beta) {
+    VCycle<D>(hierarchy_).down(0, 2, [&](int stage, int q) { stage == 0 ? turn_plane(q, beta) : advance_plane(q, alpha); });
+    return total([](const PlaneSums& s) { return s.rr; });
+}
+
+template <int D>
+void GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
+                           bool may_give_up) {
+    (void)may_give_up;
+    const auto b_row = [&](int row) { return b.data() + static_cast<std::ptrdiff_t>(row) * problem.extent()[0]; };
+    const auto find_b_means = [&] {
+        problem.find_means([&](int row, const Run& run) {
+            real sum = 0;
+            for (int i = run.begin; i < run.end; ++i) sum += b_row(row)[i];
+            return sum;
+        });
+    };
+    gather(problem, p);
+    scatter(problem, p);
+    find_b_means();
+    const std::vector<real> b_means = problem.means();
+    real b_norm = 0;
+    {
+        const int rows = problem.rows_in_plane();
+        b_norm = std::sqrt(ordered_sum(problem.planes(), [&](int q) {
+            real sum = 0;
+            for (int j = 0; j < rows; ++j)
+                for (const Run* run = problem.runs_begin(problem.row(q, j)); run != problem.runs_end(problem.row(q, j)); ++run)
+                    for (int i = run->begin; i < run->end; ++i) {
+                        const real v = b_row(problem.row(q, j))[i] - problem.mean(*run);
+                        sum += v * v;
+                    }
+            return sum;
+        }));
+    }
+    Progress progress(options, report);
+    report.iterations = 0;
+    report.history.clear();
+    if (b_norm == 0) {
+        p.fill(0);
+        report.residual_before = report.residual_after = report.residual_max = 0;
+        return;
+    }
+    real norm = std::sqrt(replace_residual(problem, p, b)) / b_norm;
+    report.residual_before = norm;
+    const real factor = hierarchy_.finest().by_count ? replace_counted : replace_weighted;
+    real gamma = 0, alpha = 0, replaced = norm;
+    bool fresh = true;  // r is the true residual and the cycle for it has not begun
+    while (progress.wants_more(norm)) {
+        if (fresh) restart_cycle();
+        fresh = false;
+        finish_cycle();
+        const real beta = gamma > 0 ? gamma_ / gamma : 0;
+        alpha = gamma_ / (gamma > 0 ? delta_ - beta * gamma_ / alpha : delta_);
+        gamma = gamma_;
+        if (!(alpha > 0)) break;
+        norm = std::sqrt(iterate_down(alpha, beta)) / b_norm;
+        progress.count(norm);
+        if (norm > factor * replaced && progress.wants_more(norm)) continue;
+        scatter(problem, p);
+        problem.set_means(b_means);
+        norm = std::sqrt(replace_residual(problem, p, b)) / b_norm;
+        replaced = norm;
+        fresh = true;
+    }
+    report.residual_after = norm;
+    report.residual_max = 0;
+    for (const PlaneSums& plane : sums_) report.residual_max = std::max(report.residual_max, plane.largest);
+}
+
+template <int D>
+void GeometricCg<D>::precondition(const Natural<D>& problem, const Grid<real, D>& r, Grid<real, D>& u) {
+    problem.clear_means();
+    u.fill(0);
+    replace_residual(problem, u, r);
+    restart_cycle();
+    finish_cycle();
+    const Level<D>& finest = hierarchy_.finest();
+    for (std::size_t c = 0; c < 2; ++c)
+        for (int row = 0; row < finest.at.rows(); ++row)
+            for (int m = 0; m < finest.at.width; ++m) x_[c][finest.at.offset(row) + m] = finest.u[c][finest.at.offset(row) + m];
+    const Layout<D>& at = finest.at;
+    for_each_cell<D>(u.extent(), [&](const Index<D>& I) {
+        const int j = D == 2 ? 0 : I[1], q = I[D - 1];
+        u(I) = x_[static_cast<std::size_t>((I[0] ^ at.parity(q, j)) & 1)][at.offset(at.row(q, j)) + I[0] / 2];
+    });
+}
+
+template class GeometricCg<2>;
+template class GeometricCg<3>;
+
+}  // namespace weir::poisson

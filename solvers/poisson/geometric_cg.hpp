@@ -1,0 +1,53 @@
+// Conjugate gradients preconditioned by the V-cycle, in two sweeps through memory an iteration (scalars: Chronopoulos & Gear 1989):
+//
+//     down:  p = u + β p;  s = A p;  x += α p;  r −= α s;  ρ = r·r;  pre-smoothing and restriction of the cycle for r
+//     up:    prolongation and post-smoothing: u = M r;  γ = r·u;  δ = u·A u
+//     then   β = γ/γ',  α = γ / (δ − β γ/α')
+//
+// p, r and the cycle are single precision; x and A p are double. r is replaced by the true b − A x each time it has fallen by a fixed
+// factor, and at the end.
+#pragma once
+#include "poisson/list_solver.hpp"
+#include "poisson/v_cycle.hpp"
+
+namespace weir::poisson {
+
+template <int D>
+class GeometricCg {
+public:
+    /// False if the shape of the problem does not suit: nothing else may be called then.
+    bool setup(const Natural<D>& problem);
+    /// Iterates on A p = b; fills the report but for times, bytes and components. Stops early, not converged, if `may_give_up` and the
+    /// convergence is slow; p then holds the best guess.
+    void solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
+               bool may_give_up);
+    std::size_t bytes() const { return arena_.size() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums); }
+    /// One cycle u = M r, for tests.
+    void precondition(const Natural<D>& problem, const Grid<real, D>& r, Grid<real, D>& u);
+
+private:
+    struct PlaneSums {
+        real rr = 0, ru = 0, uAu = 0, largest = 0;
+    };
+    void gather(const Natural<D>& problem, const Grid<real, D>& p);
+    void scatter(const Natural<D>& problem, Grid<real, D>& p);
+    real replace_residual(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b);
+    void restart_cycle();
+    void finish_cycle();
+    real iterate_down(real alpha, real beta);
+    void turn_plane(int q, real beta);
+    void advance_plane(int q, real alpha);
+    void black_products(int q);
+    void red_products(int q);
+    template <class F>
+    real total(F&& of) const;
+
+    Hierarchy<D> hierarchy_;
+    Arena arena_;
+    Coloured<double> x_{};
+    Coloured<float> p_{};
+    std::vector<PlaneSums> sums_;
+    real gamma_ = 0, delta_ = 0;
+};
+
+}  // namespace weir::poisson

@@ -1,0 +1,191 @@
+#include "poisson/hierarchy.hpp"
+
+#include "poisson/face_rows.hpp"
+#include "poisson/packing.hpp"
+#include "poisson/transfer.hpp"
+
+#include <algorithm>
+
+namespace weir::poisson {
+
+namespace {
+
+constexpr std::size_t direct_cells = 300;   // levels of at most this many cells are solved directly
+constexpr std::size_t small_level = 20000;  // levels of fewer cells are not worth a second thread
+constexpr real strong_axis = 0.4;           // only axes whose weight is at least this part of the largest are coarsened
+
+/// Widths of Dirichlet neighbours: an air cell stays at its distance while fluid cells grow (half a cell of each).
+real zero_scale(real m) {
+    const auto f = [](real width) { return width / (width / 2 + 0.5); };
+    return 0.5 * f(2 * m) / f(m);
+}
+
+template <int D, class Rows>
+void coarsen_row(const Level<D>& fine, Level<D>& coarse, int Q, int J, const Rows& rows, RowBuffers<D>& buffers) {
+    const int N = coarse.at.n[0], n = fine.at.n[0];
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(coarse.at.row(Q, J)) * N;
+    std::array<float*, D> face;
+    for (std::size_t a = 0; a < D; ++a) std::fill_n(face[a] = coarse.face[a] + at, N, 0.0f);
+    float* zero = std::fill_n(coarse.zero + at, N, 0.0f) - N;
+    std::uint8_t* fluid = std::fill_n(coarse.fluid + at, N, std::uint8_t{0}) - N;
+    std::array<float, D> half;
+    for (std::size_t a = 0; a < D; ++a) half[a] = fine.coarsened[a] ? 0.5f : 1.0f;
+    const auto zero_factor = static_cast<float>(zero_scale(fine.zero_width));
+    const Children<D> planes(fine, D - 1, Q), in_plane(fine, D == 2 ? 0 : 1, J);
+    const int j_first = D == 2 ? 0 : in_plane.first, j_last = D == 2 ? 1 : in_plane.last;
+    for (int q = planes.first; q < planes.last; ++q)
+        for (int j = j_first; j < j_last; ++j) {
+            const FaceRow<D> row = rows(q, j, buffers);
+            const int step = fine.coarsened[0] ? 2 : 1, pairs = fine.coarsened[0] ? n / 2 : 0;
+            for (int I = 0; I < N; ++I) face[0][I] += half[0] * row.face[0][step * I];
+            for (int a = 1; a < D; ++a) {
+                if (a == D - 1 ? q != planes.first : j != j_first) continue;  // a face inside the coarse cell
+                const float *from = row.face[static_cast<std::size_t>(a)], h = half[static_cast<std::size_t>(a)];
+                float* to = face[static_cast<std::size_t>(a)];
+                for (int I = 0; I < pairs; ++I) to[I] += h * (from[2 * I] + from[2 * I + 1]);
+                for (int I = pairs; I < N; ++I) to[I] += h * from[step * I];
+            }
+            for (int I = 0; I < pairs; ++I) {
+                zero[I] += zero_factor * (row.zero[2 * I] + row.zero[2 * I + 1]);
+                fluid[I] = static_cast<std::uint8_t>(fluid[I] | row.fluid[2 * I] | row.fluid[2 * I + 1]);
+            }
+            for (int I = pairs; I < N; ++I) {
+                zero[I] += zero_factor * row.zero[step * I];
+                fluid[I] = static_cast<std::uint8_t>(fluid[I] | row.fluid[step * I]);
+            }
+        }
+}
+
+template <int D, class Rows>
+void coarsen_level(const Level<D>& fine, Level<D>& coarse, const Rows& rows) {
+    const auto plane = [&](int Q) {
+        thread_local RowBuffers<D> buffers;
+        for (int J = 0; J < coarse.at.rows_in_plane(); ++J) coarsen_row(fine, coarse, Q, J, rows, buffers);
+    };
+    if (fine.cells() < small_level)
+        for (int Q = 0; Q < coarse.at.planes(); ++Q) plane(Q);
+    else
+        parallel_for(0, coarse.at.planes(), plane);
+}
+
+/// Axes worth halving: strongly coupled, and, if periodic, even afterwards (or a single cell).
+template <int D>
+std::array<bool, D> axes_to_halve(const Level<D>& level) {
+    float strongest = 0;
+    for (int a = 0; a < D; ++a)
+        if (level.at.n[a] > 1) strongest = std::max(strongest, level.plain_weight[static_cast<std::size_t>(a)]);
+    std::array<bool, D> halve{};
+    for (int a = 0; a < D; ++a) {
+        const auto axis = static_cast<std::size_t>(a);
+        const int n = level.at.n[a];
+        const bool stays_even = !level.at.periodic[axis] || n % 4 == 0 || n == 2;
+        halve[axis] = n > 1 && stays_even && level.plain_weight[axis] >= strong_axis * strongest;
+    }
+    return halve;
+}
+
+}  // namespace
+
+template <int D>
+bool Hierarchy<D>::plan(const Natural<D>& problem) {
+    std::vector<Level<D>> levels(1);
+    levels[0].at = Layout<D>(problem.extent(), problem.periodic());
+    const Vec<D>& axis = problem.axis_weight();
+    const bool cubic = std::all_of(axis.begin(), axis.end(), [&](real w) { return w == axis[0]; });
+    levels[0].by_count = cubic && !problem.weighted();
+    for (int a = 0; a < D; ++a) {
+        levels[0].plain_weight[static_cast<std::size_t>(a)] = static_cast<float>(problem.axis_weight()[a]);
+        if (levels[0].at.periodic[static_cast<std::size_t>(a)] && levels[0].at.n[a] % 2 == 1) return false;
+    }
+    while (levels.back().cells() > direct_cells) {
+        Level<D>& fine = levels.back();
+        fine.coarsened = axes_to_halve(fine);
+        Level<D> coarse;
+        Index<D> n = fine.at.n;
+        coarse.plain_weight = fine.plain_weight;
+        bool any = false;
+        for (int a = 0; a < D; ++a) {
+            if (!fine.coarsened[static_cast<std::size_t>(a)]) continue;
+            any = true;
+            n[a] = (n[a] + 1) / 2;
+            for (int other = 0; other < D; ++other) coarse.plain_weight[static_cast<std::size_t>(other)] *= other == a ? 0.5f : 2.0f;
+        }
+        if (!any) return false;
+        coarse.at = Layout<D>(n, fine.at.periodic);
+        coarse.zero_width = 2 * fine.zero_width;
+        levels.push_back(std::move(coarse));
+    }
+    if (levels.size() < 2) return false;
+    const bool same = levels_.size() == levels.size() && levels_[0].at.n == levels[0].at.n &&
+                      levels_[0].at.periodic == levels[0].at.periodic && levels_[0].plain_weight == levels[0].plain_weight &&
+                      levels_[0].by_count == levels[0].by_count;
+    if (!same) levels_ = std::move(levels);
+    if (!same) lay_out();
+    return true;
+}
+
+template <int D>
+void Hierarchy<D>::lay_out() {
+    std::size_t bytes = 0;
+    const auto pieces = [&](auto&& piece) {
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            Level<D>& level = levels_[l];
+            const std::size_t packed = level.at.entries(), natural = level.cells();
+            const auto vector = [&](auto*& p) { piece(p, packed, static_cast<std::size_t>(level.at.stride + lanes)); };
+            for (auto* list : {&level.u, &level.r, level.by_count ? nullptr : &level.dinv})
+                if (list != nullptr)
+                    for (auto& p : *list) vector(p);
+            if (level.by_count)
+                for (auto& p : level.count) vector(p);
+            else
+                for (auto& p : level.weight) vector(p);
+            if (l == 0) continue;
+            for (auto& p : level.face) piece(p, natural, std::size_t{0});
+            piece(level.zero, natural, std::size_t{0});
+            piece(level.fluid, natural, std::size_t{0});
+        }
+    };
+    pieces([&](auto*& p, std::size_t count, std::size_t) { bytes += Arena::need<std::remove_reference_t<decltype(*p)>>(count); });
+    arena_.reserve(bytes);
+    pieces([&](auto*& p, std::size_t count, std::size_t skip) { p = arena_.take<std::remove_reference_t<decltype(*p)>>(count) + skip; });
+}
+
+template <int D>
+void Hierarchy<D>::fill(const Natural<D>& problem, std::size_t l) {
+    Level<D>& level = levels_[l];
+    if (l == 0)
+        pack_finest(level, problem);
+    else
+        pack_coarse(level, level.cells() >= small_level);
+    if (l + 1 == levels_.size()) return;
+    if (l == 0)
+        coarsen_level(level, levels_[1], DerivedRows<D>{problem});
+    else
+        coarsen_level(level, levels_[l + 1], StoredRows<D>{level});
+}
+
+template <int D>
+bool Hierarchy<D>::build(const Natural<D>& problem) {
+    if (!plan(problem)) {
+        levels_.clear();
+        arena_.reserve(0);
+        return false;
+    }
+    for (std::size_t l = 0; l < levels_.size(); ++l) fill(problem, l);
+    build_coarsest();
+    return true;
+}
+
+template <int D>
+std::size_t Hierarchy<D>::bytes() const {
+    std::size_t sum = arena_.size() + coarsest_.bytes();
+    for (const auto& level : levels_)
+        sum += level.plain.capacity() + level.span_start.capacity() * sizeof(int) + level.spans.capacity() * sizeof(Span) +
+               level.work.capacity() * sizeof(std::int64_t);
+    return sum;
+}
+
+template class Hierarchy<2>;
+template class Hierarchy<3>;
+
+}  // namespace weir::poisson

@@ -1,0 +1,36 @@
+// The geometric hierarchy: a coarse cell is fluid if any child is; restriction sums, prolongation is constant; a coarse face weighs half
+// the sum of its fine faces. The half is the over-correction that constant prolongation needs (Braess 1995): a face between cells of
+// double width conducts half as much as the sum says.
+#pragma once
+#include "poisson/level.hpp"
+#include "poisson/natural.hpp"
+#include "poisson/sparse_cholesky.hpp"
+
+namespace weir::poisson {
+
+template <int D>
+class Hierarchy {
+public:
+    /// False, with nothing built, if the shape does not suit: an odd periodic axis cannot be coloured red and black.
+    bool build(const Natural<D>& problem);
+    std::vector<Level<D>>& levels() { return levels_; }
+    Level<D>& finest() { return levels_.front(); }
+    /// u = A⁻¹ r on the coarsest level.
+    void solve_coarsest();
+    std::size_t bytes() const;
+
+private:
+    bool plan(const Natural<D>& problem);
+    void lay_out();
+    void fill(const Natural<D>& problem, std::size_t l);
+    void build_coarsest();
+
+    std::vector<Level<D>> levels_;
+    Arena arena_;
+    SparseCholesky coarsest_;
+    Components coarsest_components_;
+    std::vector<float*> coarsest_u_, coarsest_r_;
+    Vector x_, b_;
+};
+
+}  // namespace weir::poisson

@@ -1,0 +1,101 @@
+// One level of the geometric hierarchy. Every vector is two packed arrays, red and black (even and odd sum of indices): entry m of a row of
+// parity s holds cell i = 2m + s in the red array and i = 2m + 1 − s in the black one. The x-neighbours of entry m are then entries m and
+// m ± 1 of the other colour's row, all other neighbours are entry m, and every loop is contiguous. Entries outside fluid are zero.
+#pragma once
+#include "poisson/arena.hpp"
+#include "poisson/poisson.hpp"
+#include "poisson/simd.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace weir::poisson {
+
+/// Consecutive entries of a row that the kernels work on: multiples of 16 that hold all fluid of both colours.
+struct Span {
+    int begin, end;
+};
+
+template <class T>
+using Coloured = std::array<T*, 2>;
+
+template <int D>
+struct Layout {
+    Index<D> n{};
+    std::array<bool, D> periodic{};
+    int width = 0;   // entries of one colour in a row
+    int stride = 0;  // from one row to the next: whole vectors, and one more of zeros
+
+    Layout() = default;
+    Layout(const Index<D>& n_, const std::array<bool, D>& periodic_) : n(n_), periodic(periodic_) {
+        width = (n[0] + 1) / 2;
+        stride = (width + lanes - 1) / lanes * lanes + lanes;
+        for (int a = 0; a < D; ++a)
+            if (n[a] == 1) periodic[static_cast<std::size_t>(a)] = false;
+    }
+    int planes() const { return n[D - 1]; }
+    int rows_in_plane() const { return D == 2 ? 1 : n[1]; }
+    int rows() const { return planes() * rows_in_plane(); }
+    /// Row −1 is all zero: the neighbour of a row at a closed or open side.
+    std::size_t entries() const { return static_cast<std::size_t>(rows() + 1) * static_cast<std::size_t>(stride) + 2 * lanes; }
+    std::ptrdiff_t offset(int row) const { return static_cast<std::ptrdiff_t>(row) * stride; }
+    /// Row of the plane q at height j (j is 0 in 2D).
+    int row(int q, int j) const { return D == 2 ? q : q * n[1] + j; }
+    int parity(int q, int j) const { return (q + j) & 1; }
+    /// The neighbour of that row along axis a > 0, −1 beyond a side.
+    int neighbour(int q, int j, int a, int side) const {
+        int& moved = a == D - 1 ? q : j;
+        moved += side == 0 ? -1 : 1;
+        if (moved < 0 || moved >= n[a]) {
+            if (!periodic[static_cast<std::size_t>(a)]) return -1;
+            moved = moved < 0 ? n[a] - 1 : 0;
+        }
+        return row(q, j);
+    }
+    /// Writes the entries beyond both ends of a row that its periodic neighbours read.
+    template <class T>
+    void wrap(T* at_row) const {
+        if (!periodic[0]) return;
+        at_row[-1] = at_row[width - 1];
+        at_row[width] = at_row[0];
+    }
+};
+
+/// Weights of faces below the cells of one natural row, and what joins its cells to p = 0. Used while building only.
+template <int D>
+struct FaceRow {
+    std::array<const float*, D> face;
+    const float* zero;
+    const std::uint8_t* fluid;
+};
+
+template <int D>
+struct Level {
+    Layout<D> at;
+    std::array<bool, D> coarsened{};      // axes along which the next level has half the cells
+    std::array<float, D> plain_weight{};  // the weight of most faces along each axis
+    real zero_width = 1;                  // width of a cell in finest cells, along the axes coarsened so far
+
+    Coloured<float> u{}, r{};
+    // The diagonal: of the finest level by one byte a cell, the number of its open faces; else one over it.
+    bool by_count = false;
+    Coloured<std::uint8_t> count{};
+    alignas(64) std::array<float, lanes> inverse{};  // 1 / (weight × count), 0 for 0
+    Coloured<float> dinv{};
+    // Faces in the order of the red cells: below and above along each axis. None where by_count.
+    std::array<float*, 2 * D> weight{};
+    std::vector<std::uint8_t> plain;  // rows whose fluid cells see plain weights only
+
+    std::vector<int> span_start;  // of each row, and one more
+    std::vector<Span> spans;
+    std::vector<std::int64_t> work;  // blocks before each plane
+
+    // Natural order, for building the next level.
+    std::array<float*, D> face{};
+    float* zero = nullptr;
+    std::uint8_t* fluid = nullptr;
+
+    std::size_t cells() const { return product(at.n); }
+};
+
+}  // namespace weir::poisson

@@ -1,0 +1,193 @@
+#include "poisson/natural.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+namespace weir::poisson {
+
+namespace {
+constexpr auto solid = static_cast<std::uint8_t>(Cell::solid), fluid = static_cast<std::uint8_t>(Cell::fluid),
+               air = static_cast<std::uint8_t>(Cell::air);
+}
+
+template <int D>
+void Natural<D>::build(const Operator<D>& A) {
+    n_ = A.cells.extent();
+    weighted_ = !A.weight[0].empty();
+    axis_weight_ = A.axis_weight;
+    for (int a = 0; a < D; ++a) periodic_[static_cast<std::size_t>(a)] = A.periodic[static_cast<std::size_t>(a)] && n_[a] > 1;
+    copy_cells(A);
+    clean_faces(A);
+    find_runs();
+    find_closed();
+}
+
+template <int D>
+int Natural<D>::neighbour(int q, int j, int a, int side) const {
+    int& moved = a == D - 1 ? q : j;
+    moved += side == 0 ? -1 : 1;
+    if (moved >= 0 && moved < n_[a]) return row(q, j);
+    if (!periodic_[static_cast<std::size_t>(a)]) return -1;
+    moved = moved < 0 ? n_[a] - 1 : 0;
+    return row(q, j);
+}
+
+/// Beyond a side there is p = 0 where face weights say how much of it is open, else a wall.
+template <int D>
+void Natural<D>::copy_cells(const Operator<D>& A) {
+    const int nx = n_[0], rows = planes() * rows_in_plane();
+    const std::uint8_t outside = weighted_ ? air : solid;
+    cells_.resize(static_cast<std::size_t>(rows + 1) * static_cast<std::size_t>(nx + 2));
+    std::fill(cells_.begin(), cells_.begin() + nx + 2, outside);
+    const Cell* from = A.cells.data();
+    parallel_for(0, rows, [&](int r) {
+        auto* to = cells_.data() + 1 + static_cast<std::ptrdiff_t>(r + 1) * (nx + 2);
+        std::memcpy(to, from + static_cast<std::ptrdiff_t>(r) * nx, static_cast<std::size_t>(nx));
+        to[-1] = periodic_[0] ? to[nx - 1] : outside;
+        to[nx] = periodic_[0] ? to[0] : outside;
+    });
+}
+
+template <int D>
+void Natural<D>::clean_faces(const Operator<D>& A) {
+    for (int a = 0; a < D; ++a) {
+        auto& clean = faces_[static_cast<std::size_t>(a)];
+        if (!weighted_) {
+            clean.clear();
+            continue;
+        }
+        const auto& given = A.weight[static_cast<std::size_t>(a)];
+        clean.resize(given.size());
+        const bool self = A.periodic[static_cast<std::size_t>(a)] && n_[a] == 1;
+        const bool ring = periodic_[static_cast<std::size_t>(a)];
+        const real scale = self ? 0 : axis_weight_[a];
+        const int planes_of_faces = n_[D - 1] + (a == D - 1 ? 1 : 0), rows_of_faces = D == 2 ? 1 : n_[1] + (a == 1 ? 1 : 0);
+        const int entries = n_[0] + (a == 0 ? 1 : 0);
+        parallel_for(0, planes_of_faces, [&](int q) {
+            for (int j = 0; j < rows_of_faces; ++j) {
+                const int t = a == D - 1 ? q : j;  // index of the face along a > 0
+                const bool last = a > 0 && t == n_[a];
+                const int q_low = q - (a == D - 1), j_low = j - (a > 0 && a != D - 1);
+                const int up_row = !last ? row(q, j) : neighbour(q_low, j_low, a, 1);
+                const int low_row = t > 0 ? row(q_low, j_low) : neighbour(q, j, a, 0);
+                const std::uint8_t *up = cells(up_row), *low = a == 0 ? up - 1 : cells(low_row);
+                const bool wraps = last && ring;
+                const real* w = given.data() + face_offset(a, wraps && a == D - 1 ? 0 : q, wraps && a != D - 1 ? 0 : j);
+                real* to = clean.data() + face_offset(a, q, j);
+                for (int i = 0; i < entries; ++i) {
+                    const bool open = (up[i] == fluid && low[i] != solid) || (low[i] == fluid && up[i] != solid);
+                    to[i] = open ? scale * w[i] : 0;
+                }
+                if (a == 0 && ring) to[n_[0]] = to[0];
+            }
+        });
+    }
+}
+
+template <int D>
+void Natural<D>::find_runs() {
+    run_start_.assign(1, 0);
+    runs_.clear();
+    fluid_cells_ = 0;
+    for (int q = 0; q < planes(); ++q)
+        for (int j = 0; j < rows_in_plane(); ++j) {
+            const auto* c = cells(row(q, j));
+            const real* w = weighted_ ? faces(0, q, j) : nullptr;
+            for (int i = 0; i < n_[0];) {
+                const auto* at = static_cast<const std::uint8_t*>(std::memchr(c + i, fluid, static_cast<std::size_t>(n_[0] - i)));
+                if (at == nullptr) break;
+                const int begin = static_cast<int>(at - c);
+                for (i = begin + 1; i < n_[0] && c[i] == fluid && (w == nullptr || w[i] > 0);) ++i;
+                runs_.push_back({begin, i, 0});
+                fluid_cells_ += i - begin;
+            }
+            run_start_.push_back(static_cast<int>(runs_.size()));
+        }
+    sum_.assign(runs_.size(), 0);
+}
+
+/// Union-find over runs of neighbouring rows that share an open face; components that no face joins to p = 0 are closed.
+template <int D>
+void Natural<D>::find_closed() {
+    std::vector<int> parent(runs_.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int i) {
+        while (parent[static_cast<std::size_t>(i)] != i)
+            i = parent[static_cast<std::size_t>(i)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
+        return i;
+    };
+    const auto join = [&](const Run* a, const Run* b) {
+        const int i = root(static_cast<int>(a - runs_.data())), k = root(static_cast<int>(b - runs_.data()));
+        parent[static_cast<std::size_t>(std::max(i, k))] = std::min(i, k);
+    };
+    for (int q = 0; q < planes(); ++q)
+        for (int j = 0; j < rows_in_plane(); ++j) {
+            const int here = row(q, j);
+            if (periodic_[0] && runs_begin(here) != runs_end(here)) {
+                const Run *first = runs_begin(here), *last = runs_end(here) - 1;
+                if (first->begin == 0 && last->end == n_[0] && (!weighted_ || faces(0, q, j)[0] > 0)) join(first, last);
+            }
+            for (int a = 1; a < D; ++a) {
+                const int below = neighbour(q, j, a, 0);
+                if (below < 0) continue;
+                const real* w = weighted_ ? faces(a, q, j) : nullptr;
+                const Run *x = runs_begin(here), *y = runs_begin(below);
+                while (x != runs_end(here) && y != runs_end(below)) {
+                    int i = std::max(x->begin, y->begin);
+                    const int end = std::min(x->end, y->end);
+                    if (w != nullptr)
+                        while (i < end && !(w[i] > 0)) ++i;
+                    if (i < end) join(x, y);
+                    (x->end < y->end ? x : y)++;
+                }
+            }
+        }
+    for (std::size_t k = 0; k < parent.size(); ++k) parent[k] = root(static_cast<int>(k));
+    std::vector<char> open(runs_.size(), 0);
+    mark_open(open, parent);
+    std::vector<int> number(runs_.size(), -1);
+    closed_ = 0;
+    for (std::size_t k = 0; k < runs_.size(); ++k)
+        if (parent[k] == static_cast<int>(k) && !open[k]) number[k] = closed_++;
+    count_.assign(static_cast<std::size_t>(closed_), 0);
+    mean_.assign(static_cast<std::size_t>(closed_), 0);
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+        runs_[k].component = number[static_cast<std::size_t>(parent[k])];
+        if (runs_[k].component >= 0) count_[static_cast<std::size_t>(runs_[k].component)] += runs_[k].end - runs_[k].begin;
+    }
+}
+
+/// A run is open if any of its cells has an open face to a cell that is not fluid.
+template <int D>
+void Natural<D>::mark_open(std::vector<char>& open, const std::vector<int>& root) const {
+    for (int q = 0; q < planes(); ++q)
+        for (int j = 0; j < rows_in_plane(); ++j)
+            for (const Run* run = runs_begin(row(q, j)); run != runs_end(row(q, j)); ++run) {
+                auto& is_open = open[static_cast<std::size_t>(root[static_cast<std::size_t>(run - runs_.data())])];
+                if (is_open) continue;
+                const auto* c = cells(row(q, j));
+                for (int side = 0; side < 2; ++side) {
+                    const int i = side == 0 ? run->begin - 1 : run->end;
+                    const int face = side == 0 ? run->begin : run->end;
+                    if (c[i] == air && (!weighted_ || faces(0, q, j)[face] > 0)) is_open = 1;
+                    for (int a = 1; a < D && !is_open; ++a) {
+                        const auto* other = cells(neighbour(q, j, a, side));
+                        const real* w = !weighted_ ? nullptr : faces(a, q + (a == D - 1 ? side : 0), j + (a == D - 1 ? 0 : side));
+                        for (int k = run->begin; k < run->end && !is_open; ++k) is_open = other[k] == air && (w == nullptr || w[k] > 0);
+                    }
+                }
+            }
+}
+
+template <int D>
+std::size_t Natural<D>::bytes() const {
+    std::size_t sum = cells_.capacity() + run_start_.capacity() * sizeof(int) + runs_.capacity() * sizeof(Run);
+    for (const auto& f : faces_) sum += f.capacity() * sizeof(real);
+    return sum + (count_.capacity() + mean_.capacity() + sum_.capacity()) * sizeof(real);
+}
+
+template class Natural<2>;
+template class Natural<3>;
+
+}  // namespace weir::poisson

@@ -1,0 +1,92 @@
+// The problem in the order of the caller's grids, as the geometric multigrid keeps it: cells with a margin, cleaned face weights in double
+// precision, and runs of connected fluid cells. The true residual is taken here, apart from the packed arrays of the cycle.
+#pragma once
+#include "poisson/poisson.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace weir::poisson {
+
+/// Fluid cells [begin, end) of a row, joined by open faces, all of one component.
+struct Run {
+    int begin, end;
+    int component;  // number of the closed component, −1 if the pressure is fixed
+};
+
+template <int D>
+class Natural {
+public:
+    void build(const Operator<D>& A);
+
+    const Index<D>& extent() const { return n_; }
+    bool weighted() const { return weighted_; }
+    const Vec<D>& axis_weight() const { return axis_weight_; }
+    const std::array<bool, D>& periodic() const { return periodic_; }
+    int planes() const { return n_[D - 1]; }
+    int rows_in_plane() const { return D == 2 ? 1 : n_[1]; }
+    int row(int q, int j) const { return D == 2 ? q : q * n_[1] + j; }
+    /// Cells of a row; [−1] and [n_x] are what lies beyond its ends.
+    const std::uint8_t* cells(int row) const { return cells_.data() + 1 + static_cast<std::ptrdiff_t>(row + 1) * (n_[0] + 2); }
+    /// The neighbouring row along axis a > 0; −1, a row of what lies outside, beyond a side.
+    int neighbour(int q, int j, int a, int side) const;
+    /// Cleaned weights: zero at solids and between cells that are not fluid; axis weight included. Row q, j of the faces along a.
+    const real* faces(int a, int q, int j) const { return faces_[static_cast<std::size_t>(a)].data() + face_offset(a, q, j); }
+
+    int closed() const { return closed_; }
+    std::int64_t fluid_cells() const { return fluid_cells_; }
+    std::size_t bytes() const;
+
+    /// Means over closed components, from sums over runs: sum(row, run) in any row order, added in the order of the rows.
+    template <class F>
+    void find_means(F&& sum) const;
+    const std::vector<real>& means() const { return mean_; }
+    void set_means(const std::vector<real>& means) const { std::copy(means.begin(), means.end(), mean_.begin()); }
+    void clear_means() const { std::fill(mean_.begin(), mean_.end(), 0.0); }
+    real mean(const Run& run) const { return run.component < 0 ? 0 : mean_[static_cast<std::size_t>(run.component)]; }
+    const Run* runs_begin(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row)]; }
+    const Run* runs_end(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row) + 1]; }
+
+    /// r[i] = b[i] − mean − (A p)[i] for the cells of a row, 0 elsewhere. p is zero outside fluid.
+    void residual_row(int q, int j, const real* p, const real* b, real* r) const;
+
+private:
+    std::ptrdiff_t face_offset(int a, int q, int j) const {
+        const std::ptrdiff_t nx = n_[0] + (a == 0 ? 1 : 0), ny = D == 2 ? 1 : n_[1] + (a == 1 ? 1 : 0);
+        return nx * (D == 2 ? q : j + ny * q);
+    }
+    void copy_cells(const Operator<D>& A);
+    void clean_faces(const Operator<D>& A);
+    void find_runs();
+    void find_closed();
+    void mark_open(std::vector<char>& open, const std::vector<int>& root) const;
+
+    Index<D> n_{};
+    bool weighted_ = false;
+    Vec<D> axis_weight_{};
+    std::array<bool, D> periodic_{};
+    std::vector<std::uint8_t> cells_;
+    std::array<std::vector<real>, D> faces_;
+    std::vector<int> run_start_;
+    std::vector<Run> runs_;
+    int closed_ = 0;
+    std::int64_t fluid_cells_ = 0;
+    std::vector<real> count_;               // cells of each closed component
+    mutable std::vector<real> mean_, sum_;  // of components, of runs
+};
+
+template <int D>
+template <class F>
+void Natural<D>::find_means(F&& sum) const {
+    if (closed_ == 0) return;
+    parallel_for(0, static_cast<int>(run_start_.size()) - 1, [&](int row) {
+        for (const Run* run = runs_begin(row); run != runs_end(row); ++run)
+            sum_[static_cast<std::size_t>(run - runs_.data())] = sum(row, *run);
+    });
+    clear_means();
+    for (std::size_t k = 0; k < runs_.size(); ++k)
+        if (runs_[k].component >= 0) mean_[static_cast<std::size_t>(runs_[k].component)] += sum_[k];
+    for (std::size_t c = 0; c < mean_.size(); ++c) mean_[c] /= count_[c];
+}
+
+}  // namespace weir::poisson

@@ -1,0 +1,62 @@
+// The V-cycle on a geometric hierarchy: red, black, red, black from zero on the way down, black, red, black, red on the way up. The two
+// halves mirror each other, so the cycle is a symmetric positive definite preconditioner. Each half is one wavefront over its level.
+#pragma once
+#include "poisson/hierarchy.hpp"
+#include "poisson/transfer.hpp"
+#include "poisson/wavefront.hpp"
+
+namespace weir::poisson {
+
+template <int D>
+class VCycle {
+public:
+    explicit VCycle(Hierarchy<D>& hierarchy) : hierarchy_(hierarchy) {}
+
+    /// Level l: smooths u from zero for its r, and hands the residual to level l + 1. `before` stages of the caller's come first, as
+    /// f(stage, plane); the last of them must leave the red start r / diagonal in u.
+    template <class F>
+    void down(std::size_t l, int before, F&& f) {
+        Level<D>&fine = level(l), &coarse = level(l + 1);
+        const bool pairs = fine.coarsened[D - 1];
+        const int last = before + 3, planes = fine.at.planes();
+        wavefront(fine, before + 4, pairs).run(threads_for(fine), [&](int stage, int q) {
+            if (stage < before) return f(stage, q);
+            if (stage < last) return relax_plane(fine, q, stage == before + 1 ? 0 : 1);
+            if (!pairs)
+                restrict_plane(fine, coarse, q);
+            else if (q % 2 == 1 || q == planes - 1)
+                restrict_plane(fine, coarse, q / 2);
+        });
+    }
+
+    /// Everything below level l: leaves u of level l corrected by the coarser ones when up() has run.
+    void below(std::size_t l) {
+        if (l + 2 == hierarchy_.levels().size()) return hierarchy_.solve_coarsest();
+        down(l + 1, 1, [&](int, int q) { start_plane(level(l + 1), q); });
+        below(l + 1);
+        up(l + 1, 0, [](int, int) {});
+    }
+
+    /// Level l: adds the answer of level l + 1 and smooths. `after` stages of the caller's follow; stage 0 of them is told of each plane
+    /// whose red values are final, the next ones of planes whose neighbours are.
+    template <class F>
+    void up(std::size_t l, int after, F&& f) {
+        Level<D>&fine = level(l), &coarse = level(l + 1);
+        wavefront(fine, std::max(5, 4 + after), false).run(threads_for(fine), [&](int stage, int q) {
+            if (stage == 0) return prolong_plane(fine, coarse, q);
+            if (stage <= 4) relax_plane(fine, q, stage % 2 == 1 ? 1 : 0);
+            if (stage >= 4 && stage - 4 < after) f(stage - 4, q);
+        });
+    }
+
+    static Wavefront wavefront(const Level<D>& at, int stages, bool pairs) {
+        return {.planes = at.at.planes(), .stages = stages, .ring = at.at.periodic[D - 1], .work = &at.work, .last_pairs = pairs};
+    }
+    static int threads_for(const Level<D>& at) { return at.cells() < 20000 ? 1 : threads(); }
+
+private:
+    Level<D>& level(std::size_t l) { return hierarchy_.levels()[l]; }
+    Hierarchy<D>& hierarchy_;
+};
+
+}  // namespace weir::poisson
