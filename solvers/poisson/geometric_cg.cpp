@@ -10,6 +10,16 @@ namespace {
 /// Reduction of r after which it is replaced: single precision leaves it wrong by some 1e-5 of what it was.
 constexpr real replace_counted = 1e-4, replace_weighted = 1e-3;
 
+/// Iterations before the speed of convergence is judged, and how many in all are still worth their price (open water takes 7 to 12).
+constexpr int judged_from = 6, worth_while = 32;
+
+/// Will the tolerance take more iterations than another method is likely to?
+bool is_slow(const Report& report, real norm, real tolerance) {
+    if (report.iterations < judged_from) return false;
+    const real digits_done = std::log(report.residual_before / norm), digits_wanted = std::log(report.residual_before / tolerance);
+    return report.iterations * digits_wanted > worth_while * digits_done;
+}
+
 }  // namespace
 
 template <int D>
@@ -217,9 +227,7 @@ real GeometricCg<D>::iterate_down(real alpha, real beta) {
 }
 
 template <int D>
-void GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
-                           bool may_give_up) {
-    (void)may_give_up;
+bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report) {
     const auto b_row = [&](int row) { return b.data() + static_cast<std::ptrdiff_t>(row) * problem.extent()[0]; };
     const auto find_b_means = [&] {
         problem.find_means([&](int row, const Run& run) {
@@ -252,7 +260,7 @@ void GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
     if (b_norm == 0) {
         p.fill(0);
         report.residual_before = report.residual_after = report.residual_max = 0;
-        return;
+        return true;
     }
     real norm = std::sqrt(replace_residual(problem, p, b)) / b_norm;
     report.residual_before = norm;
@@ -269,16 +277,19 @@ void GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
         if (!(alpha > 0)) break;
         norm = std::sqrt(iterate_down(alpha, beta)) / b_norm;
         progress.count(norm);
-        if (norm > factor * replaced && progress.wants_more(norm)) continue;
+        const bool gives_up = !options.fixed_iterations && is_slow(report, norm, options.tolerance);
+        if (norm > factor * replaced && progress.wants_more(norm) && !gives_up) continue;
         scatter(problem, p);
         problem.set_means(b_means);
         norm = std::sqrt(replace_residual(problem, p, b)) / b_norm;
+        if (gives_up && norm > options.tolerance) return false;
         replaced = norm;
         fresh = true;
     }
     report.residual_after = norm;
     report.residual_max = 0;
     for (const PlaneSums& plane : sums_) report.residual_max = std::max(report.residual_max, plane.largest);
+    return true;
 }
 
 template <int D>

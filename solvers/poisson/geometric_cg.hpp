@@ -17,10 +17,9 @@ class GeometricCg {
 public:
     /// False if the shape of the problem does not suit: nothing else may be called then.
     bool setup(const Natural<D>& problem);
-    /// Iterates on A p = b; fills the report but for times, bytes and components. Stops early, not converged, if `may_give_up` and the
-    /// convergence is slow; p then holds the best guess.
-    void solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
-               bool may_give_up);
+    /// Iterates on A p = b; fills the report but for times, bytes and components. Answers false if it stopped because convergence is slow:
+    /// p then holds what has been reached.
+    bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);
     std::size_t bytes() const { return arena_.size() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums); }
     /// One cycle u = M r, for tests.
     void precondition(const Natural<D>& problem, const Grid<real, D>& r, Grid<real, D>& u);

@@ -40,7 +40,7 @@ real ListSolver<D>::true_residual() {
 }
 
 template <int D>
-const Report& ListSolver<D>::solve(Grid<real, D>& p, const Grid<real, D>& b) {
+const Report& ListSolver<D>::continue_solve(const Report& attempt, Grid<real, D>& p, const Grid<real, D>& b) {
     const Stopwatch watch;
     check_extents(p.extent() == extent_, "p");
     check_extents(b.extent() == extent_, "b");
@@ -51,9 +51,10 @@ const Report& ListSolver<D>::solve(Grid<real, D>& p, const Grid<real, D>& b) {
     system_.components.remove_means(b_);
     b_norm_ = std::sqrt(dot(b_, b_));
     if (b_norm_ == 0) std::fill(x_.begin(), x_.end(), 0.0);
-    report_.iterations = 0;
-    report_.history.clear();
+    report_.iterations = attempt.iterations;
+    report_.history = attempt.history;
     report_.residual_before = report_.residual_after = true_residual();
+    if (attempt.iterations > 0) report_.residual_before = attempt.residual_before;
     Progress progress(options_, report_);
     while (b_norm_ > 0 && progress.wants_more(report_.residual_after)) {
         const int before = report_.iterations;

@@ -43,7 +43,9 @@ class ListSolver : public Solver<D> {
 public:
     explicit ListSolver(const Options& options) : options_(options) {}
     void setup(const Operator<D>& A) final;
-    const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) final;
+    const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) final { return continue_solve({}, p, b); }
+    /// The same, with the iterations and the history of another method's attempt counted in.
+    const Report& continue_solve(const Report& attempt, Grid<real, D>& p, const Grid<real, D>& b);
     std::size_t bytes() const final;
 
 protected:

@@ -11,40 +11,59 @@ namespace {
 template <int D>
 class Multigrid final : public Solver<D> {
 public:
-    explicit Multigrid(const Options& options) : options_(options), algebraic_(options) {}
+    explicit Multigrid(const Options& options) : options_(options) {}
 
     void setup(const Operator<D>& A) override {
         const Stopwatch watch;
         extent_ = A.cells.extent();
         problem_.build(A);
+        algebraic_.reset();
         geometric_fits_ = geometric_.setup(problem_);
-        if (!geometric_fits_) algebraic_.setup(A);
+        if (!geometric_fits_) set_up_algebraic();
         if (options_.record_history) report_.history.reserve(static_cast<std::size_t>(options_.max_iterations));
         report_.components = problem_.closed();
         report_.bytes = bytes();
         report_.setup_seconds = watch.seconds();
     }
 
+    /// Walls and slits that coarse cells cannot show, or weights of many magnitudes, slow the geometric cycle down: then the algebraic one
+    /// takes over where it stopped. It is built when a solve first needs it, and whether one does depends on that solve alone.
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) override {
-        if (!geometric_fits_) return algebraic_.solve(p, b);
         const Stopwatch watch;
         check_extents(p.extent() == extent_, "p");
         check_extents(b.extent() == extent_, "b");
-        geometric_.solve(problem_, p, b, options_, report_, true);
+        report_.iterations = 0;
+        bool gave_up = !geometric_fits_;
+        if (geometric_fits_) gave_up = !geometric_.solve(problem_, p, b, options_, report_);
+        if (gave_up) {
+            if (algebraic_ == nullptr) set_up_algebraic();
+            const Report& rest = algebraic_->continue_solve(report_, p, b);
+            report_.iterations = rest.iterations;
+            report_.history = rest.history;
+            report_.residual_before = rest.residual_before;
+            report_.residual_after = rest.residual_after;
+            report_.residual_max = rest.residual_max;
+        }
         report_.solve_seconds = watch.seconds();
+        report_.bytes = bytes();
         judge(options_, report_);
         return report_;
     }
 
-    std::size_t bytes() const override { return geometric_fits_ ? problem_.bytes() + geometric_.bytes() : algebraic_.bytes(); }
+    std::size_t bytes() const override { return problem_.bytes() + geometric_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0); }
 
 private:
+    void set_up_algebraic() {
+        algebraic_ = std::make_unique<ConjugateGradient<D, AlgebraicMultigrid>>(options_);
+        algebraic_->setup(problem_.as_operator());
+    }
+
     Options options_;
     Index<D> extent_{};
     Natural<D> problem_;
     GeometricCg<D> geometric_;
     bool geometric_fits_ = false;
-    ConjugateGradient<D, AlgebraicMultigrid> algebraic_;
+    std::unique_ptr<ConjugateGradient<D, AlgebraicMultigrid>> algebraic_;
     Report report_;
 };
 

@@ -181,6 +181,21 @@ void Natural<D>::mark_open(std::vector<char>& open, const std::vector<int>& root
 }
 
 template <int D>
+Operator<D> Natural<D>::as_operator() const {
+    Operator<D> A;
+    A.cells = Grid<Cell, D>(n_);
+    for (int row = 0; row < planes() * rows_in_plane(); ++row)
+        std::memcpy(A.cells.data() + static_cast<std::ptrdiff_t>(row) * n_[0], cells(row), static_cast<std::size_t>(n_[0]));
+    A.periodic = periodic_;
+    if (!weighted_) A.axis_weight = axis_weight_;
+    for (std::size_t a = 0; weighted_ && a < D; ++a) {
+        A.weight[a] = Grid<real, D>(n_ + e<D>(static_cast<int>(a)));
+        std::copy(faces_[a].begin(), faces_[a].end(), A.weight[a].data());
+    }
+    return A;
+}
+
+template <int D>
 std::size_t Natural<D>::bytes() const {
     std::size_t sum = cells_.capacity() + run_start_.capacity() * sizeof(int) + runs_.capacity() * sizeof(Run);
     for (const auto& f : faces_) sum += f.capacity() * sizeof(real);

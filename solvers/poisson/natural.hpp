@@ -19,6 +19,9 @@ class Natural {
 public:
     void build(const Operator<D>& A);
 
+    /// An operator with the same matrix.
+    Operator<D> as_operator() const;
+
     const Index<D>& extent() const { return n_; }
     bool weighted() const { return weighted_; }
     const Vec<D>& axis_weight() const { return axis_weight_; }
