@@ -1,7 +1,7 @@
 // TOML to tree, by toml++. The only file that sees it: its header takes seconds to compile.
 #define TOML_EXCEPTIONS 0          // errors come back as values, and are ours to word
 #define TOML_HEADER_ONLY 1         // no shared library to depend on
-#define TOML_MAX_NESTED_VALUES 32  // with the limit on dots in `too_deep`, no text makes our recursion deep
+#define TOML_MAX_NESTED_VALUES 64  // SourceText refuses less
 #include "scene/document.hpp"
 
 #include "scene/source_text.hpp"

@@ -47,7 +47,7 @@ bool parse_value(std::string_view value, Node& node, std::string& error, Place& 
 /// "key=value" laid over the tree; tables on the way to the key are made where they are missing.
 void apply_override(Node& root, const Override& change, int number, std::vector<Problem>& problems);
 
-/// A table made of `key = value` pairs is refused beyond this; far above any scene, low enough that recursion is safe.
-inline constexpr std::size_t max_source_bytes = std::size_t{4} << 20;
+/// A longer text is refused; far above any scene that people write.
+inline constexpr std::size_t max_source_bytes = std::size_t{1} << 20;
 
 }  // namespace weir::scene

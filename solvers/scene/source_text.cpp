@@ -1,6 +1,7 @@
 #include "scene/source_text.hpp"
 
 #include "scene/document.hpp"
+#include "scene/names.hpp"
 
 #include <fmt/format.h>
 
@@ -72,8 +73,94 @@ int token_width(std::string_view line, int column) {
     return std::max(1, count_characters(token));
 }
 
-SourceText::SourceText(std::string_view text) : text_(text) {
-    if (text_.size() <= max_source_bytes) scan();
+/// One pass over the text, knowing strings, comments and brackets: where lines begin and what is open there. It also finds what must not
+/// reach the parser: depth that would make recursion deep, and letters outside texts and comments that it has no defined answer to
+/// (toml++ 3.3 calls std::unreachable on some).
+class SourceText::Scan {
+public:
+    explicit Scan(SourceText& text) : to_(text), s_(text.text_) {}
+
+    void run() {
+        to_.starts_ = {0};
+        to_.line_starts_ = {{}};
+        for (; i_ < s_.size(); ++i_) {
+            if (!is_continuation(s_[i_])) ++column_;
+            if (s_[i_] == '\n')
+                end_line();
+            else if (in_ == In::nothing)
+                outside(s_[i_]);
+            else
+                inside(s_[i_]);
+        }
+        to_.line_starts_.push_back({is_long(), open_});
+    }
+
+private:
+    enum class In { nothing, comment, basic, literal, long_basic, long_literal };
+    static constexpr int max_dots = 16;
+    static constexpr std::size_t max_depth = 32;
+
+    bool is_long() const { return in_ == In::long_basic || in_ == In::long_literal; }
+    bool tripled() const { return s_.substr(i_, 3) == std::string(3, s_[i_]); }
+    void skip(int n) { i_ += static_cast<std::size_t>(n), column_ += n; }
+    void refuse(std::string message, std::string hint = "") {
+        if (!to_.refused_)
+            to_.refused_ = Problem{.place = {line_, column_}, .width = 1, .message = std::move(message), .hint = std::move(hint)};
+    }
+
+    void end_line() {
+        if (!is_long()) in_ = In::nothing;
+        to_.starts_.push_back(i_ + 1);
+        to_.line_starts_.push_back({is_long(), open_});
+        ++line_, column_ = 0, dots_ = 0;
+    }
+
+    void inside(char c) {
+        const bool basic = in_ == In::basic || in_ == In::long_basic;
+        if (in_ == In::comment) return;
+        if (c == '\\' && basic) {
+            if (i_ + 1 < s_.size() && s_[i_ + 1] != '\n') skip(1);
+        } else if (c == (basic ? '"' : '\'') && (!is_long() || tripled())) {
+            if (is_long()) skip(2);
+            for (int more = 0; is_long() && more < 2 && i_ + 1 < s_.size() && s_[i_ + 1] == c; ++more)
+                skip(1);  // """a"""" ends with a quote
+            in_ = In::nothing;
+        }
+    }
+
+    void outside(char c) {
+        if (c == '#') {
+            in_ = In::comment;
+        } else if (c == '"' || c == '\'') {
+            const bool is_triple = tripled();
+            in_ = c == '"' ? (is_triple ? In::long_basic : In::basic) : (is_triple ? In::long_literal : In::literal);
+            if (is_triple) to_.text_began_ = {line_, column_}, skip(2);
+        } else if (c == '[' || c == '{') {
+            if (open_.size() < max_depth)
+                open_.push_back({line_, column_});
+            else
+                refuse(fmt::format("lists and tables nested more than {} deep", max_depth));
+        } else if ((c == ']' || c == '}') && !open_.empty()) {
+            open_.pop_back();
+        } else if (c == '.' && ++dots_ > max_dots) {
+            refuse(fmt::format("a key of more than {} parts", max_dots));
+        } else if (static_cast<unsigned char>(c) >= 0x80) {
+            const auto letter = s_.substr(i_, std::max<std::size_t>(1, sequence_length(s_.substr(i_, 4))));
+            refuse(fmt::format("{} can only stand in a text or a comment", quote(letter)), "keys are letters, digits, '_' and '-'");
+        }
+        if (std::string_view(",=[]{}").find(c) != std::string_view::npos) dots_ = 0;
+    }
+
+    SourceText& to_;
+    std::string_view s_;
+    In in_ = In::nothing;
+    std::vector<Place> open_;
+    std::size_t i_ = 0;
+    int line_ = 1, column_ = 0, dots_ = 0;
+};
+
+SourceText::SourceText(std::string_view text) : text_(text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text) {  // a byte order mark
+    if (text_.size() <= max_source_bytes) Scan(*this).run();
 }
 
 std::string_view SourceText::line(int number) const {
@@ -83,72 +170,6 @@ std::string_view SourceText::line(int number) const {
     std::string_view line = std::string_view(text_).substr(starts_[i], end - starts_[i]);
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
     return line;
-}
-
-/// One pass over the text: where lines begin, which brackets and texts are open there, and whether dotted keys are absurdly deep.
-void SourceText::scan() {
-    constexpr int max_dots = 16;
-    enum class In { nothing, comment, basic, literal, long_basic, long_literal } in = In::nothing;
-    starts_ = {0};
-    line_starts_ = {{}};
-    std::vector<Place> open;
-    int line = 1, column = 0, dots = 0;
-    const std::string_view s = text_;
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        const char c = s[i];
-        if (!is_continuation(c)) ++column;
-        if (c == '\n') {
-            if (in != In::long_basic && in != In::long_literal) in = In::nothing;
-            starts_.push_back(i + 1);
-            line_starts_.push_back({in != In::nothing, open});
-            ++line, column = 0, dots = 0;
-            continue;
-        }
-        const bool tripled = s.substr(i, 3) == "\"\"\"" || s.substr(i, 3) == "'''";
-        switch (in) {
-            case In::comment:
-                break;
-            case In::basic:
-                if (c == '\\') {
-                    if (i + 1 < s.size() && s[i + 1] != '\n') ++i, ++column;
-                } else if (c == '"') {
-                    in = In::nothing;
-                }
-                break;
-            case In::literal:
-                if (c == '\'') in = In::nothing;
-                break;
-            case In::long_basic:
-            case In::long_literal:
-                if (c == '\\' && in == In::long_basic) {
-                    if (i + 1 < s.size() && s[i + 1] != '\n') ++i, ++column;
-                } else if (tripled && c == (in == In::long_basic ? '"' : '\'')) {
-                    i += 2, column += 2, in = In::nothing;
-                }
-                break;
-            case In::nothing:
-                if (c == '#') {
-                    in = In::comment;
-                } else if (c == '"' || c == '\'') {
-                    if (tripled) {
-                        in = c == '"' ? In::long_basic : In::long_literal;
-                        text_began_ = {line, column};
-                        i += 2, column += 2;
-                    } else {
-                        in = c == '"' ? In::basic : In::literal;
-                    }
-                } else if (c == '[' || c == '{') {
-                    open.push_back({line, column});
-                } else if ((c == ']' || c == '}') && !open.empty()) {
-                    open.pop_back();
-                }
-                if (c == '.' && ++dots > max_dots && !too_deep_)
-                    too_deep_ =
-                        Problem{.place = {line, column}, .width = 1, .message = fmt::format("a key of more than {} parts", max_dots)};
-                if (c == ',' || c == '=' || c == '[' || c == ']' || c == '{' || c == '}') dots = 0;
-        }
-    }
-    line_starts_.push_back({in == In::long_basic || in == In::long_literal, open});
 }
 
 std::optional<Problem> SourceText::unreadable() const {
@@ -172,7 +193,7 @@ std::optional<Problem> SourceText::unreadable() const {
         if (text_[i] == '\n') ++line, column = 1;
         i += length;
     }
-    return too_deep_;
+    return refused_;
 }
 
 bool SourceText::blank_statement(int number) {

@@ -30,13 +30,13 @@ private:
         bool in_text = false;       // inside a multi-line string
         std::vector<Place> open{};  // brackets
     };
-    void scan();
+    class Scan;
 
     std::string text_;
     std::vector<std::size_t> starts_;     // offset of each line
     std::vector<LineStart> line_starts_;  // one more than lines: the last is the end of the file
     Place text_began_{};
-    std::optional<Problem> too_deep_;
+    std::optional<Problem> refused_;
 };
 
 /// Characters of UTF-8 text (bytes that are not continuations).

@@ -1,0 +1,119 @@
+// docs/scene.md: one table of keys a section, one section a top-level key, then shapes, motions, solvers and their effects.
+#include "scene/describe.hpp"
+#include "scene/reader.hpp"
+
+#include <fmt/format.h>
+
+namespace weir::scene {
+namespace {
+
+std::string escaped(std::string text) {  // '|' would end a cell
+    for (auto at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) text.insert(at, "\\");
+    return text;
+}
+
+std::string row(const Key& key, const std::string& path) {
+    const auto fallback = default_text(key);
+    const std::string absent = key.required ? "required" : fallback.empty() ? "" : fmt::format("`{}`", fallback);
+    const std::string dim = key.only_dim ? fmt::format(" Only in {}D.", key.only_dim) : "";
+    return fmt::format("| `{}` | {} | {} | {}{} |\n", path, escaped(value_text(key)), escaped(absent), escaped(key.doc), dim);
+}
+
+/// Keys one by one; those of plain nested tables by their dotted names.
+std::string rows(const std::vector<Key>& keys, const std::string& path) {
+    std::string out;
+    for (const Key& key : keys) {
+        const std::string full = path.empty() ? key.name : fmt::format("{}.{}", path, key.name);
+        const bool only_nested = key.type == Type::table && key.selector.empty() && !key.keys.empty();
+        if (!only_nested) out += row(key, full);
+        if (key.type == Type::table && key.selector.empty()) out += rows(key.keys, full);
+    }
+    return out;
+}
+
+std::string key_table(const std::vector<Key>& keys) {
+    const auto body = rows(keys, "");
+    return body.empty() ? "" : "\n| key | value | if absent | meaning |\n|---|---|---|---|\n" + body;
+}
+
+std::string variant_section(const Variant& v, const std::string& level) {
+    return fmt::format("\n{} `{}`\n{}\n{}", level, v.name, v.doc, key_table(v.keys));
+}
+
+std::string variants_section(const Key& key, const std::string& level) {
+    std::string out;
+    for (const Variant& v : variants_of(key)) out += variant_section(v, level);
+    return out;
+}
+
+bool has_own_section(const Key& key) { return key.variants_from == &shapes || key.variants_from == &motions; }
+
+/// The variants of a key's nested keys ("sides", "initial"): once each, though several keys may share them.
+std::string nested_variants(const Key& key) {
+    std::string out;
+    const std::vector<Variant>* last = nullptr;
+    for (const Key& k : key.keys) {
+        if (k.selector.empty() || has_own_section(k) || &variants_of(k) == last) continue;
+        const bool many = k.variants_from != nullptr;
+        last = &variants_of(k);
+        out += fmt::format("\nThe {} of {}:\n{}", k.selector, many ? "each" : fmt::format("`{}.{}`", key.name, k.name),
+                           variants_section(k, "####"));
+    }
+    return out;
+}
+
+std::string top_section(const Key& key) {
+    std::string out = fmt::format("\n### `{}`\n{}", key.name, key.doc);
+    if (key.required) out += " Required.";
+    out += "\n";
+    if (!key.example.empty()) out += fmt::format("```toml\n{}\n```\n", key.example);
+    out += key_table(key.keys) + nested_variants(key);
+    if (!key.selector.empty() && !has_own_section(key)) out += variants_section(key, "####");
+    if (key.variants_from == &shapes) out += "\nEach entry is a [shape](#shapes) with these keys beside its own.\n";
+    return out;
+}
+
+std::string solver_section(const SolverSchema& solver) {
+    std::string out = fmt::format("\n### Solver `{}`\n{} Works with dim = {}.\n", solver.name, solver.doc, fmt::join(solver.dims, " or "));
+    out += key_table(solver.keys);
+    for (const Key& key : solver.keys) out += nested_variants(key) + (key.selector.empty() ? "" : variants_section(key, "####"));
+    if (!solver.effects.empty()) out += fmt::format("\nEffects of `{}`:\n", solver.name);
+    for (const Variant& effect : solver.effects) out += variant_section(effect, "####");
+    return out;
+}
+
+constexpr const char* introduction = R"(# Scenes
+<!-- Written by `weir describe --markdown`; do not edit. -->
+A scene is a [TOML](https://toml.io) file that says what exists at the beginning and what acts on it. Units are SI: metres, seconds,
+kilograms, kelvins. Nothing is switched on by default: an effect that is not named costs nothing. Lists called "dim numbers" have two
+entries in 2D and three in 3D.
+
+Every mistake in a file is reported at once, with its line, what is allowed, and the nearest known name; nothing is run or written then.
+
+Any key can be changed on the command line: `--set grid.cells=[64,64]`, `--set solids[0].radius=0.2`, `--set scheme.poisson.method=cg`.
+
+Where a table chooses a `shape`, a `kind` or a `name` and needs nothing else, its name alone will do: `sides.x_max = "outflow"`.
+
+## Keys of every scene
+)";
+
+}  // namespace
+
+std::string manual(const std::vector<SolverSchema>& solvers) {
+    std::string out = introduction;
+    std::vector<Key> plain;
+    for (const Key& key : common_keys())
+        if (key.type != Type::table && key.type != Type::tables) plain.push_back(key);
+    out += key_table(plain);
+    for (const Key& key : common_keys())
+        if (key.type == Type::table || key.type == Type::tables) out += top_section(key);
+    out += "\n## Shapes\nFor `liquid`, `solids` and `emitters`; a union or difference may contain any of them again.\n";
+    for (const Variant& v : shapes()) out += variant_section(v, "###");
+    out += "\n## Motions\nFor `solids`, as `motion = { kind = ... }`.\n";
+    for (const Variant& v : motions()) out += variant_section(v, "###");
+    out += "\n## Solvers\n";
+    for (const SolverSchema& s : solvers) out += solver_section(s);
+    return out;
+}
+
+}  // namespace weir::scene
