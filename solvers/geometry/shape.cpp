@@ -40,6 +40,18 @@ struct Plane final : Shape<D> {
     Vec<D> centre() const override { return point; }
 };
 
+/// Vertical distance times the cosine of the local slope: exact where the surface is flat, off by (slope x curvature) near it.
+template <int D>
+struct Wave final : Shape<D> {
+    real level, amplitude, k;
+    Wave(real level_, real amplitude_, real wavelength) : level(level_), amplitude(amplitude_), k(2 * pi / wavelength) {}
+    real distance(const Vec<D>& x) const override {
+        const real slope = amplitude * k * std::sin(k * x[0]);
+        return (x[1] - level - amplitude * std::cos(k * x[0])) / std::sqrt(1 + slope * slope);
+    }
+    Vec<D> centre() const override { return level * Vec<D>::unit(1); }
+};
+
 template <int D>
 struct Capsule final : Shape<D> {
     Vec<D> a, b;
@@ -114,6 +126,10 @@ ShapePtr<D> plane(const Vec<D>& point, const Vec<D>& normal) {
     return std::make_shared<Plane<D>>(point, normal);
 }
 template <int D>
+ShapePtr<D> wave(real level, real amplitude, real wavelength) {
+    return std::make_shared<Wave<D>>(level, amplitude, wavelength);
+}
+template <int D>
 ShapePtr<D> capsule(const Vec<D>& from, const Vec<D>& to, real radius) {
     return std::make_shared<Capsule<D>>(from, to, radius);
 }
@@ -136,6 +152,7 @@ ShapePtr<D> make_shape(const scene::Table& table) {
     if (kind == "box") return box<D>(table.vec<D>("min"), table.vec<D>("max"));
     if (kind == "sphere") return sphere<D>(table.vec<D>("centre"), table.number("radius"));
     if (kind == "plane") return plane<D>(table.vec<D>("point"), table.vec<D>("normal"));
+    if (kind == "wave") return wave<D>(table.number("level"), table.number("amplitude"), table.number("wavelength"));
     if (kind == "capsule") return capsule<D>(table.vec<D>("from"), table.vec<D>("to"), table.number("radius"));
     if (kind == "cylinder") return cylinder<D>(table.vec<D>("from"), table.vec<D>("to"), table.number("radius"));
     if (kind == "union") return unite<D>(make_shapes<D>(table.tables("of")));
@@ -155,6 +172,7 @@ std::vector<ShapePtr<D>> make_shapes(const std::vector<scene::Table>& tables) {
     template ShapePtr<D> box<D>(const Vec<D>&, const Vec<D>&);               \
     template ShapePtr<D> sphere<D>(const Vec<D>&, real);                     \
     template ShapePtr<D> plane<D>(const Vec<D>&, const Vec<D>&);             \
+    template ShapePtr<D> wave<D>(real, real, real);                          \
     template ShapePtr<D> capsule<D>(const Vec<D>&, const Vec<D>&, real);     \
     template ShapePtr<D> cylinder<D>(const Vec<D>&, const Vec<D>&, real);    \
     template ShapePtr<D> unite<D>(std::vector<ShapePtr<D>>);                 \

@@ -33,6 +33,9 @@ ShapePtr<D> sphere(const Vec<D>& centre, real radius);
 /// The half space behind the normal (which need not have length one).
 template <int D>
 ShapePtr<D> plane(const Vec<D>& point, const Vec<D>& normal);
+/// All points below y = level + amplitude cos(2 pi x / wavelength). The distance is of second order in the slope.
+template <int D>
+ShapePtr<D> wave(real level, real amplitude, real wavelength);
 template <int D>
 ShapePtr<D> capsule(const Vec<D>& from, const Vec<D>& to, real radius);
 /// Flat-ended; in 2D a rectangle of half width `radius` about the axis.

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
+#include <map>
 
 namespace weir::scene {
 namespace {
@@ -104,7 +104,7 @@ void check_motion(const Table& motion, const std::string& path, const Report& re
 }
 
 void check_probes(const Table& root, const Domain& domain, int dim, const Report& report) {
-    std::set<std::string> names;
+    std::map<std::string, Place> names;
     const auto& probes = root.tables("probes");
     for (std::size_t i = 0; i < probes.size(); ++i) {
         const Table& probe = probes[i];
@@ -112,8 +112,10 @@ void check_probes(const Table& root, const Domain& domain, int dim, const Report
         if (probe.has("name") && !is_file_name(probe.text("name")))
             report(probe.place("name"), fmt::format("{}.name is {}; it names a file", path, quote(probe.text("name"))),
                    "letters, digits, '_', '-' and '.', not at its beginning");
-        else if (probe.has("name") && !names.insert(probe.text("name")).second)
-            report(probe.place("name"), fmt::format("two probes have the name {}; each writes its own file", quote(probe.text("name"))));
+        else if (probe.has("name"))
+            if (const auto [first, inserted] = names.emplace(probe.text("name"), probe.place("name")); !inserted)
+                report(probe.place("name"), fmt::format("two probes have the name {}; each writes its own file", quote(probe.text("name"))),
+                       first->second.line > 0 ? fmt::format("first given in line {}", first->second.line) : "");
         for (const char* key : {"at", "from", "to"}) check_inside(probe, key, path, domain, report);
         if (has_all(probe, {"from", "to"}) && probe.numbers("from") == probe.numbers("to"))
             report(probe.place("to"), fmt::format("{}.to is the same point as its from; a line needs a length", path));

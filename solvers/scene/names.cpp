@@ -27,6 +27,18 @@ int edit_distance(std::string_view a, std::string_view b) {
     return row[2][b.size()];
 }
 
+namespace {
+
+/// "rotate" and "rotation": nearly all of the shorter word begins the longer one.
+bool same_beginning(std::string_view a, std::string_view b) {
+    const std::size_t shorter = std::min(a.size(), b.size());
+    std::size_t same = 0;
+    while (same < shorter && a[same] == b[same]) ++same;
+    return same >= 4 && same + 1 >= shorter;
+}
+
+}  // namespace
+
 std::string nearest(std::string_view word, const std::vector<std::string>& names) {
     constexpr std::size_t longest = 64;  // a longer word is no slip of the finger
     if (word.empty() || word.size() > longest) return {};
@@ -34,7 +46,9 @@ std::string nearest(std::string_view word, const std::vector<std::string>& names
     int best_distance = 1 + static_cast<int>((std::max<std::size_t>(word.size(), 3)) / 3);
     for (const auto& name : names)
         if (const int d = edit_distance(word, name); d < best_distance) best = name, best_distance = d;
-    return best;
+    if (!best.empty()) return best;
+    const auto begins = std::find_if(names.begin(), names.end(), [&](const auto& name) { return same_beginning(word, name); });
+    return begins == names.end() ? std::string() : *begins;
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& names) {
@@ -66,7 +80,7 @@ std::string quote(std::string_view text) {
 
 std::string quote_all(const std::vector<std::string>& names) {
     std::string out;
-    for (const auto& name : names) out += (out.empty() ? "" : ", ") + quote(name);
+    for (std::size_t i = 0; i < names.size(); ++i) out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + quote(names[i]);
     return out;
 }
 

@@ -18,7 +18,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// `known: a, b, c`, shortened beyond a line's length.
 std::string known(const std::vector<std::string>& names);
 std::string quote(std::string_view text);                      // "text", control characters escaped, long texts cut
-std::string quote_all(const std::vector<std::string>& names);  // "a", "b"
+std::string quote_all(const std::vector<std::string>& names);  // "a", "b" and "c"
 std::string number_text(double value);                         // shortest text that reads back exactly
 
 }  // namespace weir::scene

@@ -22,6 +22,11 @@ void Reader::report(Place place, std::string message, std::string hint, int widt
     problems_.push_back({.file = file_, .place = place, .width = width, .message = std::move(message), .hint = std::move(hint)});
 }
 
+Table Reader::root(const Node& node, const std::vector<Key>& keys) {
+    root_keys_ = &keys;
+    return table(node, keys, "");
+}
+
 Table Reader::table(const Node& node, const std::vector<Key>& keys, const std::string& path) {
     Allowed allowed;
     for (const Key& key : keys) allowed.keys.push_back(&key);
@@ -43,20 +48,30 @@ void Reader::fill(const Node& node, const Allowed& allowed, const std::string& p
         }
     }
     for (const Key* key : allowed.keys)
-        if (!node.member(key->name) && !(key->only_dim && key->only_dim != dim_)) absent(*key, node, join(path, key->name), path, out);
+        if (!node.member(key->name) && !(key->only_dim && key->only_dim != dim_) && !misspelt(node, allowed, *key))
+            absent(*key, node, join(path, key->name), path, out);
+}
+
+/// An unknown key of this table was reported with the question whether this one was meant: that it is missing too is no news.
+bool Reader::misspelt(const Node& node, const Allowed& allowed, const Key& key) const {
+    std::vector<std::string> names;
+    for (const Key* k : allowed.keys) names.push_back(k->name);
+    const auto known_name = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    return key.required && std::any_of(node.members.begin(), node.members.end(),
+                                       [&](const Member& m) { return !known_name(m.key) && nearest(m.key, names) == key.name; });
 }
 
 /// A key that the scene does not give: its default, a table full of defaults, or a problem.
 void Reader::absent(const Key& key, const Node& around, const std::string& path, const std::string& owner_path, Table& out) {
     if (key.required) {
+        if (!complete_) return;
+        const bool fits = !(key.length == -1 && dim_ == 3) && !key.example.empty();  // examples are two-dimensional
         const std::string asks =
-            fmt::format("{}: {}{}", key.name, expected(key, dim_), key.example.empty() ? "" : fmt::format(", such as {}", key.example));
-        if (complete_) {
-            if (owner_path.empty())
-                report({}, fmt::format("\"{}\" is missing", key.name), asks);
-            else
-                report(around.place, fmt::format("{} has no \"{}\"", owner_path, key.name), asks, 1);
-        }
+            fits ? fmt::format("{}, such as {}", expected(key, dim_), key.example) : fmt::format("{}: {}", key.name, expected(key, dim_));
+        if (owner_path.empty())
+            report({}, fmt::format("\"{}\" is missing", key.name), asks);
+        else
+            report(around.place, fmt::format("{} has no \"{}\"", owner_path, key.name), asks);
         return;
     }
     const bool optional_table = !key.selector.empty() && key.fallback.index() == 0;
@@ -117,7 +132,7 @@ std::optional<Value> Reader::scalar(const Node& node, const Key& key, const std:
     if (is_text_key(key) && node.kind == Kind::text) {
         const auto& c = key.choices;
         if (c.empty() || std::find(c.begin(), c.end(), node.text) != c.end()) return node.text;
-        report(node.place, fmt::format("{} is {}, which is not known{}", path, quote(node.text), did_you_mean(node.text, c)), known(c));
+        unknown_choice(node, key, path);
         return std::nullopt;
     }
     if (key.type == Type::integer && node.kind == Kind::integer) {
@@ -179,7 +194,7 @@ std::optional<Table> Reader::chosen(const Node& node, const Key& key, const std:
     if (!name && choice.empty()) {
         std::vector<std::string> names;
         for (const Variant& v : variants_of(key)) names.push_back(v.name);
-        report(node.place, fmt::format("{} has no \"{}\"", path, key.selector), known(names), 1);
+        report(node.place, fmt::format("{} has no \"{}\"", path, key.selector), known(names));
         return std::nullopt;
     }
     Allowed allowed{.keys = {}, .owner = &key, .variant = find_variant(key, choice)};

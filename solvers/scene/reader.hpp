@@ -18,6 +18,8 @@ public:
     /// `solvers` and `solver` word the messages about keys and effects that only other solvers have.
     void know(const std::vector<SolverSchema>& solvers, std::string solver) { solvers_ = &solvers, solver_ = std::move(solver); }
 
+    /// A whole file.
+    Table root(const Node& node, const std::vector<Key>& keys);
     Table table(const Node& node, const std::vector<Key>& keys, const std::string& path);
 
 private:
@@ -30,6 +32,7 @@ private:
     };
 
     void fill(const Node& node, const Allowed& allowed, const std::string& path, Table& out);
+    bool misspelt(const Node& node, const Allowed& allowed, const Key& key) const;
     void absent(const Key& key, const Node& around, const std::string& path, const std::string& owner_path, Table& out);
     std::optional<Value> value(const Node& node, const Key& key, const std::string& path);
     std::optional<Value> scalar(const Node& node, const Key& key, const std::string& path);
@@ -46,6 +49,8 @@ private:
     void unknown_variant(const Node& node, const Key& key, std::string_view name, const std::string& path);
     void unknown_effect(const Member& member, const Key& key, const std::string& path);
     void wrong_type(const Node& node, const Key& key, const std::string& path);
+    void unknown_choice(const Node& node, const Key& key, const std::string& path);
+    std::string place_elsewhere(const std::string& key) const;
     std::vector<std::string> solvers_with(std::string_view key, bool effect) const;
     void report(Place place, std::string message, std::string hint = "", int width = 0);
 
@@ -53,6 +58,7 @@ private:
     int dim_;
     bool complete_;
     std::vector<Problem>& problems_;
+    const std::vector<Key>* root_keys_ = nullptr;
     const std::vector<SolverSchema>* solvers_ = nullptr;
     std::string solver_;
 };

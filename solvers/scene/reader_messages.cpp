@@ -20,6 +20,10 @@ std::string length_text(int length, int dim) {
     return length == -1 ? "2 or 3 " : "";
 }
 
+std::string solvers_have_it(const std::vector<std::string>& names) {
+    return names.size() == 1 ? fmt::format("solver {} has it", quote_all(names)) : fmt::format("solvers {} have it", quote_all(names));
+}
+
 std::vector<std::string> variant_names(const std::vector<Variant>& variants) {
     std::vector<std::string> names;
     for (const Variant& v : variants) names.push_back(v.name);
@@ -59,6 +63,8 @@ std::string expected(const Key& key, int dim) {
 
 std::string allowed_range(const Key& key) {
     if (key.min && key.max) {
+        if (key.type == Type::integer && *key.max == *key.min + 1)
+            return fmt::format("{} or {}", number_text(*key.min), number_text(*key.max));
         if (key.min_open) return fmt::format("greater than {} and at most {}", number_text(*key.min), with_unit(*key.max, key.unit));
         return fmt::format("between {} and {}", number_text(*key.min), with_unit(*key.max, key.unit));
     }
@@ -93,6 +99,7 @@ void Reader::wrong_type(const Node& node, const Key& key, const std::string& pat
     if (key.type == Type::tables && node.kind == Node::Kind::table) hint = fmt::format("[[{}]] begins an entry of a list", path);
     if ((key.type == Type::number || key.type == Type::integer) && node.kind == Node::Kind::text) hint = "a number stands without quotes";
     if (key.type == Type::flag && node.kind == Node::Kind::text) hint = "true and false stand without quotes";
+    if (hint.empty() && !key.example.empty() && !(key.length == -1 && dim_ == 3)) hint = "such as " + key.example;
     report(node.place,
            fmt::format("{} must be {}{}; found {}", path, expected(key, dim_),
                        named_table ? fmt::format(" with a \"{}\"", key.selector) : "", found(node)),
@@ -147,23 +154,40 @@ void Reader::unknown_key(const Member& member, const Allowed& allowed, const std
         for (const Variant& v : variants_of(*allowed.owner))
             if (find_key(v.keys, member.key)) elsewhere.push_back(v.name);
     if (!elsewhere.empty()) {
-        report(member.place,
-               fmt::format("{}{} has no \"{}\"; {} {} {} it", path, kind, member.key, allowed.owner->selector, quote_all(elsewhere),
-                           elsewhere.size() == 1 ? "has" : "have"),
-               known(names));
-        return;
+        const std::string has = elsewhere.size() == 1 ? fmt::format("{} {} has it", allowed.owner->selector, quote_all(elsewhere))
+                                                      : fmt::format("{}s {} have it", allowed.owner->selector, quote_all(elsewhere));
+        return report(member.place, fmt::format("{}{} has no {}; {}", path, kind, quote(member.key), has), known(names));
     }
     if (const auto others = solvers_with(member.key, false); path.empty() && !others.empty()) {
         if (!solver_.empty())
-            report(member.place,
-                   fmt::format("solver \"{}\" has no key \"{}\"; {} {} it", solver_, member.key, quote_all(others),
-                               others.size() == 1 ? "has" : "have"),
+            report(member.place, fmt::format("solver \"{}\" has no key \"{}\"; {}", solver_, member.key, solvers_have_it(others)),
                    known(names));
         return;
     }
-    report(member.place,
-           fmt::format("unknown key {}{}{}{}", quote(member.key), path.empty() ? "" : " in " + path, kind, did_you_mean(member.key, names)),
+    std::string meant = did_you_mean(member.key, names);
+    if (const auto there = place_elsewhere(member.key); meant.empty() && !there.empty()) meant = fmt::format("; did you mean {}?", there);
+    report(member.place, fmt::format("unknown key {}{}{}{}", quote(member.key), path.empty() ? "" : " in " + path, kind, meant),
            known(names));
+}
+
+/// A key that stands in another table ("viscosity" at the top is fluid.viscosity); empty where there is none.
+std::string Reader::place_elsewhere(const std::string& key) const {
+    if (!root_keys_) return {};
+    for (const Key& table : *root_keys_) {
+        if (table.type == Type::table && table.selector.empty() && find_key(table.keys, key)) return fmt::format("{}.{}", table.name, key);
+        if (table.type == Type::named && find_variant(table, key)) return fmt::format("{}.{}", table.name, key);
+    }
+    return find_key(*root_keys_, key) ? fmt::format("{} outside of all tables", key) : std::string();
+}
+
+void Reader::unknown_choice(const Node& node, const Key& key, const std::string& path) {
+    const auto dot = path.rfind('.');
+    const bool entry = path.ends_with(']');
+    const std::string around = entry ? path.substr(0, path.rfind('[')) : dot == std::string::npos ? "" : path.substr(0, dot);
+    report(node.place,
+           fmt::format("unknown {} {}{}{}", entry ? "entry" : key.name, quote(node.text), around.empty() ? "" : " in " + around,
+                       did_you_mean(node.text, key.choices)),
+           known(key.choices));
 }
 
 void Reader::unknown_variant(const Node& node, const Key& key, std::string_view name, const std::string& path) {
@@ -176,8 +200,7 @@ void Reader::unknown_effect(const Member& member, const Key& key, const std::str
     const std::string noun = key.name.ends_with('s') ? key.name.substr(0, key.name.size() - 1) : key.name;
     const auto others = solvers_with(member.key, true);
     if (!solver_.empty() && !others.empty()) {
-        report(member.place,
-               fmt::format("solver \"{}\" has no {} {}; solver {} has it", solver_, noun, quote(member.key), quote_all(others)),
+        report(member.place, fmt::format("solver \"{}\" has no {} {}; {}", solver_, noun, quote(member.key), solvers_have_it(others)),
                known(names));
     } else if (!solver_.empty() || !solvers_) {
         const std::string whose = solver_.empty() ? " in " + path : fmt::format(" for solver \"{}\"", solver_);

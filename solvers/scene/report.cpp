@@ -18,6 +18,11 @@ struct Excerpt {
     int column = 0, width = 0;
 };
 
+/// Control characters and broken UTF-8 are no business of the user's terminal.
+bool is_shown(std::string_view letter) {
+    return sequence_length(letter) == letter.size() && static_cast<unsigned char>(letter[0]) >= 0x20 && letter[0] != 0x7F;
+}
+
 Excerpt excerpt(std::string_view line, int column, int width) {
     const int length = count_characters(line);
     column = std::clamp(column, 1, length + 1);
@@ -29,10 +34,11 @@ Excerpt excerpt(std::string_view line, int column, int width) {
     for (int c = first; c <= std::min(length, first + shown_width - 1); ++c) {
         const auto begin = byte_of_column(line, c);
         const auto letter = line.substr(begin, byte_of_column(line, c + 1) - begin);
-        const int step = letter == "\t" ? tab_width : 1;
+        const bool tab = letter == "\t", shown_as_it_is = is_shown(letter);
+        const int step = tab ? tab_width : 1;
         if (c == column) out.column = shown;
         if (c >= column && c < column + width) out.width += step;
-        out.text += letter == "\t" ? std::string(tab_width, ' ') : std::string(letter);
+        out.text += tab ? std::string(tab_width, ' ') : shown_as_it_is ? std::string(letter) : "?";
         shown += step;
     }
     if (column > length) out.column = shown, out.width = 1;

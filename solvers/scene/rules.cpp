@@ -45,11 +45,12 @@ void check_resolution(const Table& root, const Domain& domain, const Report& rep
     if (!domain.known() || !root.has("grid.cells") || root.numbers("grid.cells").size() != domain.min.size()) return;
     for (std::size_t d = 0; d < domain.min.size(); ++d) {
         const double width = root.numbers("grid.size")[d] / root.numbers("grid.cells")[d];
+        const std::string axis = axis_name(static_cast<int>(d));
         const double farthest = std::max(std::abs(domain.min[d]), std::abs(domain.max[d]));
         if (!std::isfinite(farthest) || width < 1e3 * std::numeric_limits<double>::epsilon() * farthest)
             return report(root.place("grid.size"),
-                          fmt::format("cells of {:.3g} m along {} cannot be told apart at x = {:.3g} m in double precision", width,
-                                      axis_name(static_cast<int>(d)), farthest));
+                          fmt::format("cells of {:.3g} m along {} cannot be told apart at {} = {:.3g} m in double precision", width, axis,
+                                      axis, farthest));
     }
 }
 

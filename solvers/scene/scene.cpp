@@ -69,7 +69,8 @@ Scene parse(std::string_view source, const std::string& file, const std::vector<
     scene.dim_ = dimension(document.root, file, solver, problems);
     Reader reader(file, scene.dim_, document.complete, problems);
     reader.know(solvers, solver ? solver->name : "");
-    scene.root_ = reader.table(document.root, keys_of(solver ? *solver : SolverSchema{}), "");
+    const auto keys = keys_of(solver ? *solver : SolverSchema{});
+    scene.root_ = reader.root(document.root, keys);
     check_rules(scene.root_, scene.dim_, file, problems);
     name_overrides(problems, overrides);
     if (!problems.empty()) throw BadScene(problems, source);
@@ -84,7 +85,7 @@ Scene parse(std::string_view source, const std::string& file, const std::vector<
 Table parse_table(std::string_view source, const std::string& file, const std::vector<Key>& keys, int dim) {
     Document document = parse_document(source, file);
     if (!document.readable) throw BadScene(document.problems, source);
-    Table table = Reader(file, dim, document.complete, document.problems).table(document.root, keys, "");
+    Table table = Reader(file, dim, document.complete, document.problems).root(document.root, keys);
     if (!document.problems.empty()) throw BadScene(document.problems, source);
     return table;
 }

@@ -19,7 +19,7 @@ void make_periodic(Table& root, int axis, const Report& report) {
         Table* side = root.find_table(side_name(axis, end));
         const auto kind = kind_of(root, axis, end);
         if (!side || kind == "periodic") continue;
-        if (const Place place = root.place(side_name(axis, end)); place.column > 0) {
+        if (const Place place = root.place(side_name(axis, end) + ".kind"); place.column > 0) {
             report(place, fmt::format("{} is {}, but grid.periodic names {}", side_name(axis, end), quote(kind), quote(axis_name(axis))));
         } else {
             Table periodic;

@@ -6,13 +6,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace weir::scene {
 namespace {
 
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
-/// Length of the UTF-8 sequence that begins here (Unicode 15, table 3-7), 0 where none is valid.
+bool is_text_byte(char c) { return static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\n' || c == '\r'; }
+
+}  // namespace
+
 std::size_t sequence_length(std::string_view s) {
     const auto byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0U; };
     const auto tail = [&](std::size_t i, unsigned low = 0x80, unsigned high = 0xBF) { return byte(i) >= low && byte(i) <= high; };
@@ -23,10 +27,6 @@ std::size_t sequence_length(std::string_view s) {
     if (b >= 0xF0 && b <= 0xF4) return tail(1, b == 0xF0 ? 0x90 : 0x80, b == 0xF4 ? 0x8F : 0xBF) && tail(2) && tail(3) ? 4 : 0;
     return 0;
 }
-
-bool is_text_byte(char c) { return static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\n' || c == '\r'; }
-
-}  // namespace
 
 int count_characters(std::string_view text) {
     return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return !is_continuation(c); }));
@@ -43,7 +43,7 @@ std::size_t byte_of_column(std::string_view line, int column) {
 
 int token_width(std::string_view line, int column) {
     const std::string_view rest = line.substr(byte_of_column(line, column));
-    if (rest.empty()) return 1;
+    if (rest.empty() || rest[0] == '{') return 1;  // a table in braces may be long, and what is wrong with it is that it is there
     std::size_t end = 0;
     int depth = 0;
     char quote = 0;
@@ -63,8 +63,8 @@ int token_width(std::string_view line, int column) {
             if (--depth <= 0) return count_characters(rest.substr(0, depth < 0 ? std::max<std::size_t>(end, 1) : end + 1));
         } else if (c == '#' && depth > 0) {
             break;
-        } else if (depth == 0 &&
-                   (c == ',' || c == '=' || c == ' ' || c == '\t' || c == '#' || (c == '.' && end > 0 && !isdigit(rest[0])))) {
+        } else if (depth == 0 && (c == ',' || c == '=' || c == ' ' || c == '\t' || c == '#' ||
+                                  (c == '.' && end > 0 && (std::isalpha(static_cast<unsigned char>(rest[0])) || rest[0] == '_')))) {
             return count_characters(rest.substr(0, std::max<std::size_t>(end, 1)));
         }
     }
@@ -175,6 +175,8 @@ std::string_view SourceText::line(int number) const {
 std::optional<Problem> SourceText::unreadable() const {
     if (text_.size() > max_source_bytes)
         return Problem{.message = fmt::format("the text is {} bytes long; at most {} are read", text_.size(), max_source_bytes)};
+    if (text_.find('\0') != std::string::npos)
+        return Problem{.message = "this is not a text file", .hint = "a scene is a text file in UTF-8"};
     int line = 1, column = 1;
     for (std::size_t i = 0; i < text_.size();) {
         const auto length = sequence_length(std::string_view(text_).substr(i, 4));
@@ -206,6 +208,29 @@ bool SourceText::blank_statement(int number) {
     if (first == std::string_view::npos || content[first] == '[') return false;
     std::fill_n(text_.begin() + static_cast<std::ptrdiff_t>(starts_[i - 1]), content.size(), ' ');
     return true;
+}
+
+Place SourceText::open_at(Place place) const {
+    if (place.line < 1 || place.line > line_count()) return {};
+    auto open = line_starts_[static_cast<std::size_t>(place.line - 1)].open;
+    const auto before = line(place.line).substr(0, byte_of_column(line(place.line), place.column));
+    char quote = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const char c = before[i];
+        if (quote) {
+            if (c == '\\' && quote == '"')
+                ++i;
+            else if (c == quote)
+                quote = 0;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '[' || c == '{') {
+            open.push_back({place.line, count_characters(before.substr(0, i)) + 1});
+        } else if ((c == ']' || c == '}') && !open.empty()) {
+            open.pop_back();
+        }
+    }
+    return open.empty() ? Place{} : open.back();
 }
 
 Place SourceText::open_at(int number) const {

@@ -24,6 +24,9 @@ public:
     bool blank_statement(int line);
     /// The bracket or text that is still open where a line begins; line 0: none.
     Place open_at(int line) const;
+    /// The same in the middle of a line, for brackets.
+    Place open_at(Place place) const;
+    Place end_of_text() const { return open_at(line_count() + 1); }
 
 private:
     struct LineStart {
@@ -41,6 +44,8 @@ private:
 
 /// Characters of UTF-8 text (bytes that are not continuations).
 int count_characters(std::string_view text);
+/// Length of the UTF-8 sequence that begins a text (Unicode 15, table 3-7), 0 where it is not valid.
+std::size_t sequence_length(std::string_view text);
 /// The byte at which a 1-based column begins.
 std::size_t byte_of_column(std::string_view line, int column);
 /// Length in characters of the word, text, list or table that begins at a column; at least 1, never beyond the line.

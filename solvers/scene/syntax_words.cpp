@@ -1,4 +1,5 @@
 // The TOML parser's complaints in our words. What it says that is not known here is passed on as it is.
+#include "scene/names.hpp"
 #include "scene/source_text.hpp"
 
 #include <fmt/format.h>
@@ -51,31 +52,64 @@ Problem given_twice(const std::string& name, Place place, const SourceText& text
     return problem;
 }
 
+/// What stands at a place: up to a comma, a bracket, a comment or the end of the line.
+std::string_view phrase_at(std::string_view line, std::size_t begin) {
+    const auto end = std::min(line.find_first_of(",=#[]{}\"'", begin), line.size());
+    return trimmed(line.substr(begin, end - begin));
+}
+
 /// A value that is a bare word: the parser stops in its middle, the message shows all of it.
 Problem bare_word(Place place, const SourceText& text) {
     const auto line = text.line(place.line);
     std::size_t begin = std::min(byte_of_column(line, place.column), line.size());
     while (begin > 0 && is_word(line[begin - 1])) --begin;
-    std::size_t end = begin;
-    while (end < line.size() && is_word(line[end])) ++end;
-    const std::string word(line.substr(begin, end - begin));
+    const std::string phrase(phrase_at(line, begin));
     Problem problem{.place = {place.line, count_characters(line.substr(0, begin)) + 1}, .message = "this is not a value"};
-    problem.width = std::max(1, count_characters(word));
-    std::string lower = word;
+    problem.width = std::max(1, count_characters(phrase));
+    std::string lower = phrase;
     std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (lower == "true" || lower == "false") {
-        problem.message = fmt::format("{} is not a value; did you mean {}?", word, lower);
-    } else if (!word.empty() && std::isalpha(static_cast<unsigned char>(word[0]))) {
-        problem.message = fmt::format("{} is not a value", word);
-        problem.hint = fmt::format("a text stands in quotes: \"{}\"", word);
+        problem.message = fmt::format("{} is not a value; did you mean {}?", phrase, lower);
+    } else if (!phrase.empty() && std::isalpha(static_cast<unsigned char>(phrase[0]))) {
+        problem.message = fmt::format("{} is not a value", phrase);
+        problem.hint = fmt::format("a text stands in quotes: \"{}\"", phrase);
     }
     return problem;
 }
 
+/// The word at a place is a key: '=' follows it.
+bool is_key_at(Place place, const SourceText& text) {
+    auto rest = text.line(place.line);
+    rest = rest.substr(std::min(byte_of_column(rest, place.column), rest.size()));
+    while (!rest.empty() && (is_word(rest.front()) || rest.front() == '.')) rest.remove_prefix(1);
+    return trimmed(rest).starts_with('=');
+}
+
+char letter_at(Place place, const SourceText& text) {
+    const auto line = text.line(place.line);
+    const auto at = byte_of_column(line, place.column);
+    return at < line.size() ? line[at] : '\0';
+}
+
+/// From the last quote of the line that opens a text, to its end.
+Problem open_quote(Place place, const SourceText& text) {
+    const auto line = text.line(place.line);
+    std::size_t opened = 0;
+    char quote = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (quote == '"' && line[i] == '\\')
+            ++i;
+        else if (quote ? line[i] == quote : line[i] == '"' || line[i] == '\'')
+            quote = quote ? '\0' : line[i], opened = quote ? i : opened;
+    }
+    return {.place = {place.line, count_characters(line.substr(0, opened)) + 1},
+            .width = count_characters(line.substr(opened)),
+            .message = "this text is not closed on its line",
+            .hint = "a quote is missing"};
+}
+
 Problem unclosed(Place open, const SourceText& text, const std::string& hint) {
-    const auto line = text.line(open.line);
-    const std::size_t at = byte_of_column(line, open.column);
-    const char c = at < line.size() ? line[at] : '"';
+    const char c = letter_at(open, text);
     const std::string what = c == '[' ? "this list is" : c == '{' ? "this table is" : "this text is";
     return {.place = open, .width = 1, .message = what + " not closed", .hint = hint};
 }
@@ -92,37 +126,39 @@ bool has(std::string_view s, std::string_view part) { return s.find(part) != std
 Problem word_syntax_error(std::string description, Place place, const SourceText& text) {
     if (description.starts_with("Error while parsing ") && has(description, ": ")) description = after(description, ": ");
     const auto line = text.line(place.line);
-    const bool at_line_end = byte_of_column(line, place.column) >= line.size();
-    const Place open = text.open_at(place.line);
+    const std::size_t byte = std::min(byte_of_column(line, place.column), line.size());
+    const Place open = text.open_at(place);
+    const auto is = [&](std::string_view part) { return has(description, part); };
 
-    if (has(description, "cannot redefine existing")) {
-        std::string name = after(description, "'");
+    if (is("cannot redefine existing")) {
+        const std::string name = after(description, "'");
         return given_twice(name.substr(0, name.find('\'')), place, text);
     }
-    if (has(description, "end-of-file")) {
-        const Place at_end = text.open_at(text.line_count() + 1);
-        if (at_end.line > 0) return unclosed(at_end, text, "the file ends inside it");
+    if (open.line > 0 && letter_at(open, text) == '[' && is_key_at(place, text)) return unclosed(open, text, "']' is missing");
+    if (open.line > 0 && letter_at(open, text) == '{' && is("'\n'"))
+        return unclosed(open, text, "'}' is missing; a table in braces ends on its line");
+    if (is("end-of-file")) {
+        if (const Place left_open = text.end_of_text(); left_open.line > 0) return unclosed(left_open, text, "the file ends inside it");
+        if (line.find_first_of("\"'") != std::string_view::npos) return open_quote(place, text);
         return {.place = place, .width = 1, .message = "the file ends in the middle of a statement"};
     }
-    if (open.line > 0 && open.line < place.line && has(line, "="))
-        return unclosed(open, text, fmt::format("a bracket is missing before line {}", place.line));
-    if (has(description, "could not determine value type") || has(description, "expected 'true'") || has(description, "expected 'false'") ||
-        has(description, "expected 'inf'") || has(description, "expected 'nan'"))
+    if (is("could not determine value type") || is("expected 'true'") || is("expected 'false'") || is("expected 'inf'") ||
+        is("expected 'nan'"))
         return bare_word(place, text);
-    if (has(description, "control characters") && at_line_end)
-        return {.place = {place.line, std::max(1, place.column - 1)},
-                .width = 1,
-                .message = "the text is not closed on its line",
-                .hint = "a closing quote is missing"};
-    if (has(description, "expected a comment or whitespace, saw"))
-        return {.place = place,
-                .message = "unexpected after the value" + after(description, "saw"),
-                .hint = "each key = value has its own line"};
-    if (has(description, "expected '=', saw"))
-        return {.place = place, .message = "expected '=' after the key, found" + after(description, "saw")};
-    if (has(description, "dangling comma")) return {.place = place, .width = 1, .message = "a table in braces must not end with a comma"};
-    for (std::string saw = ", saw "; has(description, saw);) description.replace(description.find(saw), saw.size(), ", found ");
-    if (has(description, "'\n'")) description.replace(description.find("'\n'"), 3, "the end of the line");
+    if (is("control characters") && byte >= line.size()) return open_quote(place, text);
+    if (is("expected a comment or whitespace, saw"))
+        return {
+            .place = place,
+            .message = fmt::format("unexpected {} after the value",
+                                   quote(line.substr(byte, byte_of_column(line, place.column + token_width(line, place.column)) - byte))),
+            .hint = "each key = value has its own line"};
+    if (is("expected '=', saw")) {
+        const std::string saw = byte >= line.size() ? " the end of the line" : after(description, "saw");
+        return {.place = place, .width = 1, .message = "expected '=' after the key, found" + saw, .hint = "key = value"};
+    }
+    if (is("dangling comma")) return {.place = place, .width = 1, .message = "a table in braces must not end with a comma"};
+    if (const auto saw = description.find(", saw "); saw != std::string::npos) description.replace(saw, 6, ", found ");
+    if (is("'\n'")) description.replace(description.find("'\n'"), 3, "the end of the line");
     return {.place = place, .message = description};
 }
 

@@ -70,3 +70,19 @@ TEST("known distances: box corner, cylinder rim, inside of a box") {
     EXPECT_DOUBLE_EQ((cylinder<3>({{0, 0, 0}}, {{0, 0, 2}}, 1)->distance({{4, 0, 6}})), 5.0);
     EXPECT_DOUBLE_EQ((plane<2>({{0, 1}}, {{0, 3}})->distance({{9, 3}})), 2.0);
 }
+
+TEST_IN_2D_AND_3D("a wave's surface is where its cosine says, and a step of its distance along the normal leads there") {
+    const real level = 0.3, amplitude = 0.02, wavelength = 1.5, k = 2 * pi / wavelength;
+    const auto water = wave<D>(level, amplitude, wavelength);
+    for (real x = -1; x <= 2; x += 0.17) {
+        Vec<D> surface{};
+        surface[0] = x, surface[1] = level + amplitude * std::cos(k * x);
+        EXPECT_NEAR(water->distance(surface), 0, 1e-15);
+        EXPECT_TRUE(water->contains(surface - 0.1 * Vec<D>::unit(1)));
+        Vec<D> normal = Vec<D>::unit(1);
+        normal[0] = amplitude * k * std::sin(k * x);
+        normal = normal / norm(normal);
+        const real d = 0.05;  // the error is d^2/2 times slope' (a k^2 = 0.35) times slope (a k = 0.084): 4e-5
+        EXPECT_NEAR(water->distance(surface + d * normal), d, 6e-5);
+    }
+}

@@ -68,7 +68,7 @@ TEST("what is wrong with an override is shown in the override") {
     EXPECT_EQ(refusal({"solids[3].radius", "1"}),
               "--set solids[3].radius=1: solids has 1 entry; only [0] or, to add one, [1] can be set\n"
               "      | solids[3].radius=1\n"
-              "      |       ^~~");
+              "      |       ^");
     EXPECT_EQ(refusal({"time.end", "[1"}),
               "--set time.end=[1: this list is not closed\n"
               "      | time.end=[1\n"

@@ -87,7 +87,7 @@ TEST("a grid fits into the machine and into the precision of its numbers") {
     EXPECT_EQ(cells("grid = { cells = [100000, 100000], size = [1, 1] }"),
               "grid.cells makes 1e+10 cells; at most 2147483647 can be numbered");
     EXPECT_EQ(cells("grid = { cells = [10, 10], size = [1, 1e-9], origin = [0, 1e6] }"),
-              "cells of 1e-10 m along y cannot be told apart at x = 1e+06 m in double precision");
+              "cells of 1e-10 m along y cannot be told apart at y = 1e+06 m in double precision");
     EXPECT_EQ(cells("grid = { cells = [10, 10], size = [1, 1e-9] }"), "");
 }
 
