@@ -8,7 +8,7 @@ namespace {
 
 /// Our curve in the experiment's units, `shift` later; before that the column stands as it was.
 Curve scaled(const ProbeSeries& probe, real time_unit, real length, real shift, std::string label) {
-    Curve c = probe.column(0);
+    Curve c = column(probe, 0);
     c.label = std::move(label);
     for (auto& t : c.x) t = t / time_unit + shift;
     for (auto& y : c.y) y /= length;
