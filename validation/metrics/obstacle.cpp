@@ -27,10 +27,41 @@ real smoke_inside(const FieldSet& fields, const scene::Scene& scene, real t) {
     return worst;
 }
 
+/// P(t) - P(0) + I(t) for motion along x: the fluid's momentum, and the impulse that its pressure has given to the bodies. Nothing else
+/// may change the momentum where x is periodic.
+Curve missing_impulse(const RunRecord& run) {
+    Curve missing = run.series("momentum_x");
+    const Curve impulse = run.series("solid_impulse_x");
+    const real first = missing.y.at(0);
+    for (std::size_t i = 0; i < missing.size(); ++i) missing.y[i] += impulse.y[i] - first;
+    return missing;
+}
+
+real largest_magnitude(const Curve& c) {
+    real m = 0;
+    for (const real y : c.y) m = (std::abs(y) > m || std::isnan(y)) ? std::abs(y) : m;
+    return m;
+}
+
+Panel impulse_panel(const RunRecord& run) {
+    Curve momentum = run.series("momentum_x"), impulse = run.series("solid_impulse_x"), missing = missing_impulse(run);
+    for (auto& y : impulse.y) y = -y;
+    momentum.label = "momentum of the fluid", impulse.label = "impulse from the body", missing.label = "difference";
+    return {.title = "Momentum and impulse", .x = {"t [s]"}, .y = {"[kg/s]"}, .curves = {momentum, impulse, missing}};
+}
+
 }  // namespace
 
 std::vector<Metric> obstacle_metrics() {
     return {
+        {.name = "impulse.balance_error",
+         .unit = "",
+         .doc = "Largest change of the fluid's x momentum that no impulse from bodies accounts for, over the largest impulse.",
+         .measure =
+             [](const RunRecord& run, const Reference&) {
+                 return largest_magnitude(missing_impulse(run)) / largest_magnitude(run.series("solid_impulse_x"));
+             },
+         .figure = [](const RunRecord& run, const Reference&) { return impulse_panel(run); }},
         {.name = "smoke.inside_solids",
          .unit = "",
          .doc = "Largest amount of smoke at any step in cells wholly inside a body.",

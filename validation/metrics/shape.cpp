@@ -43,7 +43,7 @@ Areas areas(const RunRecord& run, const Reference& ref) {
 /// The baselines' name of the scene's scheme.
 std::string baseline_scheme(const scene::Scene& scene) {
     const std::string &advection = scene.text("scheme.advection"), interpolation = scene.root().text_or("scheme.interpolation", "linear");
-    if (advection == "maccormack") return "MacCormack-clamped";
+    if (advection == "maccormack") return scene.root().text_or("scheme.limiter", "clamp") == "none" ? "MacCormack" : "MacCormack-clamped";
     if (advection == "semi_lagrangian") return interpolation == "linear" ? "SL-linear" : "SL-cubic";
     throw BadInput("no baseline for advection \"" + advection + "\"");
 }

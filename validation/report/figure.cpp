@@ -46,7 +46,8 @@ void add_slopes(Panel& panel, const CaseResult& result, const std::string& metri
     std::set<real> orders;
     for (const auto& v : result.variants)
         for (const Criterion& c : v.plan.accept) {
-            if (c.is_order() && c.metric == metric) orders.insert(std::round(c.low));
+            const bool order = c.test == Criterion::Test::order_at_least || c.test == Criterion::Test::order_within;
+            if (order && c.metric == metric) orders.insert(std::round(c.low));
         }
     if (panel.curves.empty()) return;
     const auto lowest =
