@@ -94,25 +94,20 @@ void sample_bounds(const RowView<D>& v, const Displacement<D>& x, int count, rea
     for (int i = 0; i < count; ++i) {
         const Between bx = between(x.d[0][i], v.shift[0]), by = between(x.d[1][i], v.shift[1]);
         const int sx = bx.w1 > 0 ? 1 : 0, sy = by.w1 > 0 ? v.stride[1] : 0;
-        int m = i + bx.lower + by.lower * v.stride[1];
-        real least = infinity, most = -infinity;
-        const auto see = [&](int at) {
-            const real a = v.q[at], b = v.q[at + sx];
-            least = std::min(least, std::min(a, b));
-            most = std::max(most, std::max(a, b));
+        const auto least = [&](int at) {  // of the nodes of one plane; pure, since g++ 12 mishandles captured variables in simd loops
+            return std::min(std::min(v.q[at], v.q[at + sx]), std::min(v.q[at + sy], v.q[at + sx + sy]));
         };
-        const auto see_plane = [&](int at) {
-            see(at);
-            see(at + sy);
-        };
-        if constexpr (D == 3) {
+        const auto most = [&](int at) { return std::max(std::max(v.q[at], v.q[at + sx]), std::max(v.q[at + sy], v.q[at + sx + sy])); };
+        const int m = i + bx.lower + by.lower * v.stride[1];
+        if constexpr (D == 2) {
+            low[i] = least(m);
+            high[i] = most(m);
+        } else {
             const Between bz = between(x.d[2][i], v.shift[2]);
-            m += bz.lower * v.stride[2];
-            see_plane(m + (bz.w1 > 0 ? v.stride[2] : 0));
+            const int below = m + bz.lower * v.stride[2], above = below + (bz.w1 > 0 ? v.stride[2] : 0);
+            low[i] = std::min(least(below), least(above));
+            high[i] = std::max(most(below), most(above));
         }
-        see_plane(m);
-        low[i] = least;
-        high[i] = most;
     }
 }
 

@@ -1,0 +1,106 @@
+// What a scene does not name costs nothing: no field, no pass, no byte, and no step allocates.
+#include "support/mac_solver.hpp"
+#include "support/test.hpp"
+
+#include "core/parallel.hpp"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // g++ 12 does not see that both halves are replaced together
+
+// Every way to allocate in this program is counted.
+void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* p = std::malloc(size)) return p;
+    throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace weir::mac {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+Names field_names(const Solver& solver) {
+    Names names;
+    for (const auto& field : solver.fields().fields) names.push_back(field.name);
+    return names;
+}
+Names pass_names(const Solver& solver) {
+    Names names;
+    for (const auto& pass : solver.passes().list()) names.push_back(pass.name);
+    return names;
+}
+
+const char* const stirred = "initial.velocity = { name = \"random\" }\n";
+
+std::unique_ptr<Solver> make(int dim, const std::string& rest) {
+    return smoke_kind().make(test::mac_scene(test::unit_box(dim, 16, stirred + rest)));
+}
+
+}  // namespace
+
+TEST_IN_2D_AND_3D("a scene without effects has velocity and pressure, and three passes") {
+    const auto flow = make(D, "");
+    flow->step(0.01);
+    EXPECT_EQ(field_names(*flow), (Names{"velocity", "pressure"}));
+    EXPECT_EQ(pass_names(*flow), (Names{"ghosts", "advect velocity", "project"}));
+}
+
+TEST_IN_2D_AND_3D("an effect brings the fields that it needs and no others; two effects share theirs") {
+    EXPECT_EQ(field_names(*make(D, "effects = { gravity = { g = " + test::list(D, "0.0") + " } }")), (Names{"velocity", "pressure"}));
+    EXPECT_EQ(field_names(*make(D, "effects = { buoyancy = { beta = 1.0 } }")), (Names{"velocity", "pressure", "temperature"}));
+    EXPECT_EQ(field_names(*make(D, "effects = { buoyancy = { alpha = 1.0 } }")), (Names{"velocity", "pressure", "smoke"}));
+    EXPECT_EQ(field_names(*make(D, "effects = { buoyancy = { beta = 1.0 }, cooling = { rate = 1.0 }, diffusion = { temperature = 0.1 } }")),
+              (Names{"velocity", "pressure", "temperature"}));
+}
+
+TEST_IN_2D_AND_3D("memory grows only with what is named") {
+    const auto bytes = [&](const std::string& rest) {
+        const auto flow = make(D, rest);
+        flow->step(0.01);
+        return flow->bytes();
+    };
+    const auto plain = bytes("");
+    EXPECT_EQ(bytes("effects = { gravity = { g = " + test::list(D, "1.0") + " } }"), plain);
+    EXPECT_GT(bytes("effects = { confinement = { epsilon = 0.1 } }"), plain);
+    EXPECT_GT(bytes("effects = { buoyancy = { alpha = 1.0 } }"), plain);
+}
+
+TEST_IN_2D_AND_3D("an effect of strength zero changes no bit") {
+    const auto without = make(D, ""),
+               with = make(D, "effects = { gravity = { g = " + test::list(D, "0.0") + " }, confinement = { epsilon = 0.0 } }");
+    for (int i = 0; i < 3; ++i) without->step(0.01), with->step(0.01);
+    EXPECT_TRUE(test::same_bits(*without, *with));
+}
+
+TEST_IN_2D_AND_3D("after the first, a step allocates nothing, whatever the scheme and the effects") {
+    set_threads(1);  // OpenMP's runtime allocates when it makes its threads
+    const std::string all =
+        "fluid = { viscosity = 0.01 }\neffects = { buoyancy = { alpha = 1.0, beta = 1.0 }, confinement = { epsilon = 0.1 }, "
+        "viscosity = {}, diffusion = { smoke = 0.01 }, decay = { rate = 0.1 } }\n"
+        "emitters = [ { shape = \"sphere\", centre = " +
+        test::list(D, "0.3") +
+        ", radius = 0.2, smoke = 1.0 } ]\n"
+        "solids = [ { shape = \"sphere\", centre = " +
+        test::list(D, "0.7") + ", radius = 0.2 } ]\n";
+    for (const char* advection : {"semi_lagrangian", "maccormack", "conservative"})
+        for (const std::string& rest : {std::string(), all}) {
+            const auto flow = make(D, std::string("scheme = { advection = \"") + advection + "\" }\n" + rest);
+            flow->step(0.01);
+            const long before = allocations;
+            flow->step(0.01);
+            flow->step(0.01);
+            EXPECT_EQ(allocations - before, 0) << advection << (rest.empty() ? " alone" : " with everything");
+        }
+}
+
+}  // namespace weir::mac
