@@ -5,6 +5,7 @@
 namespace weir::mac {
 
 scene::SolverKind smoke_kind();      // "mac"
+scene::SolverKind water_kind();      // "mac_water"
 scene::SolverKind transport_kind();  // "transport"
 scene::SolverKind poisson_kind();    // "poisson"
 

@@ -1,0 +1,107 @@
+#include "mac/extrapolate.hpp"
+
+#include "core/parallel.hpp"
+
+namespace weir::mac {
+
+/// The face next to I among those along a; around a periodic axis face n is face 0.
+template <int D>
+bool Extrapolation<D>::step(Index<D>& I, int a, int axis, int by) const {
+    const int i = I[axis] + by, n = frame_.cells[axis] + (axis == a ? 1 : 0);
+    if (frame_.periodic(axis)) {
+        I[axis] = ((i % frame_.cells[axis]) + frame_.cells[axis]) % frame_.cells[axis];
+        return true;
+    }
+    if (i < 0 || i >= n) return false;
+    I[axis] = i;
+    return true;
+}
+
+template <int D>
+void Extrapolation<D>::find_front(const Grid<std::uint8_t, D>& mark, int a) {
+    front_.clear();
+    const Index<D> n = mark.extent();
+    const std::uint8_t* m = mark.data();
+    std::size_t at = 0;
+    Index<D> I{};
+    const auto look = [&] {
+        if (m[at] == 0)
+            for (int axis = 0; axis < D; ++axis)
+                for (const int by : {-1, 1}) {
+                    Index<D> J = I;
+                    if (step(J, a, axis, by) && mark(J) == 1) {
+                        front_.push_back(I);
+                        return;
+                    }
+                }
+    };
+    for (int k = 0; k < (D == 3 ? n[D - 1] : 1); ++k)
+        for (int j = 0; j < n[1]; ++j)
+            for (int i = 0; i < n[0]; ++i, ++at) {
+                I[0] = i, I[1] = j;
+                if constexpr (D == 3) I[2] = k;
+                look();
+            }
+}
+
+template <int D>
+real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
+                             int layer) const {
+    const auto phi_at = [&](const Index<D>& face) { return phi(frame_.near(face, a, -1)) + phi(frame_.near(face, a, 0)); };
+    const real here = phi_at(I);
+    real weights = 0, sum = 0, plain = 0;
+    int count = 0;
+    for (int axis = 0; axis < D; ++axis) {
+        real plain_axis = 0, weights_axis = 0, sum_axis = 0;  // added axis by axis, the two sides as a pair: symmetric under mirrors
+        for (const int by : {-1, 1}) {
+            Index<D> J = I;
+            if (!step(J, a, axis, by) || mark(J) == 0 || mark(J) > layer) continue;
+            const real w = std::max(0.0, here - phi_at(J)) * frame_.inv_h[axis] * frame_.inv_h[axis];
+            weights_axis += w;
+            sum_axis += w * u(J);
+            plain_axis += u(J);
+            ++count;
+        }
+        weights += weights_axis;
+        sum += sum_axis;
+        plain += plain_axis;
+    }
+    // Inside solids, and where φ is flat, ∇φ says nothing: the plain mean of the finished neighbours.
+    return weights * frame_.h_min() > 1e-9 ? sum / weights : plain / count;
+}
+
+template <int D>
+void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const Grid<real, D>& phi, int layers) {
+    for (int a = 0; a < D; ++a) {
+        auto& mark = marks[static_cast<std::size_t>(a)];
+        find_front(mark, a);
+        for (int layer = 1; layer <= layers && !front_.empty(); ++layer) {
+            const int count = static_cast<int>(front_.size());
+            value_.resize(front_.size());
+            parallel_for(0, count, [&](int i) {
+                const auto at = static_cast<std::size_t>(i);
+                value_[at] = value(u[a], mark, phi, front_[at], a, layer);
+            });
+            for (std::size_t i = 0; i < front_.size(); ++i) {
+                u[a](front_[i]) = value_[i];
+                mark(front_[i]) = static_cast<std::uint8_t>(layer + 1);
+            }
+            next_.clear();
+            if (layer < layers)
+                for (const Index<D>& I : front_)
+                    for (int axis = 0; axis < D; ++axis)
+                        for (const int by : {-1, 1}) {
+                            Index<D> J = I;
+                            if (!step(J, a, axis, by) || mark(J) != 0) continue;
+                            mark(J) = 255;  // queued
+                            next_.push_back(J);
+                        }
+            front_.swap(next_);
+        }
+    }
+}
+
+template class Extrapolation<2>;
+template class Extrapolation<3>;
+
+}  // namespace weir::mac

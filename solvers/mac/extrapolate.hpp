@@ -1,0 +1,36 @@
+// Velocity beyond the liquid: ∇u·∇φ = 0 outwards from the faces whose velocity is known (Adalsteinsson & Sethian 1999; upwind
+// differences as in the fast sweeping of Zhao 2005). Faces are visited layer by layer from the known ones, each from finished layers
+// only: one visit a face, and no result depends on threads, on the direction of a sweep, or on a mirror.
+#pragma once
+#include "mac/water_frame.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace weir::mac {
+
+template <int D>
+using FaceMarks = std::array<Grid<std::uint8_t, D>, D>;
+
+template <int D>
+class Extrapolation {
+public:
+    Extrapolation() = default;
+    explicit Extrapolation(const Frame<D>& frame) : frame_(frame) {}
+    /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer.
+    void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const Grid<real, D>& phi, int layers);
+    std::size_t bytes() const { return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real); }
+
+private:
+    void find_front(const Grid<std::uint8_t, D>& mark, int a);
+    real value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
+               int layer) const;
+    bool step(Index<D>& I, int a, int axis, int by) const;
+
+    Frame<D> frame_;
+    std::vector<Index<D>> front_, next_;
+    std::vector<real> value_;
+};
+
+}  // namespace weir::mac

@@ -1,0 +1,227 @@
+// The half of the level set that keeps φ a distance in a band of cells, and measures what it encloses.
+#include "core/parallel.hpp"
+#include "mac/level_set.hpp"
+
+namespace weir::mac {
+
+template <int D>
+void LevelSet<D>::redistance() {
+    continue_into_solids();
+    for (const Index<D>& I : band_) layer_(I) = 0;
+    find_surface();
+    rescale_surface();
+    grow_band();
+    for (int layer = 2; layer <= layers_; ++layer) fill_layer(layer);
+}
+
+/// Layer 1: the cells with a neighbour on the other side of the surface. All others become ± cap until their layer is filled.
+template <int D>
+void LevelSet<D>::find_surface() {
+    band_.clear();
+    Index<D> I{};
+    const Index<D>& n = frame_.cells;
+    for (int k = 0; k < (D == 3 ? n[D - 1] : 1); ++k)
+        for (int j = 0; j < n[1]; ++j)
+            for (int i = 0; i < n[0]; ++i) {
+                I[0] = i, I[1] = j;
+                if constexpr (D == 3) I[2] = k;
+                const bool inside = phi(I) < 0;
+                bool beside = false;
+                for (int d = 0; d < D; ++d)
+                    for (const int by : {-1, 1}) {
+                        Index<D> J = I;
+                        if (!frame_.step(J, d, by) || (phi(J) < 0) == inside) continue;
+                        beside |= closed_.empty() || !(closed_(I) && closed_(J));
+                    }
+                if (beside) band_.push_back(I);
+            }
+    for (const Index<D>& J : band_) layer_(J) = 1;
+    layer_start_[0] = 0;
+    layer_start_[1] = band_.size();
+}
+
+/// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13). Only
+/// outside [3/4, 4/3], so that a surface that keeps its distance, above all one at rest, keeps it bit for bit.
+template <int D>
+void LevelSet<D>::rescale_surface() {
+    value_.resize(band_.size());
+    parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
+        const Index<D>& I = band_[static_cast<std::size_t>(i)];
+        const auto slope = slopes(I);
+        real central = 0, steepest = 0;
+        for (int d = 0; d < D; ++d) {
+            const real mean = 0.5 * (slope[0][d] + slope[1][d]) * frame_.inv_h[d];
+            central += mean * mean;
+            steepest = std::max({steepest, std::abs(slope[0][d]) * frame_.inv_h[d], std::abs(slope[1][d]) * frame_.inv_h[d]});
+        }
+        const real gradient = std::max({std::sqrt(central), steepest, 1e-6});
+        value_[static_cast<std::size_t>(i)] = gradient > 4.0 / 3 || gradient < 0.75 ? phi(I) / gradient : phi(I);
+    });
+    parallel_for(0, static_cast<int>(band_.size()),
+                 [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
+}
+
+/// Layers 2 .. layers_: neighbours of the layer before. Cells outside hold ± cap.
+template <int D>
+void LevelSet<D>::grow_band() {
+    for (int layer = 2; layer <= layers_; ++layer) {
+        const std::size_t from = layer_begin(layer - 1), to = layer_end(layer - 1);
+        for (std::size_t i = from; i < to; ++i)
+            for (int d = 0; d < D; ++d)
+                for (const int by : {-1, 1}) {
+                    Index<D> J = band_[i];
+                    if (!frame_.step(J, d, by) || layer_(J) != 0) continue;
+                    layer_(J) = static_cast<std::uint8_t>(layer);
+                    band_.push_back(J);
+                }
+        layer_start_[static_cast<std::size_t>(layer)] = band_.size();
+    }
+    for_each_cell(frame_.cells, [&](const Index<D>& I) {
+        if (layer_(I) == 0) phi(I) = phi(I) < 0 ? -cap() : cap();
+    });
+}
+
+/// Two visits: from finished layers, then once more with the values found inside the layer. Layer 2 keeps values that motion left within
+/// 0.3 h of a distance: they are smooth to second order where first-order differences are not, and curvature looks at them.
+template <int D>
+void LevelSet<D>::fill_layer(int layer) {
+    const std::size_t from = layer_begin(layer);
+    const int count = static_cast<int>(layer_end(layer) - from);
+    const real keep = layer == 2 ? 0.3 * frame_.h_min() : 0;
+    value_.resize(band_.size());
+    for (int visit = 0; visit < 2; ++visit) {
+        parallel_for(0, count, [&](int i) {
+            const std::size_t at = from + static_cast<std::size_t>(i);
+            const real distance = upwind_distance(band_[at], visit == 0 ? layer - 1 : layer), moved = phi(band_[at]);
+            value_[at] = std::abs(distance - moved) < keep ? moved : distance;
+        });
+        parallel_for(0, count, [&](int i) {
+            const std::size_t at = from + static_cast<std::size_t>(i);
+            phi(band_[at]) = value_[at];
+        });
+    }
+}
+
+/// Solves Σ_d max(0, (φ − φ_d)/h_d)² = 1 with φ_d the nearer neighbour of the same side along d, in layers up to `layer`.
+template <int D>
+real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
+    const bool inside = phi(I) < 0;
+    std::array<std::pair<real, real>, D> nearest;  // (distance, h)
+    for (int d = 0; d < D; ++d) {
+        real least = infinity;
+        for (const int by : {-1, 1}) {
+            Index<D> J = I;
+            if (!frame_.step(J, d, by) || layer_(J) == 0 || layer_(J) > layer || (phi(J) < 0) != inside) continue;
+            least = std::min(least, std::abs(phi(J)));
+        }
+        nearest[static_cast<std::size_t>(d)] = {least, frame_.h[d]};
+    }
+    std::sort(nearest.begin(), nearest.end());
+    real a = 0, b = 0, c = -1, distance = infinity;  // a φ² − 2 b φ + c = 0
+    for (const auto& [value, h] : nearest) {
+        if (value >= distance) break;
+        const real w = 1 / (h * h);
+        a += w, b += w * value, c += w * value * value;
+        const real root = b * b - a * c;
+        distance = (b + std::sqrt(std::max(0.0, root))) / a;
+    }
+    distance = std::min(distance, cap());
+    return inside ? -distance : distance;
+}
+
+template <int D>
+real fraction_below_plane(real value, const Vec<D>& g) {
+    real alpha = -value, steep = 0;
+    for (int d = 0; d < D; ++d) steep += std::abs(g[d]);
+    if (std::abs(value) >= 0.5 * steep) return value < 0 ? 1 : 0;
+    std::array<real, D> m;
+    int count = 0;
+    real norm = 1;
+    for (int d = 0; d < D; ++d)
+        if (std::abs(g[d]) > 1e-4 * steep) {  // a flatter axis changes the volume by less than 1e-8 and the formula loses digits
+            m[static_cast<std::size_t>(count++)] = std::abs(g[d]);
+            alpha += 0.5 * std::abs(g[d]);
+        }
+    for (int i = 0; i < count; ++i) norm *= m[static_cast<std::size_t>(i)] * (i + 1);
+    real volume = 0;
+    for (int corner = 0; corner < (1 << count); ++corner) {
+        real reach = alpha;
+        bool odd = false;
+        for (int i = 0; i < count; ++i)
+            if (corner >> i & 1) reach -= m[static_cast<std::size_t>(i)], odd = !odd;
+        if (reach <= 0) continue;
+        real power = 1;
+        for (int i = 0; i < count; ++i) power *= reach;
+        volume += odd ? -power : power;
+    }
+    return std::clamp(volume / norm, 0.0, 1.0);
+}
+
+template <int D>
+std::array<Vec<D>, 2> LevelSet<D>::slopes(const Index<D>& I) const {
+    std::array<Vec<D>, 2> slope;
+    for (int d = 0; d < D; ++d) {
+        Index<D> lower = I, upper = I;
+        const bool has_lower = frame_.step(lower, d, -1) && std::abs(phi(lower)) < cap();
+        const bool has_upper = frame_.step(upper, d, 1) && std::abs(phi(upper)) < cap();
+        slope[0][d] = has_lower ? phi(I) - phi(lower) : 0;
+        slope[1][d] = has_upper ? phi(upper) - phi(I) : slope[0][d];
+        if (!has_lower) slope[0][d] = slope[1][d];
+    }
+    return slope;
+}
+
+template <int D>
+real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
+    const real here = phi(I) - shift;
+    if (std::abs(here) > norm(frame_.h)) return here < 0 ? 1 : 0;
+    const auto slope = slopes(I);
+    real sum = 0;
+    for (int half = 0; half < (1 << D); ++half) {
+        Vec<D> g;
+        real value = here;
+        for (int d = 0; d < D; ++d) {
+            const bool up = half >> d & 1;
+            g[d] = 0.5 * slope[up ? 1 : 0][d];
+            value += up ? 0.5 * g[d] : -0.5 * g[d];
+        }
+        sum += fraction_below_plane(value, g);
+    }
+    return sum / (1 << D);
+}
+
+template <int D>
+real LevelSet<D>::volume() const {
+    return frame_.cell_volume() *
+           sum_over(frame_.cells, [&](const Index<D>& I) { return !closed_.empty() && closed_(I) ? 0.0 : fraction(I); });
+}
+
+/// dV/dshift, by a difference over half a cell; band by band of equal length, so that the order of the sum is fixed.
+template <int D>
+real LevelSet<D>::area() const {
+    const real width = 0.25 * frame_.h_min();
+    constexpr int block = 256;
+    const int count = static_cast<int>(layer_end(std::min(2, layers_)));
+    const real sum = ordered_sum((count + block - 1) / block, [&](int b) {
+        real part = 0;
+        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) {
+            const Index<D>& I = band_[static_cast<std::size_t>(i)];
+            if (closed_.empty() || !closed_(I)) part += fraction(I, width) - fraction(I, -width);
+        }
+        return part;
+    });
+    return frame_.cell_volume() / (2 * width) * sum;
+}
+
+template real fraction_below_plane(real, const Vec<2>&);
+template real fraction_below_plane(real, const Vec<3>&);
+template void LevelSet<2>::redistance();
+template void LevelSet<3>::redistance();
+template real LevelSet<2>::fraction(const Index<2>&, real) const;
+template real LevelSet<3>::fraction(const Index<3>&, real) const;
+template real LevelSet<2>::volume() const;
+template real LevelSet<3>::volume() const;
+template real LevelSet<2>::area() const;
+template real LevelSet<3>::area() const;
+
+}  // namespace weir::mac

@@ -1,0 +1,177 @@
+#include "mac/water_transfer.hpp"
+
+#include "core/parallel.hpp"
+
+namespace weir::mac {
+
+namespace {
+
+constexpr int slab_planes = 4;  // at least 2, so that slabs two apart share no face
+
+/// Position of sample (lo or hi of every axis) relative to the marker, per axis, in metres: what APIC's affine part multiplies.
+template <int D>
+Vec<D> lower_arm(const Frame<D>& frame, const Stencil<D>& stencil, int a) {
+    Vec<D> arm;
+    for (int d = 0; d < D; ++d) arm[d] = -stencil.of(a, d).f * frame.h[d];
+    return arm;
+}
+
+template <int D>
+void scatter(const Markers<D>& m, std::size_t p, const Frame<D>& frame, FaceSums<D>& sums) {
+    const Stencil<D> stencil(frame, m.position(p));
+    for (int a = 0; a < D; ++a) {
+        auto& sum = sums.sum[static_cast<std::size_t>(a)];
+        FaceSum* to = sum.data();
+        const real v = m.v[static_cast<std::size_t>(a)][p];
+        if (!m.carries_gradient()) {
+            for_each_sample(stencil, a, sum.extent(), [&](std::ptrdiff_t at, real w) {
+                to[at].momentum += w * v;
+                to[at].weight += w;
+            });
+            continue;
+        }
+        const Vec<D> arm = lower_arm(frame, stencil, a);
+        Vec<D> gradient;
+        real value = v;
+        for (int d = 0; d < D; ++d) {
+            gradient[d] = m.c[static_cast<std::size_t>(a * D + d)][p];
+            value += gradient[d] * arm[d];
+            gradient[d] *= stencil.of(a, d).step == 0 ? 0 : frame.h[d];
+        }
+        int corner = 0;  // bit d: the upper sample along d, in the order of for_each_sample
+        for_each_sample(stencil, a, sum.extent(), [&](std::ptrdiff_t at, real w) {
+            real here = value;
+            for (int d = 0; d < D; ++d) here += (corner >> d & 1) ? gradient[d] : 0;
+            to[at].momentum += w * here;
+            to[at].weight += w;
+            ++corner;
+        });
+    }
+}
+
+/// A periodic axis has its first face twice: both copies get the sum.
+template <int D>
+void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
+    for (int a = 0; a < D; ++a) {
+        if (!frame.periodic(a)) continue;
+        auto& sum = sums.sum[static_cast<std::size_t>(a)];
+        Index<D> lo{}, hi = sum.extent();
+        hi[a] = 1;
+        for_each_in(lo, hi, [&](Index<D> I) {
+            Index<D> last = I;
+            last[a] = frame.cells[a];
+            sum(I).momentum += sum(last).momentum;
+            sum(I).weight += sum(last).weight;
+            sum(last) = sum(I);
+        });
+    }
+}
+
+}  // namespace
+
+template <int D>
+void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums<D>& sums, MacVelocity<D>& u,
+                      std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known) {
+    for (auto& sum : sums.sum) {
+        const int planes = sum.extent()[D - 1];
+        const std::size_t plane = sum.size() / static_cast<std::size_t>(planes);
+        parallel_for(0, planes, [&](int k) {
+            FaceSum* first = sum.data() + static_cast<std::size_t>(k) * plane;
+            std::fill(first, first + plane, FaceSum{});
+        });
+    }
+    const int planes = frame.cells[D - 1], slabs = (planes + slab_planes - 1) / slab_planes;
+    const std::size_t plane_cells = product(frame.cells) / static_cast<std::size_t>(planes);
+    const auto scatter_slab = [&](int slab) {
+        const std::size_t from = static_cast<std::size_t>(slab * slab_planes) * plane_cells;
+        const std::size_t to = static_cast<std::size_t>(std::min((slab + 1) * slab_planes, planes)) * plane_cells - 1;
+        for (std::size_t p = markers.begin(from); p < markers.end(to); ++p) scatter(markers, p, frame, sums);
+    };
+    const int paired = slabs - slabs % 2;  // an odd last slab touches the first one around a periodic axis: it goes alone
+    for (int colour = 0; colour < 2; ++colour) parallel_for(0, paired / 2, [&](int i) { scatter_slab(2 * i + colour); });
+    if (paired < slabs) scatter_slab(slabs - 1);
+    join_periodic(frame, sums);
+    for (int a = 0; a < D; ++a) {
+        const auto& sum = sums.sum[static_cast<std::size_t>(a)];
+        auto& seen = known[static_cast<std::size_t>(a)];
+        const int face_planes = sum.extent()[D - 1];
+        const std::size_t plane = sum.size() / static_cast<std::size_t>(face_planes);
+        parallel_for(0, face_planes, [&](int k) {
+            const std::size_t first = static_cast<std::size_t>(k) * plane;
+            for (std::size_t i = first; i < first + plane; ++i) {
+                seen[i] = sum[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
+                if (seen[i]) u[a][i] = sum[i].momentum / sum[i].weight;
+            }
+        });
+    }
+}
+
+template <int D>
+void pic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& markers) {
+    parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
+        const auto p = static_cast<std::size_t>(i);
+        const Vec<D> v = sample(u, Stencil<D>(frame, markers.position(p)));
+        for (int a = 0; a < D; ++a) markers.v[static_cast<std::size_t>(a)][p] = v[a];
+    });
+}
+
+template <int D>
+void flip_to_markers(const MacVelocity<D>& u, MacVelocity<D>& before, real beta, const Frame<D>& frame, Markers<D>& markers) {
+    for (int a = 0; a < D; ++a) {  // β v + Σ w (u − β u_before): one interpolation instead of two
+        const int planes = u[a].extent()[D - 1];
+        const std::size_t plane = u[a].size() / static_cast<std::size_t>(planes);
+        parallel_for(0, planes, [&](int k) {
+            const std::size_t first = static_cast<std::size_t>(k) * plane;
+            for (std::size_t i = first; i < first + plane; ++i) before[a][i] = u[a][i] - beta * before[a][i];
+        });
+    }
+    parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
+        const auto p = static_cast<std::size_t>(i);
+        const Vec<D> v = sample(before, Stencil<D>(frame, markers.position(p)));
+        for (int a = 0; a < D; ++a) {
+            real& vp = markers.v[static_cast<std::size_t>(a)][p];
+            vp = beta * vp + v[a];
+        }
+    });
+}
+
+template <int D>
+void apic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& markers) {
+    parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
+        const auto p = static_cast<std::size_t>(i);
+        const Stencil<D> stencil(frame, markers.position(p));
+        for (int a = 0; a < D; ++a) {
+            real v = 0;
+            Vec<D> gradient{};
+            int corner = 0;
+            const real* face = u[a].data();
+            for_each_sample(stencil, a, u[a].extent(), [&](std::ptrdiff_t at, real w) {
+                v += w * face[at];
+                for (int d = 0; d < D; ++d) {  // ∂w/∂x_d = ± 1/h_d times the weights along the other axes
+                    real slope = (corner >> d & 1) ? frame.inv_h[d] : -frame.inv_h[d];
+                    if (stencil.of(a, d).step == 0) slope = 0;
+                    for (int o = 0; o < D; ++o)
+                        if (o != d) slope *= (corner >> o & 1) ? stencil.of(a, o).f : 1 - stencil.of(a, o).f;
+                    gradient[d] += slope * face[at];
+                }
+                ++corner;
+            });
+            markers.v[static_cast<std::size_t>(a)][p] = v;
+            for (int d = 0; d < D; ++d) markers.c[static_cast<std::size_t>(a * D + d)][p] = gradient[d];
+        }
+    });
+}
+
+template class FaceSums<2>;
+template class FaceSums<3>;
+#define WEIR_INSTANTIATE(D)                                                                                    \
+    template void markers_to_faces(const Markers<D>&, const Frame<D>&, FaceSums<D>&, MacVelocity<D>&,          \
+                                   std::array<Grid<std::uint8_t, D>, D>&);                                     \
+    template void pic_to_markers(const MacVelocity<D>&, const Frame<D>&, Markers<D>&);                         \
+    template void flip_to_markers(const MacVelocity<D>&, MacVelocity<D>&, real, const Frame<D>&, Markers<D>&); \
+    template void apic_to_markers(const MacVelocity<D>&, const Frame<D>&, Markers<D>&);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::mac
