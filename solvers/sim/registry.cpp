@@ -1,13 +1,15 @@
 #include "sim/registry.hpp"
 
 #include "mac/kinds.hpp"
+#include "pbf/solver.hpp"
 
 #include <stdexcept>
 
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {mac::smoke_kind(), mac::water_kind(), mac::transport_kind(), mac::poisson_kind()};
+    static const std::vector<scene::SolverKind> kinds = {mac::smoke_kind(), mac::water_kind(), mac::transport_kind(), mac::poisson_kind(),
+                                                         pbf::kind()};
     return kinds;
 }
 

@@ -1,0 +1,127 @@
+#include "particles/cell_sort.hpp"
+
+#include "core/error.hpp"
+
+#include <algorithm>
+
+namespace weir::particles {
+
+namespace {
+
+struct Range {
+    real lo = infinity, hi = -infinity;
+    bool finite = true;
+};
+
+Range range_of(const real* x, int count) {
+    std::vector<Range> parts(static_cast<std::size_t>(threads()));
+    for_chunks(count, static_cast<int>(parts.size()), [&](int t, int begin, int end) {
+        Range r;
+        for (int i = begin; i < end; ++i) {
+            r.lo = std::min(r.lo, x[i]);
+            r.hi = std::max(r.hi, x[i]);
+            r.finite = r.finite && std::isfinite(x[i]);
+        }
+        parts[static_cast<std::size_t>(t)] = r;
+    });
+    Range all;
+    for (const Range& r : parts) all = {std::min(all.lo, r.lo), std::max(all.hi, r.hi), all.finite && r.finite};
+    return all;
+}
+
+}  // namespace
+
+void CellSort::cover(const Coordinates& x, int count, real cell_size) {
+    std::array<real, 3> width{0, 0, 0};
+    for (std::size_t a = 0; a < 3; ++a) {
+        origin_[a] = 0;
+        if (!x[a] || count == 0) continue;
+        const Range r = range_of(x[a], count);
+        if (!r.finite) throw NumericalFailure("position", "a particle's position is not finite");
+        origin_[a] = r.lo;
+        width[a] = r.hi - r.lo;
+    }
+    const real most = 1e6 + 8.0 * count;  // cells: more than this costs more memory than the particles themselves
+    for (real size = cell_size;; size *= 1.26) {
+        real cells = 1;
+        for (std::size_t a = 0; a < 3; ++a) cells *= std::floor(width[a] / size) + 1;
+        if (cells > most) continue;
+        per_cell_ = 1 / size;
+        for (std::size_t a = 0; a < 3; ++a) n_[a] = static_cast<int>(std::floor(width[a] * per_cell_)) + 1;
+        return;
+    }
+}
+
+int CellSort::cell(const Coordinates& x, int i) const {
+    int c = 0;
+    for (std::size_t a = 3; a-- > 0;) {
+        const int k = x[a] ? std::min(static_cast<int>((x[a][i] - origin_[a]) * per_cell_), n_[a] - 1) : 0;
+        c = c * n_[a] + k;
+    }
+    return c;
+}
+
+/// Turns the chunks' histograms into the places where each chunk's particles of each cell begin, and fills the cell starts.
+void CellSort::place_starts(int chunks) {
+    const int cells = n_[0] * n_[1] * n_[2];
+    std::vector<int> before(static_cast<std::size_t>(chunks) + 1, 0);
+    for_chunks(cells, chunks, [&](int t, int begin, int end) {
+        int sum = 0;
+        for (const auto& h : histograms_)
+            for (int c = begin; c < end; ++c) sum += h[static_cast<std::size_t>(c)];
+        before[static_cast<std::size_t>(t) + 1] = sum;
+    });
+    for (std::size_t t = 0; t < static_cast<std::size_t>(chunks); ++t) before[t + 1] += before[t];
+    for_chunks(cells, chunks, [&](int t, int begin, int end) {
+        int at = before[static_cast<std::size_t>(t)];
+        for (int c = begin; c < end; ++c) {
+            start_[static_cast<std::size_t>(c)] = at;
+            for (auto& h : histograms_) {
+                int& mine = h[static_cast<std::size_t>(c)];
+                const int size = mine;
+                mine = at;
+                at += size;
+            }
+        }
+    });
+    start_[static_cast<std::size_t>(cells)] = before.back();
+}
+
+void CellSort::sort(const Coordinates& x, int count, real cell_size) {
+    cover(x, count, cell_size);
+    count_ = count;
+    const auto cells = static_cast<std::size_t>(n_[0]) * static_cast<std::size_t>(n_[1]) * static_cast<std::size_t>(n_[2]);
+    const int chunks = threads();
+    order_.resize(static_cast<std::size_t>(count));
+    cell_.resize(static_cast<std::size_t>(count));
+    unsorted_.resize(static_cast<std::size_t>(count));
+    start_.resize(cells + 1);
+    histograms_.resize(static_cast<std::size_t>(chunks));
+    for_chunks(count, chunks, [&](int t, int begin, int end) {
+        auto& histogram = histograms_[static_cast<std::size_t>(t)];
+        histogram.assign(cells, 0);
+        for (int i = begin; i < end; ++i) {
+            const int c = cell(x, i);
+            unsorted_[static_cast<std::size_t>(i)] = c;
+            ++histogram[static_cast<std::size_t>(c)];
+        }
+    });
+    place_starts(chunks);
+    for_chunks(count, chunks, [&](int t, int begin, int end) {
+        auto& next = histograms_[static_cast<std::size_t>(t)];
+        for (int i = begin; i < end; ++i) {
+            const int c = unsorted_[static_cast<std::size_t>(i)];
+            const auto to = static_cast<std::size_t>(next[static_cast<std::size_t>(c)]++);
+            order_[to] = i;
+            cell_[to] = c;
+        }
+    });
+}
+
+std::size_t CellSort::bytes() const {
+    std::size_t ints = order_.capacity() + cell_.capacity() + start_.capacity() + unsorted_.capacity();
+    for (const auto& h : histograms_) ints += h.capacity();
+    return ints * sizeof(int);
+}
+
+}  // namespace weir::particles

@@ -1,0 +1,42 @@
+// Particles sorted by the cell they are in: hash, sort, cell starts (Green 2010, "Particle Simulation using CUDA", section 5), with a
+// counting sort on threads. Linear cell order, x fastest, so that the three x-neighbours of a cell are one contiguous run. The sort is
+// stable, so the order does not depend on the number of threads.
+#pragma once
+#include "particles/chunks.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace weir::particles {
+
+class CellSort {
+public:
+    /// Sorts `count` points into cells at least `cell_size` wide that cover their bounding box. Where points are so sparse that cells would
+    /// outnumber them by far, cells are wider. Throws NumericalFailure when a coordinate is not finite.
+    void sort(const Coordinates& x, int count, real cell_size);
+
+    int count() const { return count_; }
+    /// Where each sorted particle came from.
+    const std::vector<int>& order() const { return order_; }
+    /// Cell of each sorted particle.
+    const std::vector<int>& cell_of() const { return cell_; }
+    /// Cell c holds sorted particles start()[c] .. start()[c + 1] - 1.
+    const std::vector<int>& start() const { return start_; }
+    const std::array<int, 3>& cells() const { return n_; }
+    std::size_t bytes() const;
+
+private:
+    void cover(const Coordinates& x, int count, real cell_size);
+    int cell(const Coordinates& x, int i) const;
+    void place_starts(int chunks);
+
+    int count_ = 0;
+    std::array<int, 3> n_{1, 1, 1};
+    std::array<real, 3> origin_{0, 0, 0};
+    real per_cell_ = 1;  // 1 / cell size
+    std::vector<int> order_, cell_, start_;
+    std::vector<int> unsorted_;                 // cell of each particle before sorting
+    std::vector<std::vector<int>> histograms_;  // one a chunk; later: where the chunk's next particle of the cell goes
+};
+
+}  // namespace weir::particles

@@ -1,0 +1,43 @@
+// The box in which particles live, its sides, and the solids inside: where particles are kept, what leaves, what repeats.
+#pragma once
+#include "geometry/sides.hpp"
+#include "geometry/solids.hpp"
+#include "particles/kernels.hpp"
+#include "particles/pairs.hpp"
+#include "particles/passes.hpp"
+#include "particles/walls.hpp"
+#include "scene/scene.hpp"
+
+namespace weir::particles {
+
+template <int D>
+struct Domain {
+    Vec<D> lo{}, hi{};
+    Vec<D> keep_lo{}, keep_hi{};  // `margin` inside the walls; infinite where there is none
+    geometry::Sides<D> sides;
+    geometry::Solids<D> solids;
+    real spacing = 0;  // of particles at rest [m]
+    real margin = 0;   // no particle comes closer to a wall or solid [m]
+
+    Domain() = default;
+    /// From "grid" (whose cells must be cubes: their width is the particle spacing), "sides" and "solids".
+    explicit Domain(const scene::Scene& scene);
+
+    bool walled(int axis, int end) const {
+        const auto kind = sides.side(axis, end).kind;
+        return kind == geometry::SideKind::wall || kind == geometry::SideKind::moving_wall;
+    }
+    Vec<D> centre() const { return 0.5 * (lo + hi); }
+    Frame frame() const;
+    /// The nearest place inside the walls and outside the solids.
+    Vec<D> kept(Vec<D> x) const;
+    Vec<D> wrapped(Vec<D> x) const;
+    /// Beyond an open side (where it is taken out), or, which must never be, beyond a wall or inside a solid.
+    bool left(const Vec<D>& x) const;
+    bool outside(const Vec<D>& x) const;
+    /// The walls in the coordinates of the fast path. density and gradient: the kernels that see them.
+    template <class Params>
+    Params walls(const Kernel<D>& density, const Kernel<D>& gradient) const;
+};
+
+}  // namespace weir::particles

@@ -1,0 +1,82 @@
+#include "particles/emitters.hpp"
+
+#include <algorithm>
+
+namespace weir::particles {
+
+namespace {
+
+/// Of every lattice column of the shape along `axis`, the site where the flow enters.
+template <int D>
+std::vector<Vec<D>> upstream_sites(const geometry::Shape<D>& shape, const Domain<D>& domain, int axis, bool forward) {
+    std::vector<Vec<D>> sites;
+    Index<D> cells, column{};
+    for (int a = 0; a < D; ++a) cells[a] = static_cast<int>(std::lround((domain.hi[a] - domain.lo[a]) / domain.spacing));
+    const int depth = cells[axis];
+    cells[axis] = 1;
+    for (std::size_t c = 0; c < product(cells); ++c) {
+        for (int k = 0; k < depth; ++k) {
+            Index<D> at = column;
+            at[axis] = forward ? k : depth - 1 - k;
+            const Vec<D> x = domain.lo + domain.spacing * (to_vec(at) + Vec<D>::constant(0.5));
+            if (!shape.contains(x)) continue;
+            sites.push_back(x);
+            break;
+        }
+        for (int a = 0; a < D && ++column[a] == cells[a]; ++a) column[a] = 0;
+    }
+    return sites;
+}
+
+}  // namespace
+
+template <int D>
+Emitters<D>::Emitters(const scene::Scene& scene, const Domain<D>& domain) {
+    for (const auto& table : scene.root().tables("emitters")) {
+        Emitter e;
+        if (table.has("velocity")) e.velocity = table.vec<D>("velocity");
+        e.start = table.number_or("start", 0);
+        e.end = table.number_or("end", infinity);
+        int axis = 0;
+        for (int a = 1; a < D; ++a)
+            if (std::abs(e.velocity[a]) > std::abs(e.velocity[axis])) axis = a;
+        if (e.velocity[axis] == 0) scene.refuse("emitters", "an emitter of particles needs a velocity");
+        e.period = domain.spacing / std::abs(e.velocity[axis]);
+        e.sites = upstream_sites<D>(*geometry::make_shape<D>(table), domain, axis, e.velocity[axis] > 0);
+        emitters_.push_back(std::move(e));
+    }
+    if (scene.has("sinks")) sinks_ = geometry::make_shapes<D>(scene.root().tables("sinks"));
+    layers_.assign(emitters_.size(), 0);
+}
+
+template <int D>
+void Emitters<D>::apply(Fluid<D>& fluid, real dt) {
+    for (std::size_t e = 0; e < emitters_.size(); ++e) {
+        const Emitter& emitter = emitters_[e];
+        for (;; ++layers_[e]) {
+            const real born = emitter.start + static_cast<real>(layers_[e]) * emitter.period;
+            if (born > emitter.end || born > fluid.time + dt) break;
+            const real age = std::max<real>(0, fluid.time - born);  // layers due within a step are spread along the flow
+            for (const auto& site : emitter.sites) fluid.add(fluid.domain.kept(site + age * emitter.velocity), emitter.velocity);
+        }
+    }
+    if (!sinks_.empty())
+        fluid.remove_if([&](int i) {
+            const Vec<D> x = fluid.position(i);
+            return std::any_of(sinks_.begin(), sinks_.end(), [&](const auto& s) { return s->contains(x); });
+        });
+}
+
+template <int D>
+void Emitters<D>::save(Checkpoint& to) const {
+    to.put("particles.layers", layers_);
+}
+template <int D>
+void Emitters<D>::restore(const Checkpoint& from) {
+    from.get("particles.layers", layers_);
+}
+
+template class Emitters<2>;
+template class Emitters<3>;
+
+}  // namespace weir::particles

@@ -1,0 +1,107 @@
+// What every particle solver carries: positions and velocities in double precision, one array an axis, and the box they live in.
+// The mass of a particle is rho0 d^D: a block of n particles is n d^D of liquid, with no hidden volume factor.
+#pragma once
+#include "core/checkpoint.hpp"
+#include "core/solver.hpp"
+#include "particles/domain.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace weir::particles {
+
+template <int D>
+struct Fluid {
+    Domain<D> domain;
+    std::array<std::vector<real>, D> x, v;  // [m], [m/s]
+    std::vector<real> id;                   // in order of birth; particles change places in the arrays
+    std::vector<real> density;              // of the last step [kg/m^3]
+    real rho0 = 1, mass = 1;                // [kg/m^3], [kg] (2D: per metre of depth)
+    real time = 0;                          // [s]
+    std::int64_t steps = 0;
+    real next_id = 0;
+    Vec<D> gravity{};  // for the potential energy
+
+    Fluid() = default;
+    /// Particles of the scene's "liquid" shapes on the lattice of the grid's cell centres, outside solids.
+    explicit Fluid(const scene::Scene& scene);
+
+    int count() const { return static_cast<int>(id.size()); }
+    Vec<D> position(int i) const { return get(x, i); }
+    Vec<D> velocity(int i) const { return get(v, i); }
+    static Vec<D> get(const std::array<std::vector<real>, D>& f, int i) {
+        Vec<D> value;
+        for (int a = 0; a < D; ++a) value[a] = f[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)];
+        return value;
+    }
+    static void put(std::array<std::vector<real>, D>& f, int i, const Vec<D>& value) {
+        for (int a = 0; a < D; ++a) f[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)] = value[a];
+    }
+    static Coordinates coordinates(const std::array<std::vector<real>, D>& f) {
+        Coordinates c{nullptr, nullptr, nullptr};
+        for (std::size_t a = 0; a < D; ++a) c[a] = f[a].data();
+        return c;
+    }
+    void add(const Vec<D>& at, const Vec<D>& velocity);
+    /// Takes out the particles for which gone(i) holds; the others keep their order.
+    template <class F>
+    void remove_if(F&& gone);
+    /// Repeats periodic axes, takes out what left through open sides.
+    void cross_sides();
+    /// Rearranges the arrays so that particle k is the former order[k].
+    void reorder(const std::vector<int>& order);
+    /// The largest speed [m/s]. Throws NumericalFailure naming the quantity when a position or velocity is not finite.
+    real max_speed() const;
+
+    void show(FieldSet& fields) const;
+    std::vector<Integral> integrals() const;
+    void save(Checkpoint& to) const;
+    void restore(const Checkpoint& from);
+    std::size_t bytes() const { return (2 * D + 2) * id.capacity() * sizeof(real); }
+
+private:
+    std::vector<real> scratch_;
+};
+
+template <int D>
+template <class F>
+void Fluid<D>::remove_if(F&& gone) {
+    int to = 0;
+    for (int i = 0; i < count(); ++i) {
+        if (gone(i)) continue;
+        const auto from = static_cast<std::size_t>(i), at = static_cast<std::size_t>(to++);
+        for (std::size_t a = 0; a < D; ++a) x[a][at] = x[a][from], v[a][at] = v[a][from];
+        id[at] = id[from];
+        density[at] = density[from];
+    }
+    for (std::size_t a = 0; a < D; ++a) x[a].resize(static_cast<std::size_t>(to)), v[a].resize(static_cast<std::size_t>(to));
+    id.resize(static_cast<std::size_t>(to));
+    density.resize(static_cast<std::size_t>(to));
+}
+
+/// Sum of f(i) over [0, count) in blocks of fixed size, so that the sum does not depend on the number of threads.
+template <class F>
+real block_sum(int count, F&& f) {
+    constexpr int block = 2048;
+    return ordered_sum((count + block - 1) / block, [&](int b) {
+        real sum = 0;
+        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) sum += f(i);
+        return sum;
+    });
+}
+template <class F>
+real block_max(int count, F&& f) {
+    constexpr int block = 2048;
+    if (count == 0) return 0;
+    return ordered_max((count + block - 1) / block, [&](int b) {
+        real largest = -infinity;
+        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) {
+            const real value = f(i);
+            if (value > largest || std::isnan(value)) largest = value;
+            if (std::isnan(largest)) break;
+        }
+        return largest;
+    });
+}
+
+}  // namespace weir::particles

@@ -1,0 +1,79 @@
+/* What every particle method shares: kernels as functions of the squared distance, and walls.
+   A C subset over REAL (a scalar or a vector of lanes) and SCALAR: no references, templates or overloads. A prelude defines WEIR_FN,
+   REAL, SCALAR, WEIR_PARAM (where parameters live), MAX0(x) = max(0, x) and RSQRT(x) = 1 / sqrt(x). Factors such as sigma m / rho0
+   stand in the parameters, so the functions here are the bare profiles. A slope s means: gradient of W at i = s (x_i - x_j), s <= 0. */
+
+/* poly6: (h^2 - r^2)^3                                                                            Mueller et al. 2003, eq. 20 */
+WEIR_FN REAL poly6(REAL r2, SCALAR h2) {
+    REAL d = MAX0(h2 - r2);
+    return d * d * d;
+}
+
+/* spiky, slope of (h - r)^3 without its factor -3: (h - r)^2 / r                                  Mueller et al. 2003, eq. 21 */
+WEIR_FN REAL spiky_slope(REAL r2, SCALAR h, SCALAR guard) {
+    REAL inv_r = RSQRT(r2 + guard);
+    REAL d = MAX0(h - r2 * inv_r);
+    return d * d * inv_r;
+}
+
+/* viscosity kernel: Laplacian h - r                                                               Mueller et al. 2003, eq. 22 */
+WEIR_FN REAL linear_laplacian(REAL r2, SCALAR h, SCALAR guard) { return MAX0(h - r2 * RSQRT(r2 + guard)); }
+
+/* cubic spline as truncated powers: (h - r)^3 - 4 (h/2 - r)^3, and its slope without -3 */
+WEIR_FN REAL cubic(REAL r2, SCALAR h, SCALAR guard) {
+    REAL r = r2 * RSQRT(r2 + guard);
+    REAL outer = MAX0(h - r), inner = MAX0((SCALAR)0.5 * h - r);
+    return outer * outer * outer - (SCALAR)4 * inner * inner * inner;
+}
+WEIR_FN REAL cubic_slope(REAL r2, SCALAR h, SCALAR guard) {
+    REAL inv_r = RSQRT(r2 + guard);
+    REAL r = r2 * inv_r;
+    REAL outer = MAX0(h - r), inner = MAX0((SCALAR)0.5 * h - r);
+    return (outer * outer - (SCALAR)4 * inner * inner) * inv_r;
+}
+
+/* Wendland C2: (h - r)^4 (h + 4 r), and its slope without -20: (h - r)^3 */
+WEIR_FN REAL wendland(REAL r2, SCALAR h, SCALAR guard) {
+    REAL r = r2 * RSQRT(r2 + guard);
+    REAL d = MAX0(h - r);
+    return d * d * d * d * (h + (SCALAR)4 * r);
+}
+WEIR_FN REAL wendland_slope(REAL r2, SCALAR h, SCALAR guard) {
+    REAL d = MAX0(h - r2 * RSQRT(r2 + guard));
+    return d * d * d;
+}
+
+/* A function of the distance s to a wall that vanishes beyond the support: u^2 sum_k c_k T_k(2 u - 1), u = 1 - s / h (Clenshaw 1955). */
+WEIR_FN REAL wall_series(REAL s, WEIR_PARAM SCALAR* c, SCALAR inv_h) {
+    REAL u = MAX0((SCALAR)1 - s * inv_h);
+    REAL t = (SCALAR)2 * u - (SCALAR)1;
+    REAL b1 = t * (SCALAR)0, b2 = b1;
+    int k;
+    for (k = WEIR_WALL_TERMS - 1; k > 0; --k) {
+        REAL b0 = (SCALAR)2 * t * b1 - b2 + c[k];
+        b2 = b1;
+        b1 = b0;
+    }
+    return u * u * (t * b1 - b2 + c[0]);
+}
+
+/* Along one axis: the part of the kernel that lies behind the two walls, and the gradient of that part along the axis. The gradient of
+   the part behind a wall points to the wall, as the gradient of the density of real particles there would. */
+WEIR_FN REAL wall_part(REAL x, WEIR_PARAM WallParams* w, int axis) {
+    return wall_series(x - w->lo[axis], w->fraction, w->inv_h) + wall_series(w->hi[axis] - x, w->fraction, w->inv_h);
+}
+WEIR_FN REAL wall_pull(REAL x, WEIR_PARAM WallParams* w, int axis) {
+    return wall_series(w->hi[axis] - x, w->slope, w->inv_h) - wall_series(x - w->lo[axis], w->slope, w->inv_h);
+}
+
+/* What walls and solids add at one particle: out[3] is their part of the kernel, out[0..2] its gradient. Where several stand near, parts
+   combine as 1 - product (1 - part): exact for one plane; at edges and corners exact for kernels that are products of their marginals.
+   part, pull: of the walls along each axis. solid: gradient x, y, z and part of the solids. */
+WEIR_FN void walls_combined(const REAL* part, const REAL* pull, const REAL* solid, REAL* out) {
+    REAL open_x = (SCALAR)1 - part[0], open_y = (SCALAR)1 - part[1], open_z = (SCALAR)1 - part[2], open_solid = (SCALAR)1 - solid[3];
+    REAL open = open_x * open_y * open_z;
+    out[0] = pull[0] * open_y * open_z * open_solid + open * solid[0];
+    out[1] = open_x * pull[1] * open_z * open_solid + open * solid[1];
+    out[2] = open_x * open_y * pull[2] * open_solid + open * solid[2];
+    out[3] = (SCALAR)1 - open * open_solid;
+}

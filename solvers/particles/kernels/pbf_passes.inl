@@ -1,0 +1,85 @@
+/* The passes of PBF over one chunk of the list, for one kernel (WEIR_DENSITY, WEIR_SLOPE) and one instruction set. */
+
+#include "particles/kernels/pbf_pair.inl"
+
+/* Density and lambda of every particle: reads `from`, writes x, y, z, lambda to `to`. */
+static void lambda(const PbfPass& a, const ListChunk& chunk) {
+    const single::PbfParams* p = a.p;
+    for (int s = chunk.begin; s < chunk.end; ++s) {
+        const int first = s * lanes;
+        const Four i = load(a.from, first);
+        vf rho = broadcast(p->self), neighbours2 = broadcast(0), gx = neighbours2, gy = neighbours2, gz = neighbours2;
+        const std::uint32_t* row = chunk.entries + a.first[s];
+        for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
+            const Four j = gather(a.from, row);
+            prefetch(row);
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
+            const vf r2 = dx * dx + dy * dy + dz * dz;
+            const vf slope = pbf_slope(r2, p);
+            rho += pbf_density(r2, p);
+            neighbours2 += slope * slope * r2;
+            gx += slope * dx;
+            gy += slope * dy;
+            gz += slope * dz;
+        }
+        const Four w = walls_at(i, a.walls, a.solid, first);
+        rho += w.w;
+        gx += w.x;
+        gy += w.y;
+        gz += w.z;
+        const vf own2 = gx * gx + gy * gy + gz * gz;
+        store(a.to, first, live(first, a.count), {i.x, i.y, i.z, pbf_lambda(rho, neighbours2, own2, p)});
+        store_numbers(a.density, first, live(first, a.count), rho);
+    }
+}
+
+/* Moves every particle by its correction and keeps it inside the walls: reads `from`, writes `to`. */
+template <bool Pressure>
+static void correct(const PbfPass& a, const ListChunk& chunk) {
+    const single::PbfParams* p = a.p;
+    for (int s = chunk.begin; s < chunk.end; ++s) {
+        const int first = s * lanes;
+        const Four i = load(a.from, first);
+        vf cx = broadcast(0), cy = cx, cz = cx;
+        const std::uint32_t* row = chunk.entries + a.first[s];
+        for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
+            const Four j = gather(a.from, row);
+            prefetch(row);
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
+            const vf r2 = dx * dx + dy * dy + dz * dz;
+            const vf factor = Pressure ? pbf_correction_with_pressure(r2, i.w + j.w, p) : pbf_correction(r2, i.w + j.w, p);
+            cx += factor * dx;
+            cy += factor * dy;
+            cz += factor * dz;
+        }
+        const Four w = walls_at(i, a.walls, a.solid, first);
+        cx += i.w * w.x;
+        cy += i.w * w.y;
+        cz += i.w * w.z;
+        const float relax = p->relaxation;
+        store(a.to, first, live(first, a.count),
+              {kept(i.x + relax * cx, a.walls, 0), kept(i.y + relax * cy, a.walls, 1), kept(i.z + relax * cz, a.walls, 2), broadcast(0)});
+    }
+}
+
+/* Density alone, of `from`. */
+static void density(const PbfPass& a, const ListChunk& chunk) {
+    const single::PbfParams* p = a.p;
+    for (int s = chunk.begin; s < chunk.end; ++s) {
+        const int first = s * lanes;
+        const Four i = load(a.from, first);
+        vf rho = broadcast(p->self);
+        const std::uint32_t* row = chunk.entries + a.first[s];
+        for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
+            const Four j = gather(a.from, row);
+            prefetch(row);
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
+            rho += pbf_density(dx * dx + dy * dy + dz * dz, p);
+        }
+        store_numbers(a.density, first, live(first, a.count), rho + walls_at(i, a.walls, a.solid, first).w);
+    }
+}
+
+static constexpr PassTable::Pbf table{lambda, correct<false>, correct<true>, density};
+
+#include "particles/kernels/finish_passes.inl"

@@ -1,0 +1,94 @@
+// The passes over pairs for one instruction set. CMake compiles this file three times, with WEIR_ISA = 128, 256 and 512 and the flags of
+// that processor; run time picks one (isa.cpp). Nothing here may be an inline function that other files also use.
+#include "particles/list_build.hpp"
+#include "particles/passes.hpp"
+#include "particles/simd.hpp"
+
+namespace weir::particles {
+namespace {
+namespace single = weir::particles::single;
+
+#define WEIR_FN static inline
+#define REAL vf
+#define SCALAR float
+#define WEIR_PARAM const
+#define MAX0(x) max0(x)
+#define RSQRT(x) rsqrt(x)
+using single::PbfParams;
+using single::WallParams;
+#include "particles/kernels/pair.inl"
+
+inline void prefetch(const std::uint32_t* row) { _mm_prefetch(reinterpret_cast<const char*>(row + 16 * lanes), _MM_HINT_T0); }
+inline int live(int first, int count) { return first + lanes <= count ? lanes : count - first; }
+inline void store_numbers(float* to, int first, int count, vf value) {
+    for (int l = 0; l < count; ++l) to[first + l] = value[l];
+}
+inline vf kept(vf x, const WallParams* w, int axis) { return lower(higher(x, broadcast(w->keep_lo[axis])), broadcast(w->keep_hi[axis])); }
+
+/// Walls and solids at the particles of one slice (walls_combined). Most slices have none near; one near a wall is near one or two.
+inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int first) {
+    const vf zero = broadcast(0);
+    const vf x[3] = {i.x, i.y, i.z};
+    vf part[3] = {zero, zero, zero}, pull[3] = {zero, zero, zero};
+    bool any = solid != nullptr;
+    for (int a = 0; a < 3; ++a) {
+        const vf above = x[a] - w->lo[a], below = w->hi[a] - x[a];
+        if (any_below(above, w->reach)) {
+            part[a] += wall_series(above, w->fraction, w->inv_h);
+            pull[a] -= wall_series(above, w->slope, w->inv_h);
+            any = true;
+        }
+        if (any_below(below, w->reach)) {
+            part[a] += wall_series(below, w->fraction, w->inv_h);
+            pull[a] += wall_series(below, w->slope, w->inv_h);
+            any = true;
+        }
+    }
+    if (!any) return {zero, zero, zero, zero};
+    vf body[4] = {zero, zero, zero, zero}, out[4];
+    if (solid) {
+        const Four s = load(solid, first);
+        body[0] = s.x, body[1] = s.y, body[2] = s.z, body[3] = s.w;
+    }
+    walls_combined(part, pull, body, out);
+    return {out[0], out[1], out[2], out[3]};
+}
+
+namespace muller {
+#define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
+#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h, (p)->guard)
+#include "particles/kernels/pbf_passes.inl"
+#undef WEIR_DENSITY
+#undef WEIR_SLOPE
+}  // namespace muller
+namespace spline {
+#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h, (p)->guard)
+#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#include "particles/kernels/pbf_passes.inl"
+#undef WEIR_DENSITY
+#undef WEIR_SLOPE
+}  // namespace spline
+namespace c2 {
+#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h, (p)->guard)
+#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#include "particles/kernels/pbf_passes.inl"
+#undef WEIR_DENSITY
+#undef WEIR_SLOPE
+}  // namespace c2
+
+Built build(const ListJob& job, ListChunk& chunk) { return build_list(job, chunk); }
+
+}  // namespace
+
+#if WEIR_ISA == 512
+const PassTable passes_avx512{
+    "avx512", lanes, build, {muller::table, spline::table, c2::table}, {muller::finish_table, spline::finish_table, c2::finish_table}};
+#elif WEIR_ISA == 256
+const PassTable passes_avx2{
+    "avx2", lanes, build, {muller::table, spline::table, c2::table}, {muller::finish_table, spline::finish_table, c2::finish_table}};
+#else
+const PassTable passes_sse2{
+    "sse2", lanes, build, {muller::table, spline::table, c2::table}, {muller::finish_table, spline::finish_table, c2::finish_table}};
+#endif
+
+}  // namespace weir::particles

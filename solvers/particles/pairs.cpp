@@ -1,0 +1,102 @@
+#include "particles/pairs.hpp"
+
+#include <algorithm>
+
+namespace weir::particles {
+
+/// One image for each particle near a periodic side; corners follow because an axis also copies the images of the axes before it.
+void Pairs::make_images(const Coordinates& x, int count, real radius) {
+    image_owner_.clear();
+    image_shift_.clear();
+    for (std::size_t a = 0; a < 3; ++a)
+        if (x[a]) with_images_[a].assign(x[a], x[a] + count);
+    for (std::size_t a = 0; a < 3; ++a) {
+        const real period = frame_.period[a], lo = frame_.lo[a];
+        if (!x[a] || period == 0) continue;
+        const auto before = with_images_[a].size();
+        for (std::size_t i = 0; i < before; ++i) {
+            const real here = with_images_[a][i];
+            const real shift = here < lo + radius ? period : here > lo + period - radius ? -period : 0;
+            if (shift == 0) continue;
+            const bool first_hand = i < static_cast<std::size_t>(count);
+            image_owner_.push_back(first_hand ? static_cast<int>(i) : image_owner_[i - static_cast<std::size_t>(count)]);
+            auto moved = first_hand ? std::array<float, 3>{0, 0, 0} : image_shift_[i - static_cast<std::size_t>(count)];
+            moved[a] += static_cast<float>(shift);
+            image_shift_.push_back(moved);
+            for (std::size_t b = 0; b < 3; ++b)
+                if (x[b]) with_images_[b].push_back(with_images_[b][i] + (a == b ? shift : 0));
+        }
+    }
+}
+
+void Pairs::fit(std::vector<float>& numbers, int per_particle) const {
+    const auto needed = static_cast<std::size_t>(size() + 2 * table_.lanes) * static_cast<std::size_t>(per_particle);
+    if (numbers.size() < needed) numbers.resize(needed + needed / 8);
+}
+
+void Pairs::place_dummies(float* four) const {
+    for (int k = size(); k < size() + table_.lanes; ++k) {
+        for (int a = 0; a < 3; ++a) four[4 * k + a] = dummy_position;
+        four[4 * k + 3] = 0;
+    }
+}
+
+void Pairs::find(const Coordinates& x, int count, real radius) {
+    particles_ = count;
+    Coordinates all = x;
+    int total = count;
+    const bool periodic = std::any_of(frame_.period.begin(), frame_.period.end(), [](real p) { return p > 0; });
+    if (periodic) {
+        make_images(x, count, radius);
+        total += static_cast<int>(image_owner_.size());
+        for (std::size_t a = 0; a < 3; ++a)
+            if (x[a]) all[a] = with_images_[a].data();
+    }
+    cells_.sort(all, total, radius * 1.00001);  // a hair wider than the radius: cells are chosen in double, distances tested in float
+    owner_.resize(static_cast<std::size_t>(total));
+    fit(a_, 4);
+    fit(b_, 4);
+    each([&](int k) {
+        const int i = cells_.order()[static_cast<std::size_t>(k)];
+        owner_[static_cast<std::size_t>(k)] = i < count ? i : image_owner_[static_cast<std::size_t>(i - count)];
+        for (int a = 0; a < 3; ++a) {
+            const real* axis = all[static_cast<std::size_t>(a)];
+            a_[static_cast<std::size_t>(4 * k + a)] = axis ? local(axis[i], a) : 0;
+        }
+        a_[static_cast<std::size_t>(4 * k + 3)] = 0;
+    });
+    place_dummies(a_.data());
+    place_dummies(b_.data());
+    links_.clear();
+    if (total > count) {
+        std::vector<int> sorted(static_cast<std::size_t>(count));
+        for (int k = 0; k < total; ++k)
+            if (!is_image(k)) sorted[static_cast<std::size_t>(owner(k))] = k;
+        for (int k = 0; k < total; ++k)
+            if (is_image(k))
+                links_.push_back({k, sorted[static_cast<std::size_t>(owner(k))], cells_.order()[static_cast<std::size_t>(k)] - count});
+    }
+    list_.build(table_, a_.data(), cells_, static_cast<float>(radius));
+}
+
+void Pairs::refresh_images(float* four, bool moves) const {
+    for (const auto& [image, from, which] : links_)
+        for (int c = 0; c < 4; ++c) {
+            const float shift = moves && c < 3 ? image_shift_[static_cast<std::size_t>(which)][static_cast<std::size_t>(c)] : 0;
+            four[4 * image + c] = four[4 * from + c] + shift;
+        }
+}
+
+std::vector<int> Pairs::particle_order() const {
+    std::vector<int> order;
+    order.reserve(static_cast<std::size_t>(particles_));
+    for (const int i : cells_.order())
+        if (i < particles_) order.push_back(i);
+    return order;
+}
+
+std::size_t Pairs::bytes() const {
+    return cells_.bytes() + list_.bytes() + (a_.capacity() + b_.capacity()) * sizeof(float) + owner_.capacity() * sizeof(int);
+}
+
+}  // namespace weir::particles

@@ -1,0 +1,82 @@
+#include "particles/sliced_list.hpp"
+
+#include "core/error.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace weir::particles {
+
+void SlicedList::prepare(Chunk& chunk, int t, int slices, int lanes) {
+    const int chunks = static_cast<int>(chunks_.size());
+    ListChunk& v = chunk.view;
+    v.begin = v.next = chunk_begin(slices, t, chunks);
+    v.end = chunk_begin(slices, t + 1, chunks);
+    v.used = 0;
+    v.packed_cell = -1;
+    if (chunk.entries.empty()) {
+        const auto usual = static_cast<std::size_t>(44 * lanes) * static_cast<std::size_t>(v.end - v.begin);
+        chunk.entries.resize(entries_at_first ? entries_at_first : usual);
+        v.capacity = chunk.entries.size();
+        v.entries = chunk.entries.data();
+    }
+}
+
+void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
+    ListChunk& v = chunk.view;
+    ++chunk.growths;
+    const std::size_t room = v.needed + v.needed / 4 + 1024;
+    if (room * sizeof(std::uint32_t) * (why == Built::needs_candidates ? static_cast<std::size_t>(lanes) : chunks_.size()) > max_bytes)
+        throw NumericalFailure("neighbours", "the neighbour list needs more than " + std::to_string(max_bytes >> 20) +
+                                                 " MiB: too many particles are closer than the support");
+    if (why == Built::needs_entries) {
+        chunk.entries.resize(room);
+        v.entries = chunk.entries.data();
+        v.capacity = room;
+        return;
+    }
+    chunk.x.resize(room), chunk.y.resize(room), chunk.z.resize(room), chunk.offset.resize(room);
+    chunk.hits.resize(room * static_cast<std::size_t>(lanes) + 64);
+    v.x = chunk.x.data(), v.y = chunk.y.data(), v.z = chunk.z.data();
+    v.offset = chunk.offset.data(), v.hits = chunk.hits.data();
+    v.candidates = static_cast<int>(room);
+    v.packed_cell = -1;
+}
+
+void SlicedList::build(const PassTable& table, const float* positions, const CellSort& cells, float radius) {
+    const int count = cells.count(), lanes = table.lanes, slices = (count + lanes - 1) / lanes;
+    chunks_.resize(static_cast<std::size_t>(threads()));
+    first_.resize(static_cast<std::size_t>(slices));
+    rows_.resize(static_cast<std::size_t>(slices));
+    neighbours_.resize(static_cast<std::size_t>(count));
+    ListJob job{positions,       count,         cells.start().data(), cells.cell_of().data(), {},
+                radius * radius, first_.data(), rows_.data(),         neighbours_.data()};
+    for (std::size_t a = 0; a < 3; ++a) job.cells[a] = cells.cells()[a];
+    std::vector<std::string> failures(chunks_.size());  // an exception must not leave a parallel region
+    for_chunks(static_cast<int>(chunks_.size()), static_cast<int>(chunks_.size()), [&](int t, int, int) {
+        Chunk& chunk = chunks_[static_cast<std::size_t>(t)];
+        try {
+            prepare(chunk, t, slices, lanes);
+            for (Built built = table.build(job, chunk.view); built != Built::done; built = table.build(job, chunk.view))
+                grow(chunk, built, lanes);
+        } catch (const std::exception& e) {
+            failures[static_cast<std::size_t>(t)] = e.what();
+        }
+    });
+    for (const auto& failure : failures)
+        if (!failure.empty()) throw NumericalFailure("neighbours", failure);
+}
+
+int SlicedList::growths() const {
+    int sum = 0;
+    for (const Chunk& c : chunks_) sum += c.growths;
+    return sum;
+}
+
+std::size_t SlicedList::bytes() const {
+    std::size_t sum = first_.capacity() * sizeof(std::size_t) + (rows_.capacity() + neighbours_.capacity()) * sizeof(int);
+    for (const Chunk& c : chunks_) sum += 4 * (c.entries.capacity() + c.offset.capacity() + c.hits.capacity() + 3 * c.x.capacity());
+    return sum;
+}
+
+}  // namespace weir::particles

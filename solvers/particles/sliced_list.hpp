@@ -1,0 +1,50 @@
+// The neighbour list of the fast path (sliced ELL): storage that follows need. A chunk of slices belongs to one thread, which builds it
+// and later runs the passes over it. Where a chunk's room is too small the builder stops, the room grows, the builder goes on.
+#pragma once
+#include "particles/cell_sort.hpp"
+#include "particles/passes.hpp"
+
+#include <vector>
+
+namespace weir::particles {
+
+class SlicedList {
+public:
+    /// positions: float4 of `count` sorted particles and at least `lanes` dummies behind them. Pairs closer than `radius` [m].
+    /// Throws NumericalFailure when the list would need more than `max_bytes`.
+    void build(const PassTable& table, const float* positions, const CellSort& cells, float radius);
+
+    /// f(chunk) for every chunk, one a thread.
+    template <class F>
+    void each_chunk(F&& f) const {
+        const int chunks = static_cast<int>(chunks_.size());
+        for_chunks(chunks, chunks, [&](int t, int, int) { f(chunks_[static_cast<std::size_t>(t)].view); });
+    }
+    const std::size_t* first() const { return first_.data(); }
+    const int* rows() const { return rows_.data(); }
+    int slices() const { return static_cast<int>(rows_.size()); }
+    /// Neighbours of each sorted particle.
+    const std::vector<int>& neighbours() const { return neighbours_; }
+    /// How often the room was too small, over all builds.
+    int growths() const;
+    std::size_t bytes() const;
+
+    std::size_t max_bytes = std::size_t{6} << 30;
+    std::size_t entries_at_first = 0;  // room of a fresh chunk in entries; 0: 44 a particle (tests start smaller)
+
+private:
+    struct Chunk {
+        ListChunk view;
+        std::vector<std::uint32_t> entries, offset, hits;
+        std::vector<float> x, y, z;
+        int growths = 0;
+    };
+    void prepare(Chunk& chunk, int t, int slices, int lanes);
+    void grow(Chunk& chunk, Built why, int lanes) const;
+
+    std::vector<Chunk> chunks_;
+    std::vector<std::size_t> first_;
+    std::vector<int> rows_, neighbours_;
+};
+
+}  // namespace weir::particles

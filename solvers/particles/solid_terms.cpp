@@ -1,0 +1,61 @@
+#include "particles/solid_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::particles {
+
+namespace {
+#define SCALAR double
+#include "particles/kernels/prelude_double.h"
+using plain::WallParams;
+#include "particles/kernels/pair.inl"
+}  // namespace
+
+template <int D>
+void SolidTerms<D>::mark(Pairs& pairs) {
+    if (domain_.solids.empty()) return;
+    const real reach = 1 / walls_.inv_h + 2 * domain_.spacing;  // the support, and what the corrections of one step may move a particle
+    flag_.resize(static_cast<std::size_t>(pairs.size()));
+    pairs.fit(terms_, 4);
+    std::fill(terms_.begin(), terms_.end(), 0.0f);
+    pairs.each([&](int k) { flag_[static_cast<std::size_t>(k)] = domain_.solids.distance(world(pairs.a() + 4 * k)) < reach; });
+    near_.clear();
+    for (int k = 0; k < pairs.size(); ++k)
+        if (flag_[static_cast<std::size_t>(k)]) near_.push_back(k);
+}
+
+template <int D>
+const float* SolidTerms<D>::at(const Pairs&, const float* positions) {
+    if (domain_.solids.empty()) return nullptr;
+    parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
+        const int k = near_[static_cast<std::size_t>(i)];
+        const Vec<D> x = world(positions + 4 * k);
+        const real phi = std::max<real>(0, domain_.solids.distance(x));
+        float* term = terms_.data() + 4 * k;
+        std::fill(term, term + 4, 0.0f);
+        if (phi * walls_.inv_h >= 1) return;
+        const Vec<D> n = domain_.solids.normal(x, 1e-3 * domain_.spacing);
+        const real pull = wall_series(phi, walls_.slope, walls_.inv_h);
+        for (int a = 0; a < D; ++a) term[a] = static_cast<float>(-pull * n[a]);
+        term[3] = static_cast<float>(wall_series(phi, walls_.fraction, walls_.inv_h));
+    });
+    return terms_.data();
+}
+
+template <int D>
+void SolidTerms<D>::push_out(const Pairs& pairs, float* positions) const {
+    if (domain_.solids.empty()) return;
+    parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
+        const int k = near_[static_cast<std::size_t>(i)];
+        const Vec<D> x = world(positions + 4 * k);
+        if (domain_.solids.distance(x) >= domain_.margin) return;
+        const Vec<D> y = domain_.kept(x);
+        for (int a = 0; a < D; ++a) positions[4 * k + a] = pairs.local(y[a], a);
+    });
+}
+
+template class SolidTerms<2>;
+template class SolidTerms<3>;
+
+}  // namespace weir::particles

@@ -1,0 +1,90 @@
+// The registration of "pbf": its keys, its effects, its maker.
+#include "pbf/solver.hpp"
+
+namespace weir::pbf {
+
+using scene::Key;
+using scene::Type;
+
+namespace {
+
+Key scheme() {
+    const Options usual;
+    return {.name = "scheme",
+            .type = Type::table,
+            .doc = "Numerical choices of PBF.",
+            .keys = {{.name = "kernel",
+                      .type = Type::choice,
+                      .doc = "muller: poly6 for density, spiky for its gradient; cubic and wendland use one kernel for both.",
+                      .fallback = std::string("muller"),
+                      .choices = {"muller", "cubic", "wendland"}},
+                     {.name = "support",
+                      .type = Type::number,
+                      .doc = "Support of the kernels over the particles' spacing.",
+                      .fallback = usual.support,
+                      .min = 1.2,
+                      .max = 4.0},
+                     {.name = "iterations",
+                      .type = Type::integer,
+                      .doc = "Iterations a step, where no tolerance is given.",
+                      .fallback = std::int64_t{usual.iterations},
+                      .min = 1},
+                     {.name = "tolerance",
+                      .type = Type::number,
+                      .doc = "Iterate until the mean compression is at most this; 0: a fixed number of iterations.",
+                      .fallback = usual.tolerance,
+                      .min = 0},
+                     {.name = "max_iterations",
+                      .type = Type::integer,
+                      .doc = "With a tolerance: no more iterations than this.",
+                      .fallback = std::int64_t{usual.max_iterations},
+                      .min = 1},
+                     {.name = "cfm",
+                      .type = Type::number,
+                      .doc = "Constraint force mixing, epsilon of eq. 11 in units of 1 / support^2.",
+                      .fallback = usual.cfm,
+                      .min = 0},
+                     {.name = "relaxation",
+                      .type = Type::number,
+                      .doc = "Factor of every correction.",
+                      .fallback = usual.relaxation,
+                      .min = 0,
+                      .max = 2.0,
+                      .min_open = true},
+                     {.name = "isa",
+                      .type = Type::choice,
+                      .doc = "Instruction set of the pair passes.",
+                      .fallback = std::string("auto"),
+                      .choices = {"auto", "sse2", "avx2", "avx512"}}}};
+}
+
+std::vector<scene::Variant> effects() {
+    auto list = particles::effect_schemas();
+    const Options usual;
+    list.push_back({"artificial_pressure",
+                    "Pushes close particles apart (Macklin & Müller 2013, eq. 13 with n = 4).",
+                    {{.name = "k", .type = Type::number, .doc = "Its strength over the support squared.", .fallback = 1e-4, .min = 0},
+                     {.name = "dq",
+                      .type = Type::number,
+                      .doc = "Distance, over the support, at which it has this strength.",
+                      .fallback = usual.pressure_dq,
+                      .min = 0,
+                      .max = 0.9}}});
+    return list;
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "pbf";
+    schema.doc = "Position Based Fluids (Macklin & Müller 2013): liquid particles kept at rest density by constraints.";
+    schema.keys = {scheme(), particles::initial_key(), particles::sinks_key()};
+    schema.effects = effects();
+    return {schema, [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
+                if (scene.dim() == 2) return std::make_unique<PbfSolver<2>>(scene);
+                return std::make_unique<PbfSolver<3>>(scene);
+            }};
+}
+
+}  // namespace weir::pbf

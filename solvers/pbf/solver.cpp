@@ -1,0 +1,200 @@
+#include "pbf/solver.hpp"
+
+#include "core/error.hpp"
+
+#include <algorithm>
+
+namespace weir::pbf {
+
+using particles::ListChunk;
+using particles::PbfPass;
+
+namespace {
+/// The state's arrays follow the sorted order this often, so that gathers stay near in memory.
+constexpr std::int64_t steps_between_reorders = 16;
+}  // namespace
+
+template <int D>
+PbfSolver<D>::PbfSolver(const scene::Scene& scene)
+    : options_(scene),
+      fluid_(scene),
+      emitters_(scene, fluid_.domain),
+      params_(pbf_params<particles::single::PbfParams, D>(options_, fluid_.domain.spacing)),
+      walls_(fluid_.domain.template walls<particles::single::WallParams>(density_kernel<D>(options_, fluid_.domain.spacing),
+                                                                         gradient_kernel<D>(options_, fluid_.domain.spacing))),
+      pairs_(particles::passes_for(options_.isa), fluid_.domain.frame()),
+      solids_(fluid_.domain, fluid_.domain.template walls<particles::plain::WallParams>(
+                                 density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
+      flow_{fluid_, pairs_, params_, {}, {}, static_cast<int>(options_.smoothing)},
+      cfl_(scene.number("time.cfl")),
+      max_dt_(scene.root().number_or("time.max_dt", infinity)) {
+    particles::set_initial_velocity(scene, fluid_);
+    particles::add_effects(scene, effects_);
+}
+
+/// Numbers at the right are the lines of Algorithm 1.
+template <int D>
+StepReport PbfSolver<D>::step(real dt) {
+    emitters_.apply(fluid_, dt);
+    effects_.apply(Stage::force, flow_, dt);
+    predict(dt);         //  1-4
+    find_neighbours();   //  5-7
+    int iterations = 0;  //  8
+    const int most = options_.tolerance > 0 ? options_.max_iterations : options_.iterations;
+    for (; iterations < most; ++iterations) {
+        find_lambdas();  //  9-11
+        if (options_.tolerance > 0 && compression().mean <= options_.tolerance) break;
+        correct();  // 12-15
+        collide();  // 16-19
+    }
+    update_velocities(dt);                     // 20-21, 23-24
+    effects_.apply(Stage::finish, flow_, dt);  // 22
+    const real speed = fluid_.max_speed();
+    const Compression c = compression();
+    if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
+    fluid_.cross_sides();
+    return {.dt = dt,
+            .cfl = dt * speed / fluid_.domain.spacing,
+            .iterations = iterations,
+            .density_error = c.mean,
+            .max_density_error = c.worst};
+}
+
+template <int D>
+void PbfSolver<D>::predict(real dt) {
+    const auto timed = passes_.time("predict");
+    fluid_.time += dt;
+    if (!fluid_.domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
+    for (auto& axis : x_star_) axis.resize(fluid_.id.size());
+    parallel_for(0, fluid_.count(),
+                 [&](int i) { particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i))); });
+}
+
+template <int D>
+void PbfSolver<D>::find_neighbours() {
+    const auto timed = passes_.time("neighbours");
+    pairs_.find(particles::Fluid<D>::coordinates(x_star_), fluid_.count(), options_.support * fluid_.domain.spacing);
+    pairs_.fit(density_, 1);
+    solids_.mark(pairs_);
+}
+
+template <int D>
+PbfPass PbfSolver<D>::pass(const float* from, float* to) {
+    PbfPass a;
+    a.p = &params_;
+    a.walls = &walls_;
+    a.count = pairs_.size();
+    a.from = from;
+    a.to = to;
+    a.solid = solids_.at(pairs_, from);
+    a.density = density_.data();
+    a.first = pairs_.list().first();
+    a.rows = pairs_.list().rows();
+    return a;
+}
+
+/// lambda_i of eq. 11, from density and gradients, walls and solids in both.
+template <int D>
+void PbfSolver<D>::find_lambdas() {
+    const auto timed = passes_.time("lambda");
+    const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
+    const PbfPass job = pass(pairs_.a(), pairs_.b());
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.lambda(job, chunk); });
+    pairs_.refresh_images(pairs_.b(), true);
+}
+
+/// x* += Δp, eq. 12 and 14, and the walls of the domain.
+template <int D>
+void PbfSolver<D>::correct() {
+    const auto timed = passes_.time("correct");
+    const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
+    const auto run = options_.pressure_k > 0 ? table.correct_with_pressure : table.correct;
+    const PbfPass job = pass(pairs_.b(), pairs_.a());
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { run(job, chunk); });
+}
+
+template <int D>
+void PbfSolver<D>::collide() {
+    solids_.push_out(pairs_, pairs_.a());
+    pairs_.refresh_images(pairs_.a(), true);
+}
+
+/// v = (x* - x) / dt, x = x*. The move that the iterations made in single precision is added to the prediction in double precision, so
+/// that rounding does not depend on how far a particle is from the origin.
+template <int D>
+void PbfSolver<D>::update_velocities(real dt) {
+    const auto timed = passes_.time("update");
+    const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
+    const PbfPass job = pass(pairs_.a(), nullptr);
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
+    const float* now = pairs_.a();
+    pairs_.each([&](int k) {
+        if (pairs_.is_image(k)) return;
+        const int i = pairs_.owner(k);
+        Vec<D> x = particles::Fluid<D>::get(x_star_, i);
+        for (int a = 0; a < D; ++a) x[a] += static_cast<real>(now[4 * k + a]) - static_cast<real>(pairs_.local(x[a], a));
+        x = fluid_.domain.kept(x);
+        particles::Fluid<D>::put(fluid_.v, i, (x - fluid_.position(i)) / dt);
+        particles::Fluid<D>::put(fluid_.x, i, x);
+        fluid_.density[static_cast<std::size_t>(i)] = fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
+    });
+}
+
+template <int D>
+typename PbfSolver<D>::Compression PbfSolver<D>::compression() const {
+    const auto excess = [&](int k) {
+        return pairs_.is_image(k) ? 0 : std::max<real>(0, static_cast<real>(density_[static_cast<std::size_t>(k)]) - 1);
+    };
+    const int n = pairs_.particles();
+    return n ? Compression{particles::block_sum(pairs_.size(), excess) / n, particles::block_max(pairs_.size(), excess)} : Compression{};
+}
+
+/// As far as the fastest particle goes in `cfl` spacings, where gravity may have made it faster by the end of the step.
+template <int D>
+real PbfSolver<D>::advised_dt() const {
+    const real d = fluid_.domain.spacing, g = norm(fluid_.gravity), speed = fluid_.max_speed();
+    const real by_speed = speed > 0 ? cfl_ * d / speed : infinity, by_gravity = g > 0 ? std::sqrt(cfl_ * d / g) : infinity;
+    return std::min({by_speed, by_gravity, max_dt_, effects_.max_dt(flow_)});
+}
+
+template <int D>
+FieldSet PbfSolver<D>::fields() const {
+    FieldSet set;
+    fluid_.show(set);
+    return set;
+}
+
+template <int D>
+std::vector<Integral> PbfSolver<D>::integrals() const {
+    auto list = fluid_.integrals();
+    const auto& counts = pairs_.list().neighbours();
+    const int n = static_cast<int>(counts.size());
+    list.push_back(
+        {"mean_neighbours", "1", n ? particles::block_sum(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); }) / n : 0});
+    list.push_back({"max_neighbours", "1", particles::block_max(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); })});
+    const Compression c = compression();
+    list.push_back({"mean_compression", "1", c.mean});
+    list.push_back({"max_compression", "1", c.worst});
+    return list;
+}
+
+template <int D>
+void PbfSolver<D>::save(Checkpoint& to) const {
+    fluid_.save(to);
+    emitters_.save(to);
+}
+template <int D>
+void PbfSolver<D>::restore(const Checkpoint& from) {
+    fluid_.restore(from);
+    emitters_.restore(from);
+}
+
+template <int D>
+std::size_t PbfSolver<D>::bytes() const {
+    return fluid_.bytes() + pairs_.bytes() + D * x_star_[0].capacity() * sizeof(real) + density_.capacity() * sizeof(float);
+}
+
+template class PbfSolver<2>;
+template class PbfSolver<3>;
+
+}  // namespace weir::pbf
