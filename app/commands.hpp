@@ -7,4 +7,6 @@ namespace weir::app {
 void add_run(CLI::App& app, int& exit_code);
 void add_list(CLI::App& app, int& exit_code);
 
+void add_validate(CLI::App& app, int& exit_code);
+
 }  // namespace weir::app

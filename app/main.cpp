@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.failure_message(CLI::FailureMessage::help);
     weir::app::add_run(app, exit_code);
+    weir::app::add_validate(app, exit_code);
     weir::app::add_list(app, exit_code);
     try {
         app.parse(argc, argv);

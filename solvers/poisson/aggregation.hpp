@@ -11,8 +11,8 @@ struct Aggregation {
     int count = 0;
 };
 
-/// Pairs, then pairs of pairs: aggregates of up to four.
-Aggregation aggregate_twice(const Matrix& A);
+/// Pairs, then pairs of pairs, and once more where many stayed alone: aggregates of up to eight.
+Aggregation aggregate(const Matrix& A);
 
 /// Galerkin product with piecewise constant transfers: sums of weights, and of what joins the unknowns to p = 0.
 Matrix coarsen(const Matrix& A, const Aggregation& groups);

@@ -37,7 +37,7 @@ void AlgebraicMultigrid::prepare(const Matrix& A, const Components& components) 
     levels_[0].A = &A;
     while (levels_.back().matrix().size() > direct_size) {
         Level& fine = levels_.back();
-        fine.groups = aggregate_twice(fine.matrix());
+        fine.groups = aggregate(fine.matrix());
         if (fine.groups.count > slow_coarsening * fine.matrix().size()) break;
         Level coarse;
         coarse.own = coarsen(fine.matrix(), fine.groups);

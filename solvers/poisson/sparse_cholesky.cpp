@@ -29,6 +29,8 @@ SparseCholesky::~SparseCholesky() = default;
 
 namespace {
 
+constexpr int small = 5000;  // below, dense blocks and the threads of BLAS cost more than they save
+
 /// The upper triangle of A by columns, which is its lower triangle by rows. In each closed component the first diagonal entry is doubled
 /// (an isolated cell gets 1): a compatible right-hand side then makes that unknown zero, and the other equations stay as they are.
 void upper_by_columns(const Matrix& A, const Components& components, std::vector<long>& start, std::vector<long>& row, Vector& value) {
@@ -73,6 +75,7 @@ void SparseCholesky::factor(const Matrix& A, const Components& components) {
     matrix.p = start_.data(), matrix.i = row_.data(), matrix.x = value_.data();
     matrix.stype = 1, matrix.itype = CHOLMOD_LONG, matrix.xtype = CHOLMOD_REAL, matrix.dtype = CHOLMOD_DOUBLE;
     matrix.sorted = matrix.packed = 1;
+    common.supernodal = A.size() < small ? CHOLMOD_SIMPLICIAL : CHOLMOD_AUTO;
     if (!same_pattern) {
         cholmod_l_free_factor(&factor, &common);
         factor = cholmod_l_analyze(&matrix, &common);

@@ -187,8 +187,7 @@ private:
         if (kind == Kind::convergence && grids < 2)
             problem(v.accept.front().place, "kind \"convergence\" needs a sweep of at least two values");
         for (const Criterion& c : v.accept) {
-            const bool order = c.test == Criterion::Test::order_at_least || c.test == Criterion::Test::order_within;
-            if (order && grids < 2) problem(c.place, "an order needs a sweep of at least two values");
+            if (c.is_order() && grids < 2) problem(c.place, "an order needs a sweep of at least two values");
             if (c.test == Criterion::Test::gci_at_most && (grids < 2 || (grids == 2 && std::isnan(c.formal_order))))
                 problem(c.place, "a grid convergence index needs three grids, or two and a \"formal_order\"");
             if (!c.at) continue;
@@ -221,6 +220,13 @@ Case parse_case(std::string_view text, const std::string& file, const std::files
 Case read_case(const std::filesystem::path& folder, Size size) {
     const auto file = folder / "case.toml";
     return parse_case(scene::read_text(file), file.string(), folder, size);
+}
+
+std::filesystem::path frames_folder(const Case& c, const Variant& variant, std::size_t i) {
+    std::filesystem::path folder = c.name;
+    if (!variant.name.empty()) folder /= variant.name;
+    if (variant.sweep) folder /= fmt::format("{:g}", variant.sweep->values.at(i));
+    return folder;
 }
 
 std::vector<std::filesystem::path> find_cases(const std::filesystem::path& root) {

@@ -31,6 +31,9 @@ struct Criterion {
     real formal_order = std::nan("");       // for gci_at_most on two grids
     std::string why{};
     scene::Place place{};  // of its metric in case.toml
+
+    bool is_order() const { return test == Test::order_at_least || test == Test::order_within; }
+    bool is_monotone() const { return test == Test::never_increases || test == Test::never_decreases; }
 };
 std::string_view name(Criterion::Test test);
 
@@ -72,6 +75,9 @@ struct Case {
 
 /// The scene of run `i` of a variant, with the case's changes. Throws BadScene.
 scene::Scene scene_of(const Variant& variant, std::size_t i, const std::vector<scene::SolverSchema>& solvers);
+
+/// Where the frames of run `i` go, below the output folder: case/variant/value.
+std::filesystem::path frames_folder(const Case& c, const Variant& variant, std::size_t i);
 
 /// Reads and checks cases/<name>; throws scene::BadScene with every problem in the file, or BadInput when it cannot be read.
 Case read_case(const std::filesystem::path& folder, Size size);

@@ -1,7 +1,7 @@
 // Norms and statistics by name. A name is subject.operation: a series if the run has one of that name, else a field.
 #include "validation/harness/generic_metrics.hpp"
 
-#include "core/grid.hpp"
+#include "scene/names.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <fmt/format.h>
@@ -181,7 +181,8 @@ void check_metric(std::string_view name, const RunRecord& start, const Reference
     for (const auto& f : start.fields.fields) known.push_back(f.name);
     for (const auto& i : start.integrals) known.push_back(i.name);
     for (const Metric& m : metrics()) known.push_back(m.name);
-    throw BadInput(fmt::format("unknown metric \"{}\"; fields, integrals and metrics of this run: {}", name, fmt::join(known, ", ")));
+    throw BadInput(fmt::format("unknown metric \"{}\"{}; fields, integrals and metrics of this run: {}", name,
+                               scene::did_you_mean(n.subject, known), fmt::join(known, ", ")));
 }
 
 }  // namespace weir::validation

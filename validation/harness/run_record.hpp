@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
+#include "sim/simulation.hpp"
 #include "validation/harness/curve.hpp"
 
 #include <cstdint>
@@ -12,36 +13,23 @@
 #include <string>
 #include <vector>
 
-namespace weir {
-class Simulation;
-}
-
 namespace weir::validation {
 
 /// The run at one time: index 0 is the initial state (its report is empty), then one entry a step.
 struct Moment {
     std::int64_t step = 0;
     real time = 0;  // [s]
-    StepReport report;
-    std::vector<real> integrals;  // in the order of RunRecord::integrals
-    std::vector<real> observed;   // in the order of RunRecord::observers
+    StepReport report{};
+    std::vector<real> integrals{};  // in the order of RunRecord::integrals
+    std::vector<real> observed{};   // in the order of RunRecord::observers
 };
 
-/// Samples of one probe of the scene. Row i of `values` was taken at times[i] and has one entry a column.
-struct ProbeSeries {
-    std::string name;
-    std::string kind;                  // point, line, gauge, wall_pressure, integral, front
-    std::vector<std::string> columns;  // "u [m/s]", "height [m]", ...
-    std::vector<Vec<3>> positions;     // of each column's sample where it has one (points, lines, gauges)
-    std::vector<real> times;           // [s]
-    std::vector<std::vector<real>> values;
-    /// History of one column.
-    Curve column(std::size_t c) const {
-        Curve curve{.label = name, .x = times, .y = {}};
-        for (const auto& row : values) curve.y.push_back(row.at(c));
-        return curve;
-    }
-};
+/// History of one column of a probe.
+inline Curve column(const ProbeSeries& probe, std::size_t c) {
+    Curve curve{.label = probe.name, .x = probe.times};
+    for (const auto& row : probe.values) curve.y.push_back(row.at(c));
+    return curve;
+}
 
 struct RunRecord {
     std::shared_ptr<const scene::Scene> scene;

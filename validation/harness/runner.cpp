@@ -2,7 +2,6 @@
 #include "validation/harness/runner.hpp"
 
 #include "output/frames.hpp"
-#include "sim/registry.hpp"
 #include "sim/simulation.hpp"
 #include "validation/harness/generic_metrics.hpp"
 
@@ -38,9 +37,15 @@ std::vector<std::string> metrics_of(const Variant& variant) {
     return names;
 }
 
+std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers) {
+    std::vector<scene::SolverSchema> list;
+    for (const auto& kind : solvers) list.push_back(kind.schema);
+    return list;
+}
+
 bool is_series(const std::string& metric, const Variant& variant) {
     for (const Criterion& c : variant.accept)
-        if (c.metric == metric && (c.test == Criterion::Test::never_increases || c.test == Criterion::Test::never_decreases)) return true;
+        if (c.metric == metric && c.is_monotone()) return true;
     return false;
 }
 
@@ -88,9 +93,9 @@ void take(RunResult& result, const RunRecord& record, const Reference& reference
 
 }  // namespace
 
-RunRecord run_scene(scene::Scene scene, const RunOptions& options) {
+RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers& solvers) {
     RunRecord record;
-    record.simulation = std::make_shared<Simulation>(std::move(scene));
+    record.simulation = std::make_shared<Simulation>(std::move(scene), solvers);
     Simulation& simulation = *record.simulation;
     record.scene = {record.simulation, &simulation.scene()};
     for (const Metric* m : options.observers) record.observers.push_back(m->name);
@@ -110,7 +115,9 @@ RunRecord run_scene(scene::Scene scene, const RunOptions& options) {
                 throw NumericalFailure("time limit", fmt::format("not finished after {:g} s of computing", options.time_limit));
         }
     } catch (const NumericalFailure& failure) {
-        record.failure = fmt::format("step {}, t = {:.6g} s: {}", simulation.steps(), simulation.time(), failure.what());
+        const auto step = failure.step >= 0 ? failure.step : simulation.steps();
+        record.failure =
+            fmt::format("step {}, t = {:.6g} s: {}", step, failure.step >= 0 ? failure.time : simulation.time(), failure.what());
     }
     record.fields = simulation.fields();
     record.probes = simulation.probes();
@@ -129,11 +136,12 @@ Reference make_reference(const std::string& name, const scene::Scene& scene, con
         fmt::format("{}: unknown reference \"{}\"; known: {}", (case_folder / "case.toml").string(), name, fmt::join(known, ", ")));
 }
 
-RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, const std::filesystem::path& frames) {
+RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, const std::filesystem::path& frames,
+                          const Solvers& solvers) {
     RunResult result;
     if (variant.sweep) result.value = variant.sweep->values[i], result.label = fmt::format("{:g}", result.value);
     try {
-        scene::Scene scene = scene_of(variant, i, sim::schemas());
+        scene::Scene scene = scene_of(variant, i, schemas_of(solvers));
         const Reference reference = make_reference(variant.reference, scene, c.folder);
         result.h = mesh_width(variant, i, scene);
         RunOptions options{.frames = frames, .time_limit = variant.time_limit};
@@ -142,7 +150,7 @@ RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, 
         options.at_start = [&](const RunRecord& start) {
             for (const std::string& name : metrics_of(variant)) check_metric(name, start, reference);
         };
-        const RunRecord record = run_scene(std::move(scene), options);
+        const RunRecord record = run_scene(std::move(scene), options, solvers);
         result.seconds = record.seconds, result.steps = record.steps(), result.failure = record.failure;
         if (!record.failure) take(result, record, reference, variant);
     } catch (const NumericalFailure& failure) {  // of the initial state
@@ -153,26 +161,27 @@ RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, 
     return result;
 }
 
-CaseResult validate(const Case& c, const std::filesystem::path& out, const Progress& progress) {
+CaseResult validate(const Case& c, const std::filesystem::path& out, const Solvers& solvers, const Progress& progress) {
     CaseResult result{.plan = c};
     for (const Variant& variant : c.variants) {
         VariantResult v{.plan = variant, .runs = {}, .verdicts = {}};
         for (std::size_t i = 0; i < variant.runs(); ++i) {
-            std::string label = variant.sweep ? fmt::format("{:g}", variant.sweep->values[i]) : "run";
-            if (progress) progress(fmt::format("{} {} {}", c.name, variant.name, label));
-            v.runs.push_back(run_and_measure(c, variant, i, out / c.name / (variant.name.empty() ? "case" : variant.name) / label));
+            const auto folder = frames_folder(c, variant, i);
+            if (progress) progress(folder.string());
+            v.runs.push_back(run_and_measure(c, variant, i, out / folder, solvers));
         }
         v.verdicts = judge(variant, v.runs);
         result.variants.push_back(std::move(v));
     }
     if (!c.variants.empty() && !c.variants.front().reference.empty())
-        result.source = make_reference(c.variants.front().reference, scene_of(c.variants.front(), 0, sim::schemas()), c.folder).source;
+        result.source = make_reference(c.variants.front().reference, scene_of(c.variants.front(), 0, schemas_of(solvers)), c.folder).source;
     return result;
 }
 
-void check_case(const Case& c) {
+void check_case(const Case& c, const Solvers& solvers) {
     for (const Variant& variant : c.variants)
-        for (std::size_t i = 0; i < variant.runs(); ++i) make_reference(variant.reference, scene_of(variant, i, sim::schemas()), c.folder);
+        for (std::size_t i = 0; i < variant.runs(); ++i)
+            make_reference(variant.reference, scene_of(variant, i, schemas_of(solvers)), c.folder);
 }
 
 }  // namespace weir::validation

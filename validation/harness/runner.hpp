@@ -11,6 +11,9 @@
 
 namespace weir::validation {
 
+/// Those that scenes may name; sim::registry() but in tests.
+using Solvers = std::vector<scene::SolverKind>;
+
 struct RunOptions {
     std::filesystem::path frames{};                            // folder of this run's .pvd; empty: none is written
     real time_limit = infinity;                                // wall seconds
@@ -19,21 +22,22 @@ struct RunOptions {
 };
 
 /// Runs a scene to its end. A NumericalFailure or an exceeded time limit ends the run and stands in `failure`.
-RunRecord run_scene(scene::Scene scene, const RunOptions& options);
+RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers& solvers);
 
 /// The reference of a scene by name; throws BadInput naming those known. An empty name gives an empty reference.
 Reference make_reference(const std::string& name, const scene::Scene& scene, const std::filesystem::path& case_folder);
 
 /// Run `i` of a variant, measured. Never throws for what a run does wrong: that stands in the result and fails its claims.
-RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, const std::filesystem::path& frames);
+RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, const std::filesystem::path& frames,
+                          const Solvers& solvers);
 
 /// Called before each run: "taylor_green maccormack 64".
 using Progress = std::function<void(const std::string&)>;
 
 /// All runs of a case, judged. Frames go to out/<case>/<variant>/<value>/.
-CaseResult validate(const Case& c, const std::filesystem::path& out, const Progress& progress);
+CaseResult validate(const Case& c, const std::filesystem::path& out, const Solvers& solvers, const Progress& progress = nullptr);
 
 /// What can be known without running: every scene of the case reads, every reference exists. Throws BadInput.
-void check_case(const Case& c);
+void check_case(const Case& c, const Solvers& solvers);
 
 }  // namespace weir::validation

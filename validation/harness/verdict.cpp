@@ -16,20 +16,17 @@ using Test = Criterion::Test;
 // GCI23 / (r^p GCI12) outside this band: the grids are too coarse for their order to be quoted (NPARC asks for "about 1").
 constexpr real asymptotic_low = 0.8, asymptotic_high = 1.25;
 
-bool is_order(Test t) { return t == Test::order_at_least || t == Test::order_within; }
-bool is_monotone(Test t) { return t == Test::never_increases || t == Test::never_decreases; }
-
 /// The runs that a claim rests on.
 std::vector<const RunResult*> runs_of(const Criterion& c, const std::vector<RunResult>& runs) {
     std::vector<const RunResult*> chosen;
     for (const RunResult& r : runs)
-        if (c.every || is_order(c.test) || c.test == Test::gci_at_most || (c.at && r.value == *c.at)) chosen.push_back(&r);
+        if (c.every || c.is_order() || c.test == Test::gci_at_most || (c.at && r.value == *c.at)) chosen.push_back(&r);
     if (chosen.empty() && !runs.empty()) chosen.push_back(&runs.back());
     return chosen;
 }
 
 real measured_in(const RunResult& run, const Criterion& c) {
-    if (is_monotone(c.test)) {
+    if (c.is_monotone()) {
         const auto at = run.series.find(c.metric);
         return at == run.series.end() ? std::nan("") : largest_rise(at->second, c.test == Test::never_decreases);
     }
@@ -78,7 +75,7 @@ Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<Run
         v.at = chosen.empty() ? "" : (*failed)->label;
         return v;
     }
-    if (is_order(c.test) || c.test == Test::gci_at_most)
+    if (c.is_order() || c.test == Test::gci_at_most)
         judge_orders(v, c, runs);
     else
         judge_values(v, c, chosen);

@@ -46,8 +46,7 @@ void add_slopes(Panel& panel, const CaseResult& result, const std::string& metri
     std::set<real> orders;
     for (const auto& v : result.variants)
         for (const Criterion& c : v.plan.accept) {
-            const bool order = c.test == Criterion::Test::order_at_least || c.test == Criterion::Test::order_within;
-            if (order && c.metric == metric) orders.insert(std::round(c.low));
+            if (c.is_order() && c.metric == metric) orders.insert(std::round(c.low));
         }
     if (panel.curves.empty()) return;
     const auto lowest =

@@ -40,6 +40,7 @@ std::string axis(const char* name, bool log, real low, real high) {
         return plain + fmt::format("set {}range [{}:{}]\n", name, low - half, high + half);
     }
     std::string s = plain + fmt::format("set logscale {}\n", name);
+    if (low == high) return s + fmt::format("set {}range [{}:{}]\n", name, low / 10, low * 10);
     if (high / low > 100) return s + fmt::format("set format {} '10^{{%T}}'\n", name);
     // Less than two decades: ticks at 1, 2, 5 of each, or the axis would have one label or none.
     s += fmt::format("set {}tics (", name);

@@ -1,6 +1,8 @@
 // Fixed-width tables for people, CSV and JSON for programs.
 #include "validation/report/tables.hpp"
 
+#include "validation/harness/generic_metrics.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +18,13 @@ std::string claim_of(const Verdict& v) {
     if (v.criterion.starts_with("never")) s += v.criterion == "never_increases" ? " never increases" : " never decreases";
     if (!v.at.empty()) s += " at " + v.at;
     return s;
+}
+
+/// Whether an order of this metric means something: it is an error, or the case claims one.
+bool has_order(const VariantResult& v, const std::string& metric) {
+    if (quantity_of(metric) == Quantity::error) return true;
+    return std::any_of(v.plan.accept.begin(), v.plan.accept.end(),
+                       [&](const Criterion& c) { return c.metric == metric && (c.is_order() || c.test == Criterion::Test::gci_at_most); });
 }
 
 bool ordered(const VariantResult& v) { return v.plan.sweep && v.plan.sweep->key == "grid.cells" && v.runs.size() > 1; }
@@ -58,6 +67,7 @@ std::string orders_table(const CaseResult& result) {
     for (const auto& v : result.variants) {
         if (!ordered(v)) continue;
         for (const std::string& metric : metrics_of(v)) {
+            if (!has_order(v, metric)) continue;
             const OrderTable table = order_table(v.runs, metric);
             s += fmt::format("  {}{}{}\n    {:>12} {:>14} {:>7}\n", v.plan.name, v.plan.name.empty() ? "" : ": ", metric, "h", "measured",
                              "order");
@@ -78,7 +88,7 @@ std::string csv(const CaseResult& result) {
         for (const RunResult& run : v.runs)
             for (const auto& [metric, measured] : run.measured) {
                 std::string order = ",,,";
-                if (ordered(v)) {
+                if (ordered(v) && has_order(v, metric)) {
                     const OrderTable table = order_table(v.runs, metric);
                     const auto row = std::find_if(table.rows().begin(), table.rows().end(), [&](const auto& r) { return r.h == run.h; });
                     const Extrapolation x = &run == &v.runs.back() ? table.extrapolate() : Extrapolation{};
@@ -110,6 +120,7 @@ nlohmann::json verdicts_json(const CaseResult& result) {
                             {"bound_text", verdict.bound()},
                             {"why", verdict.why},
                             {"note", verdict.note},
+                            {"frames", frames_folder(result.plan, v.plan, v.runs.size() - 1).string()},
                             {"source", result.source},
                             {"question", result.plan.question},
                             {"blind_to", result.plan.blind_to}});

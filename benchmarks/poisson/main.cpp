@@ -1,0 +1,213 @@
+// bench_poisson: our pressure methods against hypre's PFMG-CG, CHOLMOD, Eigen's ICCG and FFTW's DCT on the same numbers.
+//
+//     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] [--csv
+//     FILE]
+//
+// Times are the least of K runs; a peer that would take minutes or more memory than there is says "skipped" and why.
+#include "core/error.hpp"
+#include "pfmg.hpp"
+#include "problems.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <optional>
+
+using namespace weir;
+
+namespace {
+
+struct Choice {
+    std::vector<std::string> cases, solvers;
+    std::vector<int> dims, threads;
+    int n = 0, repeat = 5;
+    bool quick = false, obstacles = false, pfmg_process = false;
+    std::string csv;
+};
+
+struct Row {
+    std::string name, solver;
+    int dim = 0, n = 0, threads = 0;
+    std::int64_t unknowns = 0;
+    double setup_ms = 0, solve_ms = 0, residual = 0, bytes = 0;
+    int iterations = 0;
+    std::string skipped;
+};
+
+Choice read_options(int argc, char** argv) {
+    Choice c;
+    for (int i = 1; i < argc; ++i) {
+        const std::string key = argv[i];
+        const auto value = [&]() -> std::string {
+            if (i + 1 == argc) throw BadInput(key + " needs a value");
+            return argv[++i];
+        };
+        if (key == "--case")
+            c.cases.push_back(value());
+        else if (key == "--solver")
+            c.solvers.push_back(value());
+        else if (key == "--dim")
+            c.dims.push_back(std::stoi(value()));
+        else if (key == "--threads")
+            c.threads.push_back(std::stoi(value()));
+        else if (key == "--n")
+            c.n = std::stoi(value());
+        else if (key == "--repeat")
+            c.repeat = std::stoi(value());
+        else if (key == "--csv")
+            c.csv = value();
+        else if (key == "--quick")
+            c.quick = true;
+        else if (key == "--obstacles")
+            c.obstacles = true;
+        else if (key == "--pfmg-process")
+            c.pfmg_process = true;
+        else
+            throw BadInput("unknown option " + key + "; known: --case --dim --n --threads --solver --repeat --quick --obstacles --csv");
+    }
+    if (c.cases.empty()) c.cases = {"box", "wavy", "box_weights", "wavy_weights"};
+    if (c.obstacles) c.cases = {"rooms", "slits", "blocks", "fractions", "magnitudes"};
+    if (c.dims.empty()) c.dims = {2, 3};
+    if (c.threads.empty()) c.threads = {1, 2};
+    return c;
+}
+
+bool is_obstacle(const std::string& name) { return name.find("box") == std::string::npos && name.find("wavy") == std::string::npos; }
+
+/// Why a solver is not run on a problem, or nothing.
+std::optional<std::string> reason_to_skip(const std::string& solver, const std::string& name, int dim, std::int64_t unknowns, bool quick) {
+    const bool slow = solver == "cholmod" || solver == "eigen_iccg";
+    if (solver == "dct" && name != "box") return "whole boxes only";
+    if (quick && slow && unknowns > 100000) return "takes seconds (--quick)";
+    if (solver == "cholmod" && dim == 3 && unknowns > 300000) return "its factor would take more than 8 GB and minutes";
+    return std::nullopt;
+}
+
+template <int D>
+Row measure(const std::string& solver, const std::string& name, const bench::Problem<D>& problem, int threads, const Choice& choice,
+            Grid<real, D>& p) {
+    Row row;
+    row.name = name, row.solver = solver, row.dim = D, row.n = problem.b.extent()[0], row.threads = threads,
+    row.unknowns = problem.unknowns;
+    if (const auto reason = reason_to_skip(solver, name, D, problem.unknowns, choice.quick)) {
+        row.skipped = *reason;
+        return row;
+    }
+    if (solver == "pfmg_cg") {
+        char self[4096] = {};
+        std::ifstream("/proc/self/cmdline").getline(self, sizeof self, '\0');
+        const auto result = bench::run_pfmg(self, name, D, row.n, threads, choice.repeat);
+        row.skipped = result.failure;
+        row.setup_ms = result.setup_ms, row.solve_ms = result.solve_ms, row.residual = result.residual;
+        row.iterations = result.iterations, row.bytes = result.bytes;
+        return row;
+    }
+    set_threads(threads);
+    const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0";
+    const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
+    row.setup_ms = row.solve_ms = infinity;
+    for (int k = 0; k < (slow ? std::min(2, choice.repeat) : choice.repeat); ++k) {
+        if (!(slow && k > 0)) method->setup(problem.A);
+        p.fill(0);
+        try {
+            const auto& report = method->solve(p, problem.b);
+            row.setup_ms = std::min(row.setup_ms, 1e3 * report.setup_seconds);
+            row.solve_ms = std::min(row.solve_ms, 1e3 * report.solve_seconds);
+            row.iterations = report.iterations;
+        } catch (const NumericalFailure& failure) {
+            row.skipped = std::string("failed: ") + failure.what();
+            return row;
+        }
+    }
+    row.bytes = static_cast<double>(method->bytes());
+    row.residual = bench::true_residual(problem, p);
+    return row;
+}
+
+void print_head() {
+    std::printf("%-13s %3s %5s %2s %-11s %10s %10s %5s %9s %9s %8s %8s\n", "case", "dim", "n", "t", "solver", "setup ms", "solve ms",
+                "iter", "residual", "ns/unk", "B/unk", "/PFMG");
+}
+
+void print(const Row& r, double pfmg_ms) {
+    std::printf("%-13s %3d %5d %2d %-11s ", r.name.c_str(), r.dim, r.n, r.threads, r.solver.c_str());
+    if (!r.skipped.empty()) {
+        std::printf("skipped: %s\n", r.skipped.c_str());
+    } else {
+        const auto unknowns = static_cast<double>(r.unknowns);
+        std::printf("%10.2f %10.2f %5d %9.1e %9.1f %8.1f ", r.setup_ms, r.solve_ms, r.iterations, r.residual, 1e6 * r.solve_ms / unknowns,
+                    r.bytes / unknowns);
+        pfmg_ms > 0 ? std::printf("%8.3f\n", r.solve_ms / pfmg_ms) : std::printf("%8s\n", "-");
+    }
+    std::fflush(stdout);
+}
+
+void write(std::ofstream& csv, const Row& r) {
+    if (!csv.is_open() || !r.skipped.empty()) return;
+    const auto unknowns = static_cast<double>(r.unknowns);
+    csv << r.name << ',' << r.dim << ',' << r.n << ',' << r.threads << ',' << r.solver << ',' << r.setup_ms << ',' << r.solve_ms << ','
+        << r.iterations << ',' << r.residual << ',' << 1e6 * r.solve_ms / unknowns << ',' << r.bytes / unknowns << std::endl;
+}
+
+/// PFMG-CG first, so that every other line can be compared with it; CHOLMOD's answer, where there is one, against the others'.
+template <int D>
+void run_case(const std::string& name, int n, int threads, const Choice& choice, std::ofstream& csv) {
+    std::vector<std::string> solvers = choice.solvers;
+    if (solvers.empty()) {
+        solvers = {"pfmg_cg", "multigrid", "cholmod"};
+        if (is_obstacle(name)) solvers.push_back("cg_mic0");
+        if (name == "box" || name == "wavy") solvers.insert(solvers.end(), {"eigen_iccg", "dct"});
+    }
+    const auto problem = bench::make<D>(name, n);
+    double pfmg_ms = 0;
+    std::map<std::string, Grid<real, D>> answers;
+    for (const auto& solver : solvers) {
+        Grid<real, D> p(problem.b.extent());
+        const Row row = measure<D>(solver, name, problem, threads, choice, p);
+        if (solver == "pfmg_cg") pfmg_ms = row.solve_ms;
+        print(row, pfmg_ms);
+        write(csv, row);
+        if (row.skipped.empty() && solver != "pfmg_cg") answers.emplace(solver, std::move(p));
+    }
+    if (!answers.contains("cholmod")) return;
+    const auto& exact = answers.at("cholmod");
+    const real scale = max_over<D>(exact.extent(), [&](const Index<D>& I) { return std::abs(exact(I)); });
+    for (const auto& [solver, p] : answers)
+        if (solver != "cholmod")
+            std::printf("    %s: largest difference from CHOLMOD's answer %.1e of the largest pressure\n", solver.c_str(),
+                        max_over<D>(p.extent(), [&, &q = p](const Index<D>& I) { return std::abs(q(I) - exact(I)); }) / scale);
+}
+
+int run(const Choice& choice) {
+    std::ofstream csv;
+    if (!choice.csv.empty()) {
+        csv.open(choice.csv);
+        if (!csv) throw BadInput("cannot write " + choice.csv);
+        csv << "case,dim,n,threads,solver,setup_ms,solve_ms,iterations,true_residual,ns_per_unknown,bytes_per_unknown" << std::endl;
+    }
+    print_head();
+    for (const auto& name : choice.cases)
+        for (const int dim : choice.dims)
+            for (const int t : choice.threads) {
+                const bool obstacle = is_obstacle(name);
+                const int full = dim == 2 ? (obstacle ? 512 : 1024) : (obstacle ? 96 : 128);
+                const int n = choice.n > 0 ? choice.n : choice.quick ? full / 2 : full;
+                dim == 2 ? run_case<2>(name, n, t, choice, csv) : run_case<3>(name, n, t, choice, csv);
+            }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const Choice choice = read_options(argc, argv);
+        if (choice.pfmg_process) return bench::pfmg_process(choice.cases[0], choice.dims[0], choice.n, choice.repeat);
+        return run(choice);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_poisson: %s\n", error.what());
+        return exit_bad_input;
+    }
+}

@@ -1,0 +1,24 @@
+// The problems of the table, by name: box and wavy (with flags, and with general face weights), and the obstacles.
+#pragma once
+#include "poisson/poisson.hpp"
+
+#include <string>
+
+namespace weir::bench {
+
+template <int D>
+struct Problem {
+    poisson::Operator<D> A;
+    Grid<real, D> b;
+    std::int64_t unknowns = 0;
+};
+
+/// box, wavy, box_weights, wavy_weights; rooms, slits, blocks, fractions, magnitudes. n cells along each axis.
+template <int D>
+Problem<D> make(const std::string& name, int n);
+
+/// ‖b − A p‖₂ / ‖b‖₂ in double precision, from the definition.
+template <int D>
+real true_residual(const Problem<D>& problem, const Grid<real, D>& p);
+
+}  // namespace weir::bench

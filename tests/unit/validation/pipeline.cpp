@@ -1,0 +1,154 @@
+// From case.toml to exit code, verdicts.json, CSV, SVG and the published page, on a solver whose numbers are known.
+#include "core/error.hpp"
+#include "validation/report/command.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "support/fake_solver.hpp"
+#include "support/test.hpp"
+
+using namespace weir;
+using namespace weir::validation;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string head = "question = \"q\"\nblind_to = \"b\"\nkind = \"benchmark\"\n";
+
+/// A folder that is gone when the test is.
+struct Folder {
+    fs::path path = fs::temp_directory_path() / ("weir_validation_" + std::to_string(::getpid()));
+    Folder() { fs::remove_all(path), fs::create_directories(path); }
+    ~Folder() { fs::remove_all(path); }
+    /// Writes a case about the fake solver and returns its folder.
+    std::string add(const std::string& name, const std::string& text, const std::string& scene_more = "") const {
+        fs::create_directories(path / name);
+        std::ofstream(path / name / "case.toml") << text;
+        std::ofstream(path / name / "scene.toml") << "solver = \"fake\"\ndim = 2\ngrid = { cells = [8, 4], size = [1, 1] }\n"
+                                                  << "time = { end = 0.1 }\n"
+                                                  << scene_more;
+        return (path / name).string();
+    }
+    ValidateOptions options(const std::vector<std::string>& cases) const {
+        return {.names = cases, .out = path / "out", .publish = path / "results", .quiet = true};
+    }
+    std::string read(const fs::path& file) const {
+        std::ifstream stream(path / file);
+        std::ostringstream text;
+        text << stream.rdbuf();
+        return text.str();
+    }
+    nlohmann::json verdicts() const { return nlohmann::json::parse(read("out/verdicts.json")); }
+};
+
+int run(const Folder& folder, const std::vector<std::string>& cases) { return validate_command(folder.options(cases), test::fake_kinds()); }
+
+}  // namespace
+
+TEST("claims that hold give exit code 0, verdicts with all their keys, a figure, a table, frames and a page") {
+    const Folder folder;
+    const auto good = folder.add("good", head + R"(
+sweep = { key = "grid.cells", values = [8, 16] }
+accept = [
+  { metric = "velocity.max", within = [2.0999, 2.1001], why = "2 y + t at y = 1, t = 0.1" },
+  { metric = "steps", at_least = 3, why = "the advised step is at most 0.03", every = true },
+])");
+    EXPECT_EQ(run(folder, {good}), exit_success);
+    const auto verdicts = folder.verdicts();
+    ASSERT_EQ(verdicts.size(), 2u);
+    for (const char* key : {"case", "criterion", "metric", "measured", "bound", "pass", "seconds"})
+        EXPECT_TRUE(verdicts[0].contains(key)) << key;
+    EXPECT_EQ(verdicts[0]["case"], "good");
+    EXPECT_EQ(verdicts[0]["criterion"], "within");
+    EXPECT_NEAR(verdicts[0]["measured"].get<double>(), 2.1, 1e-12);
+    EXPECT_EQ(verdicts[0]["bound"], (std::vector<double>{2.0999, 2.1001}));
+    EXPECT_NE(folder.read("results/svg/good.svg").find("</svg>"), std::string::npos);
+    EXPECT_NE(folder.read("results/csv/good.csv").find("velocity.max"), std::string::npos);
+    const std::string page = folder.read("results/index.md");
+    EXPECT_NE(page.find("2 of 2 claims hold"), std::string::npos);
+    EXPECT_NE(page.find("2 y + t at y = 1"), std::string::npos);
+    for (const char* size : {"8", "16"}) EXPECT_TRUE(fs::exists(folder.path / "out/good" / size / "grid.pvd")) << size;
+}
+
+TEST("a claim that does not hold gives exit code 1 and stands in the verdicts as failed") {
+    const Folder folder;
+    const auto bad = folder.add("bad", head + R"(accept = [
+  { metric = "velocity.max", at_most = 2.0, why = "too low on purpose" },
+  { metric = "mass", never_increases = true, why = "the fake mass swings" },
+  { metric = "iterations.max", at_most = 100, why = "counts steps" },
+])");
+    EXPECT_EQ(run(folder, {bad}), exit_claim_failed);
+    const auto verdicts = folder.verdicts();
+    EXPECT_FALSE(verdicts[0]["pass"].get<bool>());
+    EXPECT_FALSE(verdicts[1]["pass"].get<bool>());
+    EXPECT_TRUE(verdicts[2]["pass"].get<bool>());
+}
+
+TEST("a numerical failure and an exceeded time limit fail every claim of the run with their message; other cases go on") {
+    const Folder folder;
+    const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
+    const auto broken = folder.add("broken", head + claims, "fail_at = 3\n");
+    const auto slow = folder.add("slow", head + "ci = { time_limit = 1e-9 }\n" + claims);
+    const auto good = folder.add("well", head + claims);
+    EXPECT_EQ(run(folder, {broken, slow, good}), exit_claim_failed);
+    const auto verdicts = folder.verdicts();
+    ASSERT_EQ(verdicts.size(), 3u);
+    EXPECT_FALSE(verdicts[0]["pass"].get<bool>());
+    EXPECT_TRUE(verdicts[0]["measured"].is_null());
+    EXPECT_NE(verdicts[0]["note"].get<std::string>().find("pressure"), std::string::npos);
+    EXPECT_NE(verdicts[1]["note"].get<std::string>().find("1e-09 s"), std::string::npos);
+    EXPECT_TRUE(verdicts[2]["pass"].get<bool>());
+}
+
+TEST("a metric that does not exist is an error, exit code 2, before a step is spent") {
+    const Folder folder;
+    const auto odd = folder.add("odd", head + "accept = [ { metric = \"volocity.max\", at_most = 10, why = \"w\" } ]");
+    EXPECT_EQ(run(folder, {odd}), exit_bad_input);
+    const auto verdicts = folder.verdicts();
+    EXPECT_FALSE(verdicts[0]["pass"].get<bool>());
+    EXPECT_NE(verdicts[0]["note"].get<std::string>().find("unknown metric \"volocity.max\""), std::string::npos);
+    EXPECT_EQ(verdicts[0]["seconds"], 0);
+}
+
+TEST("unknown names, a bad case file, a bad scene and an unknown reference are refused together, and nothing is written") {
+    const Folder folder;
+    const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
+    const auto file = folder.add("file", head + "accpet = []\n");
+    const auto scene = folder.add("scene", head + claims, "colour = 3\n");
+    const auto reference = folder.add("reference", head + "reference = \"nobody_knows\"\n" + claims);
+    try {
+        run(folder, {file, scene, reference});
+        FAIL() << "accepted";
+    } catch (const BadInput& wrong) {
+        for (const char* part : {"accpet", "colour", "unknown reference \"nobody_knows\""})
+            EXPECT_NE(std::string(wrong.what()).find(part), std::string::npos) << part << "\n" << wrong.what();
+    }
+    EXPECT_FALSE(fs::exists(folder.path / "out"));
+    EXPECT_THROW(run(folder, {"no_such_case"}), BadInput);
+    EXPECT_THROW(run(folder, {}), BadInput);
+}
+
+TEST("publishing one case keeps what was published of the others") {
+    const Folder folder;
+    const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
+    const auto one = folder.add("one", head + claims), two = folder.add("two", head + claims);
+    EXPECT_EQ(run(folder, {one}), exit_success);
+    EXPECT_EQ(run(folder, {two}), exit_success);
+    EXPECT_EQ(run(folder, {two}), exit_success);
+    EXPECT_NE(folder.read("results/index.md").find("2 of 2 claims hold, in 2 cases"), std::string::npos);
+}
+
+TEST("a sweep over cells keeps the scene's proportions, or refuses what has none") {
+    const Folder folder;
+    const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
+    folder.add("shape", head + "sweep = { key = \"grid.cells\", values = [16, 6, 7] }\n" + claims);
+    const Case c = read_case(folder.path / "shape", Size::full);
+    const std::vector<scene::SolverSchema> schemas = {test::fake_kinds()[0].schema};
+    EXPECT_EQ(scene_of(c.variants[0], 0, schemas).root().numbers("grid.cells"), (std::vector<double>{16, 8}));
+    EXPECT_EQ(scene_of(c.variants[0], 1, schemas).root().numbers("grid.cells"), (std::vector<double>{6, 3}));
+    EXPECT_THROW(scene_of(c.variants[0], 2, schemas), BadInput);  // 3.5 cells along y
+}

@@ -1,0 +1,113 @@
+// The command line's job, without the command line.
+#include "validation/report/command.hpp"
+
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "scene/names.hpp"
+#include "validation/harness/runner.hpp"
+#include "validation/report/figure.hpp"
+#include "validation/report/publish.hpp"
+#include "validation/report/svg.hpp"
+#include "validation/report/tables.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+#include <unistd.h>
+
+namespace weir::validation {
+namespace {
+
+std::filesystem::path find_case(const std::string& name) {
+    if (std::filesystem::exists(std::filesystem::path(name) / "case.toml")) return std::filesystem::path(name).lexically_normal();
+    if (std::filesystem::exists(case_root() / name / "case.toml")) return case_root() / name;
+    std::vector<std::string> known;
+    for (const auto& path : find_cases(case_root())) known.push_back(path.filename().string());
+    throw BadInput(fmt::format("unknown case {}{}\n    {}", scene::quote(name), scene::did_you_mean(name, known), scene::known(known)));
+}
+
+/// A folder named with a slash at its end has an empty last part.
+std::filesystem::path without_slash(const std::filesystem::path& p) { return p.has_filename() ? p : p.parent_path(); }
+
+std::vector<std::filesystem::path> chosen(const ValidateOptions& options) {
+    if (options.all && !options.names.empty()) throw BadInput("weir validate takes names or --all, not both");
+    if (options.all || (options.list && options.names.empty())) {
+        const auto found = find_cases(case_root());
+        if (found.empty()) throw BadInput(fmt::format("no cases in {}", case_root().string()));
+        return found;
+    }
+    if (options.names.empty()) throw BadInput("weir validate needs the name of a case, or --all; --list shows them");
+    std::vector<std::filesystem::path> list;
+    for (const std::string& name : options.names) list.push_back(without_slash(find_case(name)));
+    return list;
+}
+
+/// All case files and their scenes are read before one is run; the problems of all are shown together.
+std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solvers) {
+    std::vector<Case> cases;
+    std::string problems;
+    for (const auto& folder : chosen(options)) try {
+            cases.push_back(read_case(folder, options.size));
+            if (!options.list) check_case(cases.back(), solvers);
+        } catch (const BadInput& wrong) {
+            problems += (problems.empty() ? "" : "\n") + std::string(wrong.what());
+        }
+    if (!problems.empty()) throw BadInput(problems);
+    return cases;
+}
+
+void write_outputs(const CaseResult& result, const std::filesystem::path& out) {
+    output::write_file(out / "csv" / (result.plan.name + ".csv"), csv(result));
+    try {
+        draw(fmt::format("{} ({})", result.plan.name, name(result.plan.size)), panels_of(result),
+             out / "svg" / (result.plan.name + ".svg"));
+    } catch (const OutputError& failed) {
+        std::fprintf(stderr, "%s\n", failed.what());  // the numbers stand without their picture
+    }
+}
+
+int list_cases(const std::vector<Case>& cases) {
+    for (const Case& c : cases) fmt::print("{:28} {:12} {}\n", c.name, name(c.kind), c.question);
+    return exit_success;
+}
+
+}  // namespace
+
+std::filesystem::path case_root() {
+    if (std::filesystem::is_directory("cases")) return "cases";
+    return WEIR_CASES_DIR;
+}
+
+int validate_command(const ValidateOptions& options, const Solvers& solvers) {
+    const std::vector<Case> cases = read_all(options, solvers);
+    if (options.list) return list_cases(cases);
+    output::require_writable(options.out);
+    std::filesystem::create_directories(options.out / "csv");
+    const bool talk = !options.quiet && isatty(STDERR_FILENO);
+    const Progress progress = [&](const std::string& what) {
+        if (talk) std::fprintf(stderr, "\r\033[K%s", what.c_str());
+    };
+    std::vector<CaseResult> results;
+    auto verdicts = nlohmann::json::array();
+    bool passed = true, bad = false;
+    for (const Case& c : cases) {
+        results.push_back(validate(c, options.out, solvers, progress));
+        const CaseResult& result = results.back();
+        if (talk) std::fprintf(stderr, "\r\033[K");
+        fmt::print("{}{}\n", claims_table(result), orders_table(result));
+        std::fflush(stdout);
+        write_outputs(result, options.out);
+        for (const auto& verdict : verdicts_json(result)) verdicts.push_back(verdict);
+        output::write_file(options.out / "verdicts.json", verdicts.dump(1) + "\n");  // after each case: a killed run keeps what it has
+        passed = passed && result.pass(), bad = bad || result.bad_input();
+    }
+    if (!options.publish.empty()) publish(results, options.out, options.publish);
+    std::size_t claims = verdicts.size(), held = 0;
+    for (const auto& verdict : verdicts) held += verdict["pass"].get<bool>() ? 1 : 0;
+    fmt::print("{} of {} claims hold, in {} cases\n", held, claims, results.size());
+    return bad ? exit_bad_input : passed ? exit_success : exit_claim_failed;
+}
+
+}  // namespace weir::validation

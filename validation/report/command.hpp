@@ -1,0 +1,29 @@
+// `weir validate`: finds cases, runs them, prints and writes what came out.
+#pragma once
+#include "sim/registry.hpp"
+#include "validation/harness/case.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace weir::validation {
+
+struct ValidateOptions {
+    std::vector<std::string> names{};  // cases by name, or folders with a case.toml
+    bool all = false;                  // every case
+    bool list = false;                 // name and question of each, nothing is run
+    Size size = Size::ci;
+    std::filesystem::path out = "out/validate";  // verdicts.json, svg/, csv/ and the frames of each run
+    std::filesystem::path publish{};             // folder of the published page; empty: not published
+    bool quiet = false;                          // no progress on the terminal
+};
+
+/// Where cases lie: ./cases if there is one, else those of the source tree that this program was built from.
+std::filesystem::path case_root();
+
+/// Runs the command and returns its exit code: 0, 1 (a claim failed), 2 (a case asks for what is not there). Throws BadInput before
+/// anything is run or written when a name is unknown or a case file or its scene is wrong.
+int validate_command(const ValidateOptions& options, const std::vector<scene::SolverKind>& solvers = sim::registry());
+
+}  // namespace weir::validation

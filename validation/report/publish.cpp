@@ -1,0 +1,121 @@
+// One row a claim: measured, bound, why, seconds, figure, frames. No number here was typed by hand.
+#include "validation/report/publish.hpp"
+
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/machine.hpp"
+#include "validation/report/tables.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace weir::validation {
+namespace {
+
+using nlohmann::json;
+
+std::string text(const json& entry, const char* key) { return entry.value(key, std::string()); }
+
+/// A cell of a Markdown table may hold no bar and no line break.
+std::string cell(std::string s) {
+    for (std::size_t at = 0; (at = s.find_first_of("|\n", at)) != std::string::npos; ++at)
+        s.replace(at, 1, s[at] == '|' ? "\\|" : " "), ++at;
+    return s;
+}
+
+std::string number(const json& entry, const char* key, const char* form) {
+    const auto at = entry.find(key);
+    return at == entry.end() || !at->is_number() ? "not a number" : fmt::format(fmt::runtime(form), at->get<double>());
+}
+
+std::string row(const json& v) {
+    const std::string name = text(v, "case");
+    std::string why = text(v, "why");
+    if (!text(v, "note").empty()) why += " **" + text(v, "note") + "**";
+    return fmt::format("| {} | {} | {} | {} | {} | {} | [svg](svg/{}.svg) | `{}` |\n", v.value("pass", false) ? "pass" : "**FAIL**",
+                       cell(text(v, "claim")), number(v, "measured", "{:.4g}"), cell(text(v, "bound_text")), cell(why),
+                       number(v, "seconds", "{:.2f}"), name, cell(text(v, "frames")));
+}
+
+std::string section(const std::vector<const json*>& claims) {
+    const json& first = *claims.front();
+    const std::string name = text(first, "case");
+    std::string s = fmt::format("### {}\n\n{}\n\n*Blind to:* {}\n\n", name, text(first, "question"), text(first, "blind_to"));
+    if (!text(first, "source").empty()) s += fmt::format("*Compared with:* {}\n\n", text(first, "source"));
+    s += "| | claim | measured | bound | why | seconds | figure | frames |\n|---|---|---|---|---|---|---|---|\n";
+    for (const json* v : claims) s += row(*v);
+    s += fmt::format(
+        "\n![{0}](svg/{0}.svg)\n\nEvery number: [csv/{0}.csv](csv/{0}.csv). Measured at size {1}, commit {2}, on {3}: "
+        "`./weir.sh validate {0} --size {1}`\n\n",
+        name, text(first, "size"), text(first, "commit"), text(first, "machine"));
+    return s;
+}
+
+std::string machine_text(const output::Machine& m) {
+    return fmt::format("{} ({} threads), {}, {}, {}", m.processor, m.threads, m.system, m.compiler, m.build);
+}
+
+json read_entries(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    if (!stream) return json::array();
+    json entries = json::parse(stream, nullptr, false);
+    if (!entries.is_array()) throw BadInput(file.string() + " is not a list of verdicts; remove it and publish all cases");
+    return entries;
+}
+
+void copy_over(const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::filesystem::create_directories(to.parent_path());
+    std::error_code error;
+    std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
+    if (error) throw OutputError(fmt::format("cannot copy {} to {}: {}", from.string(), to.string(), error.message()));
+}
+
+}  // namespace
+
+std::string index_markdown(const json& verdicts) {
+    std::map<std::string, std::vector<const json*>> by_case;
+    std::size_t passed = 0;
+    for (const json& v : verdicts) by_case[text(v, "case")].push_back(&v), passed += v.value("pass", false) ? 1 : 0;
+    std::string s = "# Results\n\nThis page is written by `weir validate --publish`; nothing in it is typed by hand.\n\n";
+    s += fmt::format("**{} of {} claims hold, in {} cases.**\n\n", passed, verdicts.size(), by_case.size());
+    const std::pair<const char*, std::set<std::string>> parts[] = {
+        {"Verification: are the equations solved right?", {"exact", "convergence"}},
+        {"Accuracy against the work of the solver", {"iterations"}},
+        {"Validation: are they the right equations?", {"benchmark"}},
+    };
+    for (const auto& [title, kinds] : parts) {
+        std::string sections;
+        for (const auto& entry : by_case)
+            if (kinds.count(text(*entry.second.front(), "kind"))) sections += section(entry.second);
+        if (!sections.empty()) s += fmt::format("## {}\n\n{}", title, sections);
+    }
+    const output::Machine m = output::this_machine();
+    return s + fmt::format("---\nWritten by weir {} (commit {}) on {}.\n", m.version, m.commit, machine_text(m));
+}
+
+void publish(const std::vector<CaseResult>& results, const std::filesystem::path& out, const std::filesystem::path& folder) {
+    const output::Machine machine = output::this_machine();
+    std::set<std::string> measured;
+    json entries = json::array();
+    for (const CaseResult& result : results) {
+        const std::string& name = result.plan.name;
+        measured.insert(name);
+        for (json entry : verdicts_json(result)) {
+            entry["commit"] = machine.commit, entry["machine"] = machine_text(machine);
+            entries.push_back(entry);
+        }
+        if (std::filesystem::exists(out / "svg" / (name + ".svg")))
+            copy_over(out / "svg" / (name + ".svg"), folder / "svg" / (name + ".svg"));
+        copy_over(out / "csv" / (name + ".csv"), folder / "csv" / (name + ".csv"));
+    }
+    for (const json& old : read_entries(folder / "verdicts.json"))
+        if (!measured.count(text(old, "case"))) entries.push_back(old);
+    output::write_file(folder / "verdicts.json", entries.dump(1) + "\n");
+    output::write_file(folder / "index.md", index_markdown(entries));
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,20 @@
+// results/: the page of claims, its figures and tables, written by the program only.
+#pragma once
+#include "validation/harness/verdict.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace weir::validation {
+
+/// The page made of all verdicts (with the machine and commit that each was measured on).
+std::string index_markdown(const nlohmann::json& verdicts);
+
+/// Copies the figures and tables of `results` from `out` to `folder`, replaces their entries in folder/verdicts.json (others stay), and
+/// writes folder/index.md anew.
+void publish(const std::vector<CaseResult>& results, const std::filesystem::path& out, const std::filesystem::path& folder);
+
+}  // namespace weir::validation
