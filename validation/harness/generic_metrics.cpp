@@ -159,6 +159,18 @@ Quantity quantity_of(std::string_view name) {
     return error ? Quantity::error : Quantity::value;
 }
 
+std::string unit_of(std::string_view name, const RunRecord& run) {
+    if (const Metric* m = find_metric(name)) return m->unit;
+    const Name n = split(name);
+    if (n.operation.ends_with("_relative") || n.operation == "drift" || n.operation == "change") return "";
+    for (const Integral& i : run.integrals)
+        if (i.name == n.subject || i.name == name) return i.unit;
+    if (n.subject == "divergence") return "1/s";
+    if (name == "seconds" || n.subject == "dt") return "s";
+    const FieldView* f = run.fields.find(n.subject);
+    return f ? f->unit : "";
+}
+
 real measure(std::string_view name, const RunRecord& run, const Reference& reference) {
     if (const Metric* m = find_metric(name); m && m->measure) return m->measure(run, reference);
     if (const auto c = cost(name, run)) return *c;

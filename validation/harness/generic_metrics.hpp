@@ -20,6 +20,8 @@ FieldError field_error(const RunRecord& run, const Reference& reference, std::st
 /// The metric called `name`, registered or generic. Throws BadInput when there is none, or when the run or the reference lacks what
 /// it needs.
 real measure(std::string_view name, const RunRecord& run, const Reference& reference);
+/// Its unit, from the metric, the field or the integral; empty where it has none.
+std::string unit_of(std::string_view name, const RunRecord& run);
 /// Whether the metric's exact value is 0.
 Quantity quantity_of(std::string_view name);
 /// The registered metric of that name, or nullptr.

@@ -44,7 +44,10 @@ Extrapolation OrderTable::extrapolate(real formal_order) const {
         if (std::isfinite(p)) x.order = p, safety = 1.25;  // Roache: three grids, order observed
         x.monotone = (one.value - two.value) * (two.value - three.value) > 0;
     }
-    const auto gci = [&](real fine, real coarse, real r) { return safety * std::abs((fine - coarse) / fine) / (std::pow(r, x.order) - 1); };
+    const auto gci = [&](real fine, real coarse, real r) {
+        const real scale = quantity_ == Quantity::error ? 1 : std::abs(fine);  // relative to a value whose limit is 0 means nothing
+        return safety * std::abs(fine - coarse) / scale / (std::pow(r, x.order) - 1);
+    };
     x.change = std::abs((one.value - two.value) / one.value);
     x.limit = one.value + (one.value - two.value) / (std::pow(r21, x.order) - 1);
     x.gci_fine = gci(one.value, two.value, r21);

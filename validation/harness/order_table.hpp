@@ -14,7 +14,7 @@ struct Extrapolation {
     real order = std::nan("");       // p
     real limit = std::nan("");       // f(h = 0)
     real change = std::nan("");      // |(f1 - f2) / f1|, finest two
-    real gci_fine = std::nan("");    // of grids 1-2, relative
+    real gci_fine = std::nan("");    // of grids 1-2; relative for values, absolute for errors
     real gci_coarse = std::nan("");  // of grids 2-3, relative
     real asymptotic = std::nan("");  // GCI23 / (r^p GCI12): about 1 where the order may be quoted
     bool monotone = false;           // f1 - f2 and f2 - f3 have one sign

@@ -84,6 +84,7 @@ real mesh_width(const Variant& variant, std::size_t i, const scene::Scene& scene
 
 void take(RunResult& result, const RunRecord& record, const Reference& reference, const Variant& variant) {
     for (const std::string& metric : metrics_of(variant)) {
+        result.units[metric] = unit_of(metric, record);
         if (const auto series = history_of(record, metric)) result.series[metric] = *series;
         if (!is_series(metric, variant)) result.measured[metric] = measure(metric, record, reference);
         const Metric* m = find_metric(metric);

@@ -19,11 +19,12 @@ struct RunResult {
     real h = 0;           // mesh width for a sweep over cells [m], else the sweep's value
     double seconds = 0;   // wall clock of all steps
     std::int64_t steps = 0;
-    std::optional<std::string> failure{};    // the run ended early, or a number could not be measured
-    bool bad_input = false;                  // ... because the case asks for what is not there (exit code 2, not 1)
-    std::map<std::string, real> measured{};  // by metric
-    std::map<std::string, Curve> series{};   // histories that claims or figures need
-    std::vector<Panel> panels{};             // drawn by the metrics
+    std::optional<std::string> failure{};        // the run ended early, or a number could not be measured
+    bool bad_input = false;                      // ... because the case asks for what is not there (exit code 2, not 1)
+    std::map<std::string, real> measured{};      // by metric
+    std::map<std::string, std::string> units{};  // of the metrics
+    std::map<std::string, Curve> series{};       // histories that claims or figures need
+    std::vector<Panel> panels{};                 // drawn by the metrics
 };
 
 /// One judged claim.

@@ -21,9 +21,12 @@ std::vector<std::string> metrics_of(const CaseResult& result) {
     return names;
 }
 
-std::string unit_of(const std::string& metric) {
-    const Metric* m = find_metric(metric);
-    return m && !m->unit.empty() ? fmt::format(" [{}]", m->unit) : "";
+/// " [m/s]", as some run knows it.
+std::string unit_label(const CaseResult& result, const std::string& metric) {
+    for (const auto& v : result.variants)
+        for (const RunResult& r : v.runs)
+            if (const auto at = r.units.find(metric); at != r.units.end() && !at->second.empty()) return fmt::format(" [{}]", at->second);
+    return "";
 }
 
 std::string label_of(const VariantResult& v, const std::string& otherwise) { return v.plan.name.empty() ? otherwise : v.plan.name; }
@@ -32,7 +35,7 @@ std::string label_of(const VariantResult& v, const std::string& otherwise) { ret
 std::vector<Curve> over_runs(const CaseResult& result, const std::string& metric, real (*abscissa)(const RunResult&)) {
     std::vector<Curve> curves;
     for (const auto& v : result.variants) {
-        Curve c{.label = label_of(v, metric)};
+        Curve c{.label = label_of(v, "weir")};
         for (const RunResult& r : v.runs)
             if (const auto at = r.measured.find(metric); at != r.measured.end())
                 c.x.push_back(abscissa(r)), c.y.push_back(std::abs(at->second));
@@ -70,13 +73,13 @@ void add_sweeps(std::vector<Panel>& panels, const CaseResult& result) {
         const bool error = quantity_of(metric) == Quantity::error;
         const auto curves = over_runs(result, metric, h);
         if (curves.empty() || metric == "seconds") continue;
-        Panel panel{.title = metric, .x = {sweep_label(result), true}, .y = {metric + unit_of(metric), error}, .curves = curves};
+        Panel panel{.title = metric, .x = {sweep_label(result), true}, .y = {metric + unit_label(result, metric), error}, .curves = curves};
         add_slopes(panel, result, metric);
         panels.push_back(std::move(panel));
         if (result.plan.kind != Kind::iterations) continue;
         panels.push_back({.title = metric + " against work",
                           .x = {"computing time a step [ms]", true},
-                          .y = {metric + unit_of(metric), error},
+                          .y = {metric + unit_label(result, metric), error},
                           .curves = over_runs(result, metric, milliseconds)});
     }
 }
@@ -104,14 +107,14 @@ void add_profiles(std::vector<Panel>& panels, const CaseResult& result) {
 
 void add_histories(std::vector<Panel>& panels, const CaseResult& result) {
     for (const std::string& metric : metrics_of(result)) {
-        Panel panel{.title = metric + " over the run", .x = {"time t [s]"}, .y = {metric + unit_of(metric)}};
+        Panel panel{.title = metric + " over the run", .x = {"time t [s]"}, .y = {metric + unit_label(result, metric)}};
         for (const auto& v : result.variants) {
             if (v.runs.empty()) continue;
             const auto at = v.runs.back().series.find(metric);
             if (at == v.runs.back().series.end() || at->second.size() < 2) continue;
             Curve c = at->second;
-            panel.y.label = c.label;
-            c.label = label_of(v, c.label) + (v.runs.back().label.empty() ? "" : " " + v.runs.back().label);
+            panel.y.label = c.label + unit_label(result, metric);
+            c.label = label_of(v, "weir") + (v.runs.back().label.empty() ? "" : " " + v.runs.back().label);
             panel.curves.push_back(std::move(c));
         }
         if (!panel.curves.empty()) panels.push_back(std::move(panel));

@@ -14,6 +14,7 @@ namespace {
 
 // Okabe & Ito 2008: told apart by colour-blind readers too.
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999"};
+constexpr int marks[] = {7, 4, 8};                    // disk, square, triangle: for the second and third round through the colours
 constexpr int panel_width = 560, panel_height = 420;  // pixels
 
 std::string quoted(std::string text) {
@@ -39,14 +40,17 @@ std::string axis(const char* name, bool log, real low, real high) {
         const real half = std::max(1e-12, std::abs(low));  // a flat line in mid-panel, not on its edge
         return plain + fmt::format("set {}range [{}:{}]\n", name, low - half, high + half);
     }
-    std::string s = plain + fmt::format("set logscale {}\n", name);
-    if (low == high) return s + fmt::format("set {}range [{}:{}]\n", name, low / 10, low * 10);
+    if (low == high) return plain + fmt::format("set logscale {0}\nset {0}range [{1}:{2}]\n", name, low / 10, low * 10);
+    std::string s = plain + fmt::format("set logscale {0}\nset {0}range [{1}:{2}]\n", name, low / 1.3, high * 1.3);
     if (high / low > 100) return s + fmt::format("set format {} '10^{{%T}}'\n", name);
     // Less than two decades: ticks at 1, 2, 5 of each, or the axis would have one label or none.
     s += fmt::format("set {}tics (", name);
     const char* comma = "";
     for (real decade = std::pow(10.0, std::floor(std::log10(low)) - 1); decade <= high * 10; decade *= 10)
-        for (const int digit : {1, 2, 5}) s += fmt::format("{0}'{1:.4g}' {1:.4g}", comma, digit * decade), comma = ", ";
+        for (const int digit : {1, 2, 5}) {
+            if (digit * decade < low / 1.3 || digit * decade > high * 1.3) continue;
+            s += fmt::format("{0}'{1:.4g}' {1:.4g}", comma, digit * decade), comma = ", ";
+        }
     return s + ")\n";
 }
 
@@ -65,7 +69,9 @@ std::string style_of(const Curve& c, std::size_t number) {
     const char* colour = colours[number % std::size(colours)];
     if (c.points) return fmt::format("with points pt {} ps 0.8 lc rgb '{}'", 4 + 2 * (number % 6), colour);
     if (c.dashed) return "with lines dt 2 lw 1.5 lc rgb '#777777'";
-    if (c.size() <= 12) return fmt::format("with linespoints pt 7 ps 0.6 lw 2 lc rgb '{}'", colour);
+    if (c.size() <= 12)
+        return fmt::format("with linespoints pt {} ps 0.7 lw {} lc rgb '{}'", marks[number / std::size(colours) % std::size(marks)],
+                           number < std::size(colours) ? 2 : 1, colour);
     return fmt::format("with lines lw 2 lc rgb '{}'", colour);
 }
 
@@ -98,7 +104,7 @@ std::string gnuplot_program(const std::string& title, const std::vector<Panel>& 
     const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
     std::string s = fmt::format("set terminal svg size {},{} font 'sans,13' background '#ffffff'\nset output {}\n", columns * panel_width,
                                 rows * panel_height + 30, quoted(svg.string()));
-    s += "set grid lc rgb '#dddddd'; set border lw 1\n";
+    s += "set grid lc rgb '#dddddd'; set border lw 1; set lmargin 11; set rmargin 3\n";
     s += fmt::format("set multiplot layout {},{} title {} noenhanced font ',16'\n", rows, columns, quoted(title));
     for (std::size_t i = 0; i < panels.size(); ++i) s += panel_program(panels[i], i);
     return s + "unset multiplot\n";

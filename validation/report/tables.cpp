@@ -1,8 +1,6 @@
 // Fixed-width tables for people, CSV and JSON for programs.
 #include "validation/report/tables.hpp"
 
-#include "validation/harness/generic_metrics.hpp"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -20,9 +18,8 @@ std::string claim_of(const Verdict& v) {
     return s;
 }
 
-/// Whether an order of this metric means something: it is an error, or the case claims one.
+/// Whether the case claims an order of this metric: that of others (what round-off leaves) is noise.
 bool has_order(const VariantResult& v, const std::string& metric) {
-    if (quantity_of(metric) == Quantity::error) return true;
     return std::any_of(v.plan.accept.begin(), v.plan.accept.end(),
                        [&](const Criterion& c) { return c.metric == metric && (c.is_order() || c.test == Criterion::Test::gci_at_most); });
 }
