@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
     weir::app::add_run(app, exit_code);
     weir::app::add_validate(app, exit_code);
     weir::app::add_list(app, exit_code);
+    weir::app::add_describe(app, exit_code);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
