@@ -14,9 +14,12 @@ namespace {
 using scene::Key;
 using scene::Type;
 
-/// Makes the solver of the scene's dimension.
+/// Makes the solver of the scene's dimension. These solvers have no free surface, so liquid in a part of the domain is a mistake.
 template <template <int> class S>
 std::unique_ptr<Solver> make(const scene::Scene& scene) {
+    if (!scene.root().tables("liquid").empty())
+        scene.refuse("liquid", "solver \"" + scene.solver() + "\" has no free surface and no use for liquid",
+                     "solver \"mac_water\" has one");
     if (scene.dim() == 2) return std::make_unique<S<2>>(scene);
     return std::make_unique<S<3>>(scene);
 }

@@ -1,5 +1,6 @@
 #include "sim/simulation.hpp"
 
+#include "scene/names.hpp"
 #include "sim/finite.hpp"
 #include "sim/registry.hpp"
 
@@ -26,6 +27,17 @@ std::string get_text(const Checkpoint& from, const std::string& name) {
     return {text.begin(), text.end()};
 }
 
+void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
+    if (!scene.has("output.fields")) return;
+    std::vector<std::string> known;
+    for (const auto& field : fields.fields)
+        if (std::find(known.begin(), known.end(), field.name) == known.end()) known.push_back(field.name);
+    for (const auto& name : scene.root().texts("output.fields"))
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            scene.refuse("output.fields", "this scene has no field " + scene::quote(name) + scene::did_you_mean(name, known),
+                         scene::known(known));
+}
+
 }  // namespace
 
 Simulation::Simulation(const std::filesystem::path& scene, const std::vector<scene::Override>& overrides)
@@ -39,6 +51,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       probes_(scene_, *solver_),
       end_(scene_.number("time.end")),
       every_(scene_.root().number_or("output.every", infinity)) {
+    check_output_fields(scene_, solver_->fields());
     probes_.sample(*solver_);
 }
 
