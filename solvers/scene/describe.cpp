@@ -70,8 +70,11 @@ std::string topic_key_text(const Key& key) {
 std::string solver_text(const SolverSchema& solver) {
     std::string out = fmt::format("solver \"{}\", dim = {}\n", solver.name, fmt::join(solver.dims, " or "));
     out += wrapped(solver.doc, 4);
-    if (!solver.keys.empty()) out += "\nIts own keys, beside the common ones:\n";
-    for (const Key& k : solver.keys) out += k.name + topic_key_text(k);
+    const OwnKeys own = own_keys(solver);
+    if (!own.leaves.empty()) out += "\nIts own keys, beside the common ones:\n";
+    for (const auto& leaf : own.leaves) out += "    " + leaf.path + key_text(leaf.key, 4).substr(4 + leaf.key.name.size());
+    for (const auto& choice : own.choices)
+        out += fmt::format("\n{} of {}:\n", choice.selector, fmt::join(choice.paths, ", ")) + names_text(choice.variants, 4);
     if (!solver.effects.empty()) out += "\nIts effects:\n" + names_text(solver.effects, 4);
     return out;
 }
@@ -90,6 +93,15 @@ std::string overview(const std::vector<SolverSchema>& solvers) {
         if (!effects.empty()) out += wrapped(fmt::format("effects: {}", fmt::join(effects, ", ")), 14);
     }
     return out + "\nweir describe NAME tells about a solver, an effect, a key such as time.cfl, a shape or a motion.\n";
+}
+
+/// The solvers that have an effect with this text: "solver \"mac\"", "solvers \"mac\" and \"mac_water\"".
+std::string solvers_with(const std::vector<SolverSchema>& solvers, const std::string& text) {
+    std::vector<std::string> names;
+    for (const SolverSchema& s : solvers)
+        if (std::any_of(s.effects.begin(), s.effects.end(), [&](const Variant& e) { return variant_text(e) == text; }))
+            names.push_back(s.name);
+    return (names.size() == 1 ? "solver " : "solvers ") + quote_all(names);
 }
 
 /// Collects everything that bears the topic's name, by itself or as the last part of a path; each text once.
@@ -163,7 +175,7 @@ std::string describe(std::string_view topic, const std::vector<SolverSchema>& so
     for (const SolverSchema& s : solvers) finder.offer(s.name, "", solver_text(s));
     for (const SolverSchema& s : solvers)
         for (const Variant& e : s.effects) {
-            finder.offer(e.name, fmt::format("effect \"{}\"", e.name), variant_text(e));
+            finder.offer(e.name, fmt::format("effect \"{}\" of {}", e.name, solvers_with(solvers, variant_text(e))), variant_text(e));
             finder.keys(e.keys, "effects." + e.name, "");
         }
     finder.keys(common_keys(), "", "");

@@ -16,6 +16,23 @@ std::string describe(std::string_view topic, const std::vector<SolverSchema>& so
 /// The manual page of scenes, docs/scene.md.
 std::string manual(const std::vector<SolverSchema>& solvers);
 
+/// What a solver adds to the common keys or changes in them: single keys by path, complete with what the common key says; and for
+/// tables that choose a variant, the variants that are its own, with all paths that have the same ones.
+struct OwnKeys {
+    struct Leaf {
+        std::string path;
+        Key key;
+    };
+    struct Choice {
+        std::vector<std::string> paths;
+        std::string selector;
+        std::vector<Variant> variants;
+    };
+    std::vector<Leaf> leaves;
+    std::vector<Choice> choices;
+};
+OwnKeys own_keys(const SolverSchema& solver);
+
 /// "a number [s], greater than 0 s", "one of ...": what may be written for a key.
 std::string value_text(const Key& key);
 /// Its default as a scene would write it; empty where there is none.

@@ -73,10 +73,28 @@ std::string top_section(const Key& key) {
     return out;
 }
 
+/// Variants that a solver adds, as a list: name, meaning, keys.
+std::string choice_list(const OwnKeys::Choice& choice) {
+    std::string paths;
+    for (const auto& path : choice.paths) paths += (paths.empty() ? "`" : ", `") + path + "`";
+    std::string out = fmt::format("\nA {} that {} may have here:\n\n", choice.selector, paths);
+    for (const Variant& v : choice.variants) {
+        out += fmt::format("- `{}`{}\n", v.name, v.doc.empty() ? "" : ": " + v.doc);
+        for (const Key& k : v.keys) {
+            const auto fallback = default_text(k);
+            const std::string absent = k.required ? "; required" : fallback.empty() ? "" : fmt::format("; `{}` if absent", fallback);
+            out += fmt::format("  - `{}`, {}{}{}\n", k.name, value_text(k), absent, k.doc.empty() ? "" : ": " + k.doc);
+        }
+    }
+    return out;
+}
+
 std::string solver_section(const SolverSchema& solver) {
     std::string out = fmt::format("\n### Solver `{}`\n{} Works with dim = {}.\n", solver.name, solver.doc, fmt::join(solver.dims, " or "));
-    out += key_table(solver.keys);
-    for (const Key& key : solver.keys) out += nested_variants(key) + (key.selector.empty() ? "" : variants_section(key, "####"));
+    const OwnKeys own = own_keys(solver);
+    if (!own.leaves.empty()) out += "\n| key | value | if absent | meaning |\n|---|---|---|---|\n";
+    for (const auto& leaf : own.leaves) out += row(leaf.key, leaf.path);
+    for (const auto& choice : own.choices) out += choice_list(choice);
     if (!solver.effects.empty()) out += fmt::format("\nEffects of `{}`:\n", solver.name);
     for (const Variant& effect : solver.effects) out += variant_section(effect, "####");
     return out;

@@ -35,7 +35,7 @@ TEST("a shape is described with its keys") {
 
 TEST("an effect is described once, though several solvers have it") {
     EXPECT_EQ(about("confinement"),
-              "effect \"confinement\"\n"
+              "effect \"confinement\" of solvers \"smoke\" and \"water\"\n"
               "    Vorticity confinement.\n"
               "    epsilon: a number, at least 0; required\n"
               "        Strength.\n");
@@ -48,6 +48,15 @@ TEST("a key by its last name, a side, a motion and a solver are found") {
     EXPECT_TRUE(says(about("keyframes"), "frames: a list of tables; required"));
     EXPECT_TRUE(says(about("water"), "surface_tension"));
     EXPECT_TRUE(says(about(""), "Solvers:\n    smoke"));
+}
+
+TEST("a solver's own keys are those that it adds or changes") {
+    const auto own = scene::own_keys(scene::made_up::water_schema());
+    std::vector<std::string> paths;
+    for (const auto& leaf : own.leaves) paths.push_back(leaf.path);
+    EXPECT_EQ(paths, (std::vector<std::string>{"scheme.advection", "scheme.poisson.method", "scheme.poisson.tolerance",
+                                               "scheme.poisson.max_iterations", "scheme.poisson.fixed", "time.cfl", "liquid", "markers"}));
+    EXPECT_EQ(own.leaves[5].key.doc.substr(0, 8), "How many") << "what the common key says stays said";
 }
 
 TEST("an unknown topic names the nearest") {
