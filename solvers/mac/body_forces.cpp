@@ -1,4 +1,5 @@
 // Forces on the fluid's bulk: gravity and buoyancy.
+#include "mac/advection.hpp"
 #include "mac/effects.hpp"
 
 namespace weir::mac {
@@ -42,7 +43,17 @@ struct Buoyancy final : MacEffect<D> {
     }
     void apply(MacState<D>& s, real dt) override {
         const auto add = [&](const Grid<real, D>& q, real factor, real zero) {
-            for_each_free_face(s.u, s.sides, up, [&](const Index<D>& I) { s.u[up](I) += dt * factor * (at_face(q, I, up) - zero); });
+            const Nodes<D> faces = free_faces(s.u, s.sides, up);
+            const real push = dt * factor;
+            for_each_row(faces.lo, faces.hi, [&](const Index<D>& first, int count) {
+                real* v = &s.u[up](first);
+                Index<D> above = first, under = first - e<D>(up);  // on a side there is one cell, or the one around a periodic axis
+                above[up] = std::min(above[up], q.extent()[up] - 1);
+                if (under[up] < 0) under[up] = s.sides.periodic(up) ? q.extent()[up] - 1 : 0;
+                const real *here = &q(above), *below = &q(under);
+#pragma omp simd
+                for (int i = 0; i < count; ++i) v[i] += push * (0.5 * (below[i] + here[i]) - zero);
+            });
         };
         if (beta != 0) add(s["temperature"], beta, ambient);
         if (alpha != 0) add(s["smoke"], -alpha, 0);

@@ -19,7 +19,7 @@ std::vector<std::string> initial_fields(const scene::Scene& scene);
 /// Sets u from "initial.velocity" (rest where absent), faces of closed sides from the sides.
 template <int D>
 void set_initial_velocity(MacState<D>& s, const scene::Scene& scene);
-/// Sets a cell field from "initial.<name>" (0 where absent).
+/// Sets a cell field from "initial.<name>" (left as it is where absent).
 template <int D>
 void set_initial_field(Grid<real, D>& q, const MacVelocity<D>& grid, const scene::Scene& scene, const std::string& name);
 

@@ -50,7 +50,16 @@ void add_gradient(MacVelocity<D>& u, const MacState<D>& s, real factor) {
         const auto add = [&](const Index<D>& I, real difference) {
             if (!open || (*open)(I) > 0) u[a](I) += f * difference;
         };
-        for_each_inner_face(u, a, [&](const Index<D>& I) { add(I, s.p(I) - s.p(I - e<D>(a))); });
+        for_each_row(e<D>(a), u.cells, [&](const Index<D>& first, int count) {
+            const real *p = &s.p(first), *below = &s.p(first - e<D>(a)), *w = open ? &(*open)(first) : nullptr;
+            real* out = &u[a](first);
+            if (w) {
+                for (int i = 0; i < count; ++i) out[i] += w[i] > 0 ? f * (p[i] - below[i]) : 0;
+            } else {
+#pragma omp simd
+                for (int i = 0; i < count; ++i) out[i] += f * (p[i] - below[i]);
+            }
+        });
         const int n = u.cells[a];
         const Index<D> first{};
         Index<D> end = u.cells;
@@ -104,10 +113,29 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
     solver_->setup(matrix_);
 }
 
+/// rhs = scale ∇·u where no solid stands.
+template <int D>
+static void set_plain_rhs(const MacVelocity<D>& u, real scale, Grid<real, D>& rhs) {
+    for_each_row(Index<D>{}, u.cells, [&](const Index<D>& first, int count) {
+        real* out = &rhs(first);
+        std::fill_n(out, count, 0.0);
+        for (int a = 0; a < D; ++a) {
+            const real *below = &u[a](first), *above = below + u[a].stride(a);
+            const real h = u.h[a];
+#pragma omp simd
+            for (int i = 0; i < count; ++i) out[i] += (above[i] - below[i]) / h;
+        }
+        for (int i = 0; i < count; ++i) out[i] *= scale;
+    });
+}
+
 template <int D>
 const poisson::Report& Projection<D>::project(MacState<D>& s, real dt) {
     const real scale = -s.u.h[0] * s.u.h[0] * s.rho / dt;
-    for_each_cell(s.extent(), [&](const Index<D>& I) { rhs_(I) = s.cells(I) == Cell::fluid ? scale * flux_divergence(s, I) : 0; });
+    if (s.solid.any())
+        for_each_cell(s.extent(), [&](const Index<D>& I) { rhs_(I) = s.cells(I) == Cell::fluid ? scale * flux_divergence(s, I) : 0; });
+    else
+        set_plain_rhs(s.u, scale, rhs_);
     const poisson::Report& report = solver_->solve(s.p, rhs_);
     add_gradient(s.u, s, -dt / s.rho);
     return report;

@@ -7,6 +7,7 @@
 #include "core/parallel.hpp"
 #include "core/types.hpp"
 #include "mac/ghosts.hpp"
+#include "mac/rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +15,6 @@
 #include <cstddef>
 
 namespace weir::mac {
-
-inline constexpr int row_block = 128;  // points handled at once: a few kB of scratch that stays in the first-level cache
 
 /// Where a row's points stand: displacement from their home nodes along each axis [cells].
 template <int D>
@@ -41,16 +40,6 @@ struct RowView {
         }
     }
 };
-
-/// f(first, count) on blocks of rows covering [lo, hi), threaded over the slowest axis.
-template <int D, class F>
-void for_each_row(const Index<D>& lo, const Index<D>& hi, F&& f) {
-    Index<D> first_column = hi;
-    first_column[0] = lo[0] + 1;
-    for_each_in(lo, first_column, [&](Index<D> I) {
-        for (; I[0] < hi[0]; I[0] += row_block) f(I, std::min(row_block, hi[0] - I[0]));
-    });
-}
 
 /// The two nodes around a point along one axis: offset of the lower one from the home index, and the weights of both.
 struct Between {

@@ -53,6 +53,13 @@ real fastest_side(const MacState<D>& s) {
     return rate;
 }
 
+/// Where nothing else is said, a room is as warm as its surroundings: the ambient temperature of buoyancy, or of cooling.
+real ambient_temperature(const scene::Scene& scene) {
+    for (const char* effect : {"buoyancy", "cooling"})
+        if (const auto* table = scene.effect(effect)) return table->number("ambient");
+    return 0;
+}
+
 bool lists(const scene::Scene& scene, const std::string& field) {
     const auto& names = scene.root().texts("output.fields");
     return std::find(names.begin(), names.end(), field) != names.end();
@@ -83,6 +90,7 @@ SmokeSolver<D>::SmokeSolver(const scene::Scene& scene)
     set_initial_velocity(state_, scene);
     for (auto& field : state_.fields) {
         field.before = Padded<D>(state_.extent());
+        if (field.name == "temperature") field.values.fill(ambient_temperature(scene));
         set_initial_field(field.values, state_.u, scene, field.name);
     }
     solids_.set_faces(state_);

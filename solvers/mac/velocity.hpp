@@ -3,6 +3,7 @@
 #include "core/grid.hpp"
 #include "core/types.hpp"
 #include "geometry/sides.hpp"
+#include "mac/rows.hpp"
 
 #include <array>
 
@@ -84,12 +85,12 @@ void sync_periodic(MacVelocity<D>& u, const geometry::Sides<D>& sides) {
     }
 }
 
-/// Largest |uₐ| / hₐ over all faces and axes [1/s]; dt times it is the CFL number. NaN if any face is NaN.
+/// Largest |uₐ| / hₐ over all faces and axes [1/s]; dt times it is the CFL number. NaN if any face is not finite.
 template <int D>
 real max_rate(const MacVelocity<D>& u) {
     real rate = 0;
     for (int a = 0; a < D; ++a) {
-        const real m = max_over(u[a].extent(), [&](const Index<D>& I) { return std::abs(u[a](I)); }) / u.h[a];
+        const real m = max_magnitude(u[a]) / u.h[a];
         if (m > rate || std::isnan(m)) rate = m;
         if (std::isnan(rate)) break;
     }
