@@ -8,11 +8,10 @@ namespace {
 
 /// Our curve in the experiment's units, `shift` later; before that the column stands as it was.
 Curve scaled(const ProbeSeries& probe, real time_unit, real length, real shift, std::string label) {
-    Curve c{.label = std::move(label), .x = {}, .y = {}};
-    for (std::size_t i = 0; i < probe.times.size(); ++i) {
-        c.x.push_back(probe.times[i] / time_unit + shift);
-        c.y.push_back(probe.values[i].at(0) / length);
-    }
+    Curve c = column(probe, 0);
+    c.label = std::move(label);
+    for (auto& t : c.x) t = t / time_unit + shift;
+    for (auto& y : c.y) y /= length;
     if (shift > 0) c.x.insert(c.x.begin(), 0.0), c.y.insert(c.y.begin(), c.y.front());
     return c;
 }
