@@ -148,17 +148,19 @@ void CharacteristicAdvection<D>::correct(const Padded<D>& source, const Nodes<D>
         const std::size_t at = offset(source.extent(), first);
         const real *low = low_.data() + at, *high = high_.data() + at;
         real* out = &q(first);
+        // The limits are pure functions of their arguments: g++ 12 mishandles variables captured in simd loops (clamped values were
+        // wrong by as much as the correction, found by the rotating_gaussian case).
         const auto each = [&](auto limit) {
 #pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] = limit(hat[i] + 0.5 * (before[i] - returned[i]), i);
+            for (int i = 0; i < count; ++i) out[i] = limit(hat[i] + 0.5 * (before[i] - returned[i]), hat[i], low[i], high[i]);
         };
         switch (options_.limiter) {
             case Limiter::clamp:
-                return each([&](real value, int i) { return std::min(std::max(value, low[i]), high[i]); });
+                return each([](real value, real, real least, real most) { return std::min(std::max(value, least), most); });
             case Limiter::revert:
-                return each([&](real value, int i) { return value < low[i] || value > high[i] ? hat[i] : value; });
+                return each([](real value, real safe, real least, real most) { return value < least || value > most ? safe : value; });
             case Limiter::none:
-                return each([](real value, int) { return value; });
+                return each([](real value, real, real, real) { return value; });
         }
     });
 }
