@@ -111,9 +111,26 @@ real mean_kinetic_energy(const FieldSet& fields) {
 }
 
 real max_speed(const FieldSet& fields) {
+    const FieldView& u = velocity(fields);
+    const FieldView* phi = fields.find("level_set");
+    const GridView& g = fields.grid;
     real speed = 0;
-    for (const auto& component : velocity(fields).data)
-        for (const real v : component) speed = (std::abs(v) > speed || std::isnan(v)) ? std::abs(v) : speed;
+    for (int c = 0; c < u.components(); ++c) {
+        const auto C = static_cast<std::size_t>(c);
+        const std::array<int, 3> n = sample_counts(g, face_axis_of(u, c));
+        const auto wet = [&](std::array<int, 3> I) {
+            if (!phi || u.where != Where::face) return true;
+            const bool above = I[C] < g.cells[C] && value_at(*phi, g, 0, I) < 0;
+            --I[C];
+            return above || (I[C] >= 0 && value_at(*phi, g, 0, I) < 0);
+        };
+        for (int k = 0; k < n[2]; ++k)
+            for (int j = 0; j < n[1]; ++j)
+                for (int i = 0; i < n[0]; ++i) {
+                    const real v = std::abs(value_at(u, g, c, {i, j, k}));
+                    if (!(v <= speed) && wet({i, j, k})) speed = v;
+                }
+    }
     return speed;
 }
 

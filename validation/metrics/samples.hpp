@@ -45,7 +45,7 @@ real cubic(const Curve& c, real at);
 
 /// Mean over the domain of |u|^2 / 2 [m^2/s^2].
 real mean_kinetic_energy(const FieldSet& fields);
-/// Largest |u| of any face [m/s].
+/// Largest |u| of any face [m/s]; where the solver shows a level set, of faces that touch liquid (those in air carry no fluid).
 real max_speed(const FieldSet& fields);
 
 }  // namespace weir::validation
