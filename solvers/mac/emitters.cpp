@@ -2,6 +2,8 @@
 
 #include "geometry/shape.hpp"
 
+#include <algorithm>
+
 namespace weir::mac {
 
 namespace {
@@ -22,6 +24,9 @@ std::vector<std::size_t> covered(const geometry::Shape<D>& shape, const Index<D>
     }
     return entries;
 }
+
+/// t < moment, where a sum of rounded steps that ends at the moment counts as there.
+bool before(real t, real moment) { return t < moment * (1 - 1e-9); }
 
 }  // namespace
 
@@ -58,7 +63,7 @@ Emitters<D>::Emitters(const scene::Scene& scene, const MacVelocity<D>& grid) : c
 template <int D>
 void Emitters<D>::apply(MacState<D>& s, real) {
     for (const auto& emitter : emitters_) {
-        if (s.time < emitter.start || s.time >= emitter.end) continue;
+        if (before(s.time, emitter.start) || !before(s.time, emitter.end)) continue;
         for (const auto& set : emitter.sets) {
             auto& values = set.axis < 0 ? s[set.field] : s.u[set.axis];
             for (const std::size_t i : set.entries) values[i] = set.value;
@@ -66,9 +71,13 @@ void Emitters<D>::apply(MacState<D>& s, real) {
     }
 }
 
+/// No step crosses the moment at which an emitter opens: what it will heat and push is not known before.
 template <int D>
-real Emitters<D>::max_dt(const MacState<D>&) const {
-    return max_rate_ > 0 ? cfl_ / max_rate_ : infinity;
+real Emitters<D>::max_dt(const MacState<D>& s) const {
+    real limit = max_rate_ > 0 ? cfl_ / max_rate_ : infinity;
+    for (const auto& emitter : emitters_)
+        if (before(s.time, emitter.start)) limit = std::min(limit, emitter.start - s.time);
+    return limit;
 }
 
 template class Emitters<2>;

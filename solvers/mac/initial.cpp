@@ -149,7 +149,7 @@ std::function<real(const Vec<D>&)> field_function(const scene::Table& table) {
             return slotted_disk({{x[0] - centre[0], x[1] - centre[1]}}, r, slot, top);
         };
     const real radius = table.number("radius");
-    if (name == "disk") return [centre, radius](const Vec<D>& x) { return norm(x - centre) - radius; };
+    if (name == "distance") return [centre, radius](const Vec<D>& x) { return norm(x - centre) - radius; };
     if (name == "ball")
         return [centre, radius, in = table.number("value"), out = table.number("outside")](const Vec<D>& x) {
             return norm(x - centre) < radius ? in : out;

@@ -95,6 +95,7 @@ SmokeSolver<D>::SmokeSolver(const scene::Scene& scene)
     }
     solids_.set_faces(state_);
     clear_solids();
+    effects_.apply(Stage::source, state_, 0);  // what is emitted from the start is there at the start: the first step knows its forces
 }
 
 template <int D>
