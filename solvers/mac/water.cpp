@@ -27,7 +27,7 @@ StepReport Water<D>::step(real dt) {
             .iterations = poisson.iterations,
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
-            .residual_max = poisson.residual_max};
+            .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0])};
 }
 
 template <int D>
