@@ -152,7 +152,10 @@ std::optional<Value> Reader::list(const Node& node, const Key& key, const std::s
     if (node.kind != Node::Kind::list) return wrong_type(node, key, path), std::nullopt;
     if (!right_length(node, key, path)) return std::nullopt;
     Key entry = key;
-    entry.type = key.type == Type::numbers ? Type::number : key.type == Type::integers ? Type::integer : Type::choice;
+    entry.type = key.type == Type::numbers    ? Type::number
+                 : key.type == Type::integers ? Type::integer
+                 : key.choices.empty()        ? Type::text
+                                              : Type::choice;
     std::vector<double> numbers;
     std::vector<std::string> texts;
     bool good = true;
