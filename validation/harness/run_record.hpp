@@ -3,7 +3,6 @@
 #include "core/error.hpp"
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
-#include "sim/simulation.hpp"
 #include "validation/harness/curve.hpp"
 
 #include <cstdint>
@@ -12,6 +11,10 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace weir {
+class Simulation;
+}
 
 namespace weir::validation {
 
@@ -22,6 +25,16 @@ struct Moment {
     StepReport report{};
     std::vector<real> integrals{};  // in the order of RunRecord::integrals
     std::vector<real> observed{};   // in the order of RunRecord::observers
+};
+
+/// Samples of one probe. Row i of `values` was taken at times[i] [s] and has one entry a column.
+struct ProbeSeries {
+    std::string name{};
+    std::string kind{};                  // point, line, gauge, wall_pressure, integral, front
+    std::vector<std::string> columns{};  // "velocity_x [m/s]", "height [m]", ...
+    std::vector<Vec<3>> positions{};     // of each column's sample where it has one (points, lines, gauges) [m]
+    std::vector<real> times{};
+    std::vector<std::vector<real>> values{};
 };
 
 /// History of one column of a probe.

@@ -49,8 +49,9 @@ bool is_series(const std::string& metric, const Variant& variant) {
     return false;
 }
 
-/// A series to draw and judge: the metric itself, or what stands before its ".drift".
-std::optional<Curve> history_of(const RunRecord& record, const std::string& metric) {
+/// A series to draw and judge: the metric itself, or what stands before its ".drift". What a metric draws itself needs no second picture.
+std::optional<Curve> history_of(const RunRecord& record, const std::string& metric, bool judged) {
+    if (const Metric* m = find_metric(metric); !judged && m && m->figure) return std::nullopt;
     for (const std::string& name : {metric, metric.substr(0, metric.rfind('.'))}) try {
             return record.series(name);
         } catch (const BadInput&) {
@@ -85,7 +86,7 @@ real mesh_width(const Variant& variant, std::size_t i, const scene::Scene& scene
 void take(RunResult& result, const RunRecord& record, const Reference& reference, const Variant& variant) {
     for (const std::string& metric : metrics_of(variant)) {
         result.units[metric] = unit_of(metric, record);
-        if (const auto series = history_of(record, metric)) result.series[metric] = *series;
+        if (const auto series = history_of(record, metric, is_series(metric, variant))) result.series[metric] = *series;
         if (!is_series(metric, variant)) result.measured[metric] = measure(metric, record, reference);
         const Metric* m = find_metric(metric);
         if (m && m->figure) result.panels.push_back(m->figure(record, reference));
@@ -121,7 +122,7 @@ RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers
             fmt::format("step {}, t = {:.6g} s: {}", step, failure.step >= 0 ? failure.time : simulation.time(), failure.what());
     }
     record.fields = simulation.fields();
-    record.probes = simulation.probes();
+    for (const auto& p : simulation.probes()) record.probes.push_back({p.name, p.kind, p.columns, p.positions, p.times, p.values});
     record.passes = simulation.solver().passes().list();
     return record;
 }

@@ -105,19 +105,30 @@ void add_profiles(std::vector<Panel>& panels, const CaseResult& result) {
     }
 }
 
+/// What a series shows: itself, or for a drift its change relative to the start.
+Curve shown(Curve series, const std::string& metric) {
+    if (!metric.ends_with(".drift") || series.y.empty()) return series;
+    const real first = series.y.front();
+    for (real& y : series.y) y = (y - first) / std::abs(first);
+    series.label += ", relative change";
+    return series;
+}
+
 void add_histories(std::vector<Panel>& panels, const CaseResult& result) {
+    std::set<std::string> drawn;
     for (const std::string& metric : metrics_of(result)) {
-        Panel panel{.title = metric + " over the run", .x = {"time t [s]"}, .y = {metric + unit_label(result, metric)}};
+        Panel panel{.x = {"time t [s]"}};
         for (const auto& v : result.variants) {
             if (v.runs.empty()) continue;
             const auto at = v.runs.back().series.find(metric);
             if (at == v.runs.back().series.end() || at->second.size() < 2) continue;
-            Curve c = at->second;
+            Curve c = shown(at->second, metric);
+            panel.title = c.label + " over the run";
             panel.y.label = c.label + unit_label(result, metric);
             c.label = label_of(v, "weir") + (v.runs.back().label.empty() ? "" : " " + v.runs.back().label);
             panel.curves.push_back(std::move(c));
         }
-        if (!panel.curves.empty()) panels.push_back(std::move(panel));
+        if (!panel.curves.empty() && drawn.insert(panel.title).second) panels.push_back(std::move(panel));
     }
 }
 
