@@ -4,6 +4,7 @@
 #include "particles/isa.hpp"
 #include "pbf/solver.hpp"
 #include "scene/scene.hpp"
+#include "sph/solver.hpp"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -32,7 +33,7 @@ struct Result {
 
 scene::Scene scene_of(const Job& job) {
     const int n = job.cells;
-    const auto kinds = {pbf::kind()};
+    const auto kinds = {pbf::kind(), sph::kind()};
     std::vector<scene::SolverSchema> schemas;
     for (const auto& kind : kinds) schemas.push_back(kind.schema);
     std::vector<scene::Override> set{{"solver", "\"" + job.solver + "\""},
@@ -60,7 +61,7 @@ double integral(const Solver& solver, const std::string& name) {
 Result run(const Job& job) {
     set_threads(job.threads);
     const scene::Scene scene = scene_of(job);
-    const std::unique_ptr<Solver> solver = pbf::kind().make(scene);
+    const std::unique_ptr<Solver> solver = job.solver == "pbf" ? pbf::kind().make(scene) : sph::kind().make(scene);
     const double dt = scene.number("time.dt");
     while (solver->time() < job.start - 0.5 * dt) solver->step(dt);
     solver->passes().reset();
@@ -91,7 +92,7 @@ Result run(const Job& job) {
 
 int main(int argc, char** argv) {
     CLI::App app{"Milliseconds a step of the particle solvers"};
-    std::vector<std::string> solvers{"pbf"}, isas{"auto"};
+    std::vector<std::string> solvers{"pbf", "sph"}, isas{"auto"};
     std::vector<int> cells{32, 50}, iterations{4, 8}, threads{2, 1};
     bool csv = false, passes = false;
     int steps = 20;

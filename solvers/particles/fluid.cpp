@@ -29,6 +29,7 @@ void Fluid<D>::add(const Vec<D>& at, const Vec<D>& velocity) {
     }
     id.push_back(next_id++);
     density.push_back(rho0);
+    carried.push_back(0);
 }
 
 template <int D>
@@ -54,6 +55,7 @@ void Fluid<D>::reorder(const std::vector<int>& order) {
     for (std::size_t a = 0; a < D; ++a) arrange(x[a]), arrange(v[a]);
     arrange(id);
     arrange(density);
+    arrange(carried);
 }
 
 template <int D>
@@ -125,6 +127,7 @@ void Fluid<D>::save(Checkpoint& to) const {
     }
     to.put("particles.id", id);
     to.put("particles.density", density);
+    to.put("particles.carried", carried);
     to.put("particles.clock", std::vector<real>{time, next_id});
     to.put_value("particles.steps", steps);
 }
@@ -137,6 +140,7 @@ void Fluid<D>::restore(const Checkpoint& from) {
     }
     from.get("particles.id", id);
     from.get("particles.density", density);
+    from.get("particles.carried", carried);
     std::vector<real> clock;
     from.get("particles.clock", clock);
     time = clock.at(0);

@@ -16,6 +16,7 @@ struct Fluid {
     std::array<std::vector<real>, D> x, v;  // [m], [m/s]
     std::vector<real> id;                   // in order of birth; particles change places in the arrays
     std::vector<real> density;              // of the last step [kg/m^3]
+    std::vector<real> carried;              // a number that the solver keeps for each particle (PBF: the multiplier over dt^2)
     real rho0 = 1, mass = 1;                // [kg/m^3], [kg] (2D: per metre of depth)
     real time = 0;                          // [s]
     std::int64_t steps = 0;
@@ -57,7 +58,7 @@ struct Fluid {
     std::vector<Integral> integrals() const;
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
-    std::size_t bytes() const { return (2 * D + 2) * id.capacity() * sizeof(real); }
+    std::size_t bytes() const { return (2 * D + 3) * id.capacity() * sizeof(real); }
 
 private:
     std::vector<real> scratch_;
@@ -73,10 +74,12 @@ void Fluid<D>::remove_if(F&& gone) {
         for (std::size_t a = 0; a < D; ++a) x[a][at] = x[a][from], v[a][at] = v[a][from];
         id[at] = id[from];
         density[at] = density[from];
+        carried[at] = carried[from];
     }
     for (std::size_t a = 0; a < D; ++a) x[a].resize(static_cast<std::size_t>(to)), v[a].resize(static_cast<std::size_t>(to));
     id.resize(static_cast<std::size_t>(to));
     density.resize(static_cast<std::size_t>(to));
+    carried.resize(static_cast<std::size_t>(to));
 }
 
 /// Sum of f(i) over [0, count) in blocks of fixed size, so that the sum does not depend on the number of threads.

@@ -15,11 +15,16 @@ namespace single = weir::particles::single;
 #define MAX0(x) max0(x)
 #define RSQRT(x) rsqrt(x)
 using single::PbfParams;
+using single::SphParams;
 using single::WallParams;
 #include "particles/kernels/pair.inl"
 
 inline void prefetch(const std::uint32_t* row) { _mm_prefetch(reinterpret_cast<const char*>(row + 16 * lanes), _MM_HINT_T0); }
 inline int live(int first, int count) { return first + lanes <= count ? lanes : count - first; }
+inline vf load_numbers(const float* from, int first) {
+    typedef vf unaligned __attribute__((aligned(4)));
+    return *reinterpret_cast<const unaligned*>(from + first);
+}
 inline void store_numbers(float* to, int first, int count, vf value) {
     for (int l = 0; l < count; ++l) to[first + l] = value[l];
 }
@@ -57,23 +62,35 @@ inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int
 namespace muller {
 #define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
 #define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h, (p)->guard)
 #include "particles/kernels/pbf_passes.inl"
+
+#include "particles/kernels/sph_passes.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
+#undef WEIR_LAPLACIAN
 }  // namespace muller
 namespace spline {
 #define WEIR_DENSITY(r2, p) cubic(r2, (p)->h, (p)->guard)
 #define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
 #include "particles/kernels/pbf_passes.inl"
+
+#include "particles/kernels/sph_passes.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
+#undef WEIR_LAPLACIAN
 }  // namespace spline
 namespace c2 {
 #define WEIR_DENSITY(r2, p) wendland(r2, (p)->h, (p)->guard)
 #define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
 #include "particles/kernels/pbf_passes.inl"
+
+#include "particles/kernels/sph_passes.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
+#undef WEIR_LAPLACIAN
 }  // namespace c2
 
 Built build(const ListJob& job, ListChunk& chunk) { return build_list(job, chunk); }
@@ -81,14 +98,26 @@ Built build(const ListJob& job, ListChunk& chunk) { return build_list(job, chunk
 }  // namespace
 
 #if WEIR_ISA == 512
-const PassTable passes_avx512{
-    "avx512", lanes, build, {muller::table, spline::table, c2::table}, {muller::finish_table, spline::finish_table, c2::finish_table}};
+const PassTable passes_avx512{"avx512",
+                              lanes,
+                              build,
+                              {muller::table, spline::table, c2::table},
+                              {muller::finish_table, spline::finish_table, c2::finish_table},
+                              {muller::sph_table, spline::sph_table, c2::sph_table}};
 #elif WEIR_ISA == 256
-const PassTable passes_avx2{
-    "avx2", lanes, build, {muller::table, spline::table, c2::table}, {muller::finish_table, spline::finish_table, c2::finish_table}};
+const PassTable passes_avx2{"avx2",
+                            lanes,
+                            build,
+                            {muller::table, spline::table, c2::table},
+                            {muller::finish_table, spline::finish_table, c2::finish_table},
+                            {muller::sph_table, spline::sph_table, c2::sph_table}};
 #else
-const PassTable passes_sse2{
-    "sse2", lanes, build, {muller::table, spline::table, c2::table}, {muller::finish_table, spline::finish_table, c2::finish_table}};
+const PassTable passes_sse2{"sse2",
+                            lanes,
+                            build,
+                            {muller::table, spline::table, c2::table},
+                            {muller::finish_table, spline::finish_table, c2::finish_table},
+                            {muller::sph_table, spline::sph_table, c2::sph_table}};
 #endif
 
 }  // namespace weir::particles

@@ -55,6 +55,7 @@ struct PbfPass {
     float* to = nullptr;
     const float* solid = nullptr;  // of each particle: part of the kernel inside solids, and its gradient
     float* density = nullptr;      // rho / rho0
+    float* multiplier = nullptr;   // sum of lambda over the iterations; null: not kept
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
 };
@@ -66,6 +67,20 @@ struct FinishPass {
     const float* positions = nullptr;
     const float* values = nullptr;  // velocities, or vorticity and its length
     float* to = nullptr;
+    const std::size_t* first = nullptr;
+    const int* rows = nullptr;
+};
+
+/// What the passes of SPH read and write: float4 arrays (x, y, z, 1 / rho) and (velocity, pressure).
+struct SphPass {
+    const single::SphParams* p = nullptr;
+    const single::WallParams* walls = nullptr;
+    int count = 0;
+    const float* positions = nullptr;
+    const float* velocities = nullptr;
+    const float* solid = nullptr;
+    float* density = nullptr;       // rho
+    float* acceleration = nullptr;  // float4
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
 };
@@ -86,6 +101,10 @@ struct PassTable {
         void (*curl)(const FinishPass&, const ListChunk&);
         void (*confine)(const FinishPass&, const ListChunk&);
     } finish[3];
+    struct Sph {
+        void (*density)(const SphPass&, const ListChunk&);
+        void (*force)(const SphPass&, const ListChunk&);
+    } sph[3];
 };
 
 extern const PassTable passes_sse2, passes_avx2, passes_avx512;

@@ -10,41 +10,67 @@ namespace {
 #define SCALAR double
 #include "particles/kernels/prelude_double.h"
 using plain::PbfParams;
+using plain::SphParams;
 using plain::WallParams;
 #include "particles/kernels/pair.inl"
 
 namespace muller {
 #define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
 #define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h, (p)->guard)
 #include "particles/kernels/pbf_pair.inl"
+
+#include "particles/kernels/sph_pair.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
+#undef WEIR_LAPLACIAN
 }  // namespace muller
 namespace spline {
 #define WEIR_DENSITY(r2, p) cubic(r2, (p)->h, (p)->guard)
 #define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
 #include "particles/kernels/pbf_pair.inl"
+
+#include "particles/kernels/sph_pair.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
+#undef WEIR_LAPLACIAN
 }  // namespace spline
 namespace c2 {
 #define WEIR_DENSITY(r2, p) wendland(r2, (p)->h, (p)->guard)
 #define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
 #include "particles/kernels/pbf_pair.inl"
+
+#include "particles/kernels/sph_pair.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
+#undef WEIR_LAPLACIAN
 }  // namespace c2
 
 struct Functions {
     double (*density)(double, const PbfParams*);
     double (*slope)(double, const PbfParams*);
     double (*correction)(double, double, const PbfParams*);
+    double (*sph_density)(double, const SphParams*);
+    double (*sph_push)(double, double, double, double, const SphParams*);
+    double (*sph_drag)(double, double, const SphParams*);
 };
-constexpr Functions functions[3] = {{muller::pbf_density, muller::pbf_slope, muller::pbf_correction_with_pressure},
-                                    {spline::pbf_density, spline::pbf_slope, spline::pbf_correction_with_pressure},
-                                    {c2::pbf_density, c2::pbf_slope, c2::pbf_correction_with_pressure}};
+constexpr Functions functions[3] = {
+    {muller::pbf_density, muller::pbf_slope, muller::pbf_correction_with_pressure, muller::sph_density, muller::sph_push, muller::sph_drag},
+    {spline::pbf_density, spline::pbf_slope, spline::pbf_correction_with_pressure, spline::sph_density, spline::sph_push, spline::sph_drag},
+    {c2::pbf_density, c2::pbf_slope, c2::pbf_correction_with_pressure, c2::sph_density, c2::sph_push, c2::sph_drag}};
 
 /// Walls and solids at one particle: gradient, then part.
+std::array<double, 4> walls_at(const WallParams& walls, const Point& x) {
+    double part[3], pull[3], solid[4] = {0, 0, 0, 0}, out[4];
+    for (int a = 0; a < 3; ++a) {
+        part[a] = wall_part(x[static_cast<std::size_t>(a)], &walls, a);
+        pull[a] = wall_pull(x[static_cast<std::size_t>(a)], &walls, a);
+    }
+    walls_combined(part, pull, solid, out);
+    return {out[0], out[1], out[2], out[3]};
+}
 std::array<double, 4> walls_at(const ReferencePbf& r, const Point& x, std::size_t i) {
     double part[3], pull[3], solid[4] = {0, 0, 0, 0}, out[4];
     for (int a = 0; a < 3; ++a) {
@@ -89,7 +115,7 @@ std::vector<double> ReferencePbf::densities(const std::vector<Point>& x) const {
     return rho;
 }
 
-std::vector<double> ReferencePbf::lambdas(const std::vector<Point>& x) const {
+std::vector<double> ReferencePbf::lambdas(const std::vector<Point>& x, std::vector<double>* multiplier) const {
     std::vector<double> lambda(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
@@ -101,7 +127,9 @@ std::vector<double> ReferencePbf::lambdas(const std::vector<Point>& x) const {
             neighbours2 += slope * slope * r2;
             for (std::size_t a = 0; a < 3; ++a) own[a] += slope * d[a];
         });
-        lambda[i] = muller::pbf_lambda(rho, neighbours2, own[0] * own[0] + own[1] * own[1] + own[2] * own[2], &p);
+        const double before = multiplier ? (*multiplier)[i] : 0, sum = muller::pbf_multiplier(before, rho, neighbours2, square(own), &p);
+        if (multiplier) (*multiplier)[i] = sum;
+        lambda[i] = sum - before;
     }
     return lambda;
 }
@@ -115,9 +143,39 @@ std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const st
             const double factor = functions[kernel].correction(r2, lambda[i] + lambda[j], &p);
             for (std::size_t a = 0; a < 3; ++a) move[a] += factor * d[a];
         });
-        for (std::size_t a = 0; a < 3; ++a) to[i][a] = std::clamp(x[i][a] + p.relaxation * move[a], walls.keep_lo[a], walls.keep_hi[a]);
+        for (std::size_t a = 0; a < 3; ++a) to[i][a] = std::clamp(x[i][a] + move[a], walls.keep_lo[a], walls.keep_hi[a]);
     }
     return to;
+}
+
+std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
+    std::vector<double> rho(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        rho[i] = p.self + p.wall_rho * walls_at(walls, x[i])[3];
+        for (std::size_t j = 0; j < x.size(); ++j)
+            if (j != i) rho[i] += functions[kernel].sph_density(square(difference(x[i], x[j])), &p);
+    }
+    return rho;
+}
+
+std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
+                                               const std::vector<double>& pressure) const {
+    std::vector<Point> a(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const auto wall = walls_at(walls, x[i]);
+        a[i] = {0, 0, 0};
+        for (std::size_t b = 0; b < 3; ++b) a[i][b] = -pressure[i] / rho[i] * wall[b];
+        for (std::size_t j = 0; j < x.size(); ++j) {
+            const Point d = difference(x[i], x[j]), u = difference(v[i], v[j]);
+            const double r2 = square(d), approach = d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
+            if (j == i || r2 >= p.h2) continue;
+            const double push = functions[kernel].sph_push(r2, approach, (pressure[i] + pressure[j]) / (2 * rho[i] * rho[j]),
+                                                           0.5 / rho[i] + 0.5 / rho[j], &p);
+            const double drag = functions[kernel].sph_drag(r2, 1 / (rho[i] * rho[j]), &p);
+            for (std::size_t b = 0; b < 3; ++b) a[i][b] += push * d[b] - drag * u[b];
+        }
+    }
+    return a;
 }
 
 }  // namespace weir::particles

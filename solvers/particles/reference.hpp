@@ -23,9 +23,21 @@ struct ReferencePbf {
     void find_neighbours(const std::vector<Point>& x);
 
     std::vector<double> densities(const std::vector<Point>& x) const;
-    std::vector<double> lambdas(const std::vector<Point>& x) const;
-    /// x + relaxation * correction, kept inside the walls.
+    /// What this iteration adds to lambda. multiplier: the sums so far, updated; nullptr: every iteration starts from none.
+    std::vector<double> lambdas(const std::vector<Point>& x, std::vector<double>* multiplier = nullptr) const;
+    /// x + correction, kept inside the walls.
     std::vector<Point> corrected(const std::vector<Point>& x, const std::vector<double>& lambda) const;
+};
+
+/// The pair physics of SPH over all pairs.
+struct ReferenceSph {
+    plain::SphParams p{};
+    plain::WallParams walls{};
+    int kernel = 0;
+
+    std::vector<double> densities(const std::vector<Point>& x) const;
+    std::vector<Point> accelerations(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
+                                     const std::vector<double>& pressure) const;
 };
 
 }  // namespace weir::particles

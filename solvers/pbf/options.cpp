@@ -18,6 +18,7 @@ Options::Options(const scene::Scene& scene) {
     max_iterations = static_cast<int>(scene.integer("scheme.max_iterations"));
     cfm = scene.number("scheme.cfm");
     relaxation = scene.number("scheme.relaxation");
+    warm_start = scene.number("scheme.warm_start");
     isa = scene.text("scheme.isa");
     if (const auto* p = scene.effect("artificial_pressure")) {
         pressure_k = p->number("k");

@@ -37,8 +37,9 @@ template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     emitters_.apply(fluid_, dt);
     effects_.apply(Stage::force, flow_, dt);
-    predict(dt);         //  1-4
-    find_neighbours();   //  5-7
+    predict(dt);        //  1-4
+    find_neighbours();  //  5-7
+    warm_start(dt);
     int iterations = 0;  //  8
     const int most = options_.tolerance > 0 ? options_.max_iterations : options_.iterations;
     for (; iterations < most; ++iterations) {
@@ -47,6 +48,7 @@ StepReport PbfSolver<D>::step(real dt) {
         correct();  // 12-15
         collide();  // 16-19
     }
+    keep_multipliers(dt);
     update_velocities(dt);                     // 20-21, 23-24
     effects_.apply(Stage::finish, flow_, dt);  // 22
     const real speed = fluid_.max_speed();
@@ -88,9 +90,39 @@ PbfPass PbfSolver<D>::pass(const float* from, float* to) {
     a.to = to;
     a.solid = solids_.at(pairs_, from);
     a.density = density_.data();
+    a.multiplier = options_.warm_start > 0 ? multiplier_.data() : nullptr;
     a.first = pairs_.list().first();
     a.rows = pairs_.list().rows();
     return a;
+}
+
+/// Starts from the multipliers of the step before (they stand for a pressure, so they go with dt^2): the weight of the liquid above needs
+/// many iterations to be felt at the bottom, and hardly changes from step to step.
+template <int D>
+void PbfSolver<D>::warm_start(real dt) {
+    if (options_.warm_start == 0) return;
+    const auto timed = passes_.time("warm start");
+    pairs_.fit(multiplier_, 1);
+    float* x = pairs_.b();
+    const float* from = pairs_.a();
+    pairs_.each([&](int k) {
+        const auto before = static_cast<float>(options_.warm_start * dt * dt * fluid_.carried[static_cast<std::size_t>(pairs_.owner(k))]);
+        multiplier_[static_cast<std::size_t>(k)] = before;
+        for (int a = 0; a < 3; ++a) x[4 * k + a] = from[4 * k + a];
+        x[4 * k + 3] = before;
+    });
+    correct();
+    collide();
+}
+
+template <int D>
+void PbfSolver<D>::keep_multipliers(real dt) {
+    if (options_.warm_start == 0) return;
+    pairs_.each([&](int k) {
+        if (!pairs_.is_image(k))
+            fluid_.carried[static_cast<std::size_t>(pairs_.owner(k))] =
+                static_cast<real>(multiplier_[static_cast<std::size_t>(k)]) / (dt * dt);
+    });
 }
 
 /// lambda_i of eq. 11, from density and gradients, walls and solids in both.

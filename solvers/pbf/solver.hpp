@@ -42,6 +42,8 @@ private:
     };
     void predict(real dt);
     void find_neighbours();
+    void warm_start(real dt);
+    void keep_multipliers(real dt);
     void find_lambdas();
     void correct();
     void collide();
@@ -59,7 +61,8 @@ private:
     particles::Flow<D> flow_;
     Effects<particles::Flow<D>> effects_;
     std::array<std::vector<real>, D> x_star_;
-    std::vector<float> density_;  // rho / rho0 of each sorted particle
+    std::vector<float> density_;     // rho / rho0 of each sorted particle
+    std::vector<float> multiplier_;  // sum of lambda of each sorted particle over this step, with warm start
     Passes passes_;
     real cfl_ = 0.5, max_dt_ = infinity;
 };

@@ -2,6 +2,7 @@
 
 #include "mac/kinds.hpp"
 #include "pbf/solver.hpp"
+#include "sph/solver.hpp"
 
 #include <stdexcept>
 
@@ -9,7 +10,7 @@ namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
     static const std::vector<scene::SolverKind> kinds = {mac::smoke_kind(), mac::water_kind(), mac::transport_kind(), mac::poisson_kind(),
-                                                         pbf::kind()};
+                                                         pbf::kind(), sph::kind()};
     return kinds;
 }
 

@@ -26,16 +26,12 @@ typedef struct {
 
 typedef struct {
     SCALAR h, h2, guard;
-    SCALAR self;          /* W(0) m [kg/m^D] */
-    SCALAR density;       /* factor of the density kernel times m */
-    SCALAR gradient;      /* factor of the gradient kernel times m */
-    SCALAR laplacian;     /* factor of the viscosity kernel's Laplacian times m */
-    SCALAR rho0;          /* rest density [kg/m^3] */
-    SCALAR viscosity;     /* dynamic viscosity mu [Pa s] */
-    SCALAR alpha_c;       /* artificial viscosity: alpha c h [m^2/s]; 0 none */
-    SCALAR laminar;       /* laminar viscosity (Morris 1997; Lo & Shao 2002): kinematic nu [m^2/s]; 0 none */
-    SCALAR sound;         /* speed of sound c [m/s] */
-    SCALAR delta;         /* density diffusion 2 delta h c [m^2/s] */
-    SCALAR tension;       /* surface tension sigma [N/m] */
-    SCALAR smooth;        /* XSPH c [1] */
+    SCALAR self;       /* m W(0) [kg/m^3] */
+    SCALAR density;    /* factor of the density kernel times m */
+    SCALAR gradient;   /* factor of the gradient kernel times m */
+    SCALAR laplacian;  /* factor of the viscosity kernel's Laplacian times m */
+    SCALAR wall_rho;   /* density of what stands behind walls [kg/m^3] */
+    SCALAR viscosity;  /* dynamic viscosity mu [Pa s] */
+    SCALAR artificial; /* artificial viscosity: alpha c h / 2 [m^2/s] */
+    SCALAR soften;     /* keeps the artificial viscosity finite: 0.01 (h / 2)^2 [m^2] */
 } SphParams;

@@ -7,9 +7,12 @@ WEIR_FN REAL pbf_density(REAL r2, WEIR_PARAM PbfParams* p) { return p->density *
 /* s with (m / rho0) grad W = s (x_i - x_j)                                                                            eq. 8 */
 WEIR_FN REAL pbf_slope(REAL r2, WEIR_PARAM PbfParams* p) { return p->gradient * WEIR_SLOPE(r2, p); }
 
-/* lambda_i = -C_i / (sum_k |grad_k C_i|^2 + epsilon); the sum over k has the neighbours' part and |own|^2             eq. 11 */
-WEIR_FN REAL pbf_lambda(REAL density, REAL neighbours2, REAL own2, WEIR_PARAM PbfParams* p) {
-    return -MAX0(density - (SCALAR)1) / (neighbours2 + own2 + p->cfm);
+/* lambda_i = -C_i / (sum_k |grad_k C_i|^2 + epsilon); the sum over k has the neighbours' part and |own|^2             eq. 11
+   `before` is what this step's iterations have already given. A liquid is pushed, never pulled: the sum stays <= 0. With before = 0 in
+   every iteration this is lambda of the paper for C > 0 and 0 elsewhere; kept, it is the multiplier of the constraint
+   (Macklin, Mueller & Chentanez 2016), which the next step can start from. Returns the sum. */
+WEIR_FN REAL pbf_multiplier(REAL before, REAL density, REAL neighbours2, REAL own2, WEIR_PARAM PbfParams* p) {
+    return -MAX0(p->relaxation * (density - (SCALAR)1) / (neighbours2 + own2 + p->cfm) - before);
 }
 
 /* s_corr = -k (W(r) / W(dq))^4                                                                                        eq. 13 */

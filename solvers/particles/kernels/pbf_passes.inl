@@ -28,7 +28,10 @@ static void lambda(const PbfPass& a, const ListChunk& chunk) {
         gy += w.y;
         gz += w.z;
         const vf own2 = gx * gx + gy * gy + gz * gz;
-        store(a.to, first, live(first, a.count), {i.x, i.y, i.z, pbf_lambda(rho, neighbours2, own2, p)});
+        const vf before = a.multiplier ? load_numbers(a.multiplier, first) : broadcast(0);
+        const vf sum = pbf_multiplier(before, rho, neighbours2, own2, p);
+        if (a.multiplier) store_numbers(a.multiplier, first, live(first, a.count), sum);
+        store(a.to, first, live(first, a.count), {i.x, i.y, i.z, sum - before});
         store_numbers(a.density, first, live(first, a.count), rho);
     }
 }
@@ -56,9 +59,8 @@ static void correct(const PbfPass& a, const ListChunk& chunk) {
         cx += i.w * w.x;
         cy += i.w * w.y;
         cz += i.w * w.z;
-        const float relax = p->relaxation;
         store(a.to, first, live(first, a.count),
-              {kept(i.x + relax * cx, a.walls, 0), kept(i.y + relax * cy, a.walls, 1), kept(i.z + relax * cz, a.walls, 2), broadcast(0)});
+              {kept(i.x + cx, a.walls, 0), kept(i.y + cy, a.walls, 1), kept(i.z + cz, a.walls, 2), broadcast(0)});
     }
 }
 

@@ -1,0 +1,76 @@
+// The registration of "sph": its keys, its effects, its maker.
+#include "sph/solver.hpp"
+
+namespace weir::sph {
+
+using scene::Key;
+using scene::Type;
+
+namespace {
+
+Key scheme() {
+    const Options usual;
+    return {.name = "scheme",
+            .type = Type::table,
+            .doc = "Numerical choices of SPH.",
+            .keys = {{.name = "kernel",
+                      .type = Type::choice,
+                      .doc = "muller: poly6 for density, spiky for pressure, its own for viscosity; cubic and wendland use one for all.",
+                      .fallback = std::string("muller"),
+                      .choices = {"muller", "cubic", "wendland"}},
+                     {.name = "support",
+                      .type = Type::number,
+                      .doc = "Support of the kernels over the particles' spacing.",
+                      .fallback = usual.support,
+                      .min = 1.2,
+                      .max = 4.0},
+                     {.name = "sound_speed",
+                      .type = Type::number,
+                      .doc = "Speed of sound; ten times the fastest flow keeps density within one per cent.",
+                      .unit = "m/s",
+                      .fallback = usual.sound,
+                      .min = 0,
+                      .min_open = true},
+                     {.name = "state",
+                      .type = Type::choice,
+                      .doc = "Equation of state. linear: p = c^2 (rho - rho0); tait: c^2 rho0 / gamma ((rho / rho0)^gamma - 1).",
+                      .fallback = std::string("linear"),
+                      .choices = {"linear", "tait"}},
+                     {.name = "gamma", .type = Type::number, .doc = "Of Tait's equation.", .fallback = 7.0, .min = 1.0},
+                     {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension},
+                     {.name = "isa",
+                      .type = Type::choice,
+                      .doc = "Instruction set of the pair passes.",
+                      .fallback = std::string("auto"),
+                      .choices = {"auto", "sse2", "avx2", "avx512"}}}};
+}
+
+std::vector<scene::Variant> effects() {
+    auto list = particles::effect_schemas();
+    list.push_back({"viscosity", "Viscous forces (Müller et al. 2003, eq. 14) with fluid.viscosity.", {}});
+    list.push_back({"artificial_viscosity",
+                    "Viscosity of approaching pairs only (Monaghan 1992).",
+                    {{.name = "alpha", .type = Type::number, .doc = "Its strength.", .fallback = 0.05, .min = 0}}});
+    list.push_back(
+        {"rest_density",
+         "The rest density over time: lowered, the liquid becomes a gas that fills its container.",
+         {{.name = "times", .type = Type::numbers, .doc = "When.", .unit = "s", .required = true},
+          {.name = "values", .type = Type::numbers, .doc = "How much; linear in between.", .unit = "kg/m^3", .required = true, .min = 0}}});
+    return list;
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "sph";
+    schema.doc = "Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003), weakly compressible.";
+    schema.keys = {scheme(), particles::initial_key(), particles::sinks_key()};
+    schema.effects = effects();
+    return {schema, [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
+                if (scene.dim() == 2) return std::make_unique<SphSolver<2>>(scene);
+                return std::make_unique<SphSolver<3>>(scene);
+            }};
+}
+
+}  // namespace weir::sph

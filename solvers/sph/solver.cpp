@@ -1,0 +1,218 @@
+#include "sph/solver.hpp"
+
+#include <algorithm>
+
+namespace weir::sph {
+
+using particles::Fluid;
+using particles::ListChunk;
+using particles::SphPass;
+
+namespace {
+
+constexpr std::int64_t steps_between_reorders = 16;
+
+/// The kernels of SPH in the form of the passes over velocities.
+template <int D>
+particles::single::PbfParams smoothing_params(const particles::single::SphParams& p, real mass_over_rho0, real mass) {
+    const real scale = mass_over_rho0 / mass;
+    particles::single::PbfParams s{};
+    s.h = p.h, s.h2 = p.h2, s.guard = p.guard;
+    s.self = static_cast<float>(static_cast<real>(p.self) * scale);
+    s.density = static_cast<float>(static_cast<real>(p.density) * scale);
+    s.gradient = static_cast<float>(static_cast<real>(p.gradient) * scale);
+    return s;
+}
+
+/// Linear between the given times, constant outside.
+real interpolate(const std::vector<double>& t, const std::vector<double>& value, real at) {
+    if (at <= t.front()) return value.front();
+    for (std::size_t k = 1; k < t.size(); ++k)
+        if (at < t[k]) return value[k - 1] + (value[k] - value[k - 1]) * (at - t[k - 1]) / (t[k] - t[k - 1]);
+    return value.back();
+}
+
+}  // namespace
+
+template <int D>
+SphSolver<D>::SphSolver(const scene::Scene& scene)
+    : options_(scene),
+      fluid_(scene),
+      emitters_(scene, fluid_.domain),
+      params_(sph_params<particles::single::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
+      smooth_(smoothing_params<D>(params_, particles::cell_volume<D>(fluid_.domain.spacing), fluid_.mass)),
+      walls_(fluid_.domain.template walls<particles::single::WallParams>(density_kernel<D>(options_, fluid_.domain.spacing),
+                                                                         gradient_kernel<D>(options_, fluid_.domain.spacing))),
+      pairs_(particles::passes_for(options_.isa), fluid_.domain.frame()),
+      solids_(fluid_.domain, fluid_.domain.template walls<particles::plain::WallParams>(
+                                 density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
+      flow_{fluid_, pairs_, smooth_, {}, {}, static_cast<int>(options_.smoothing)},
+      rho_rest_(fluid_.rho0),
+      max_dt_(scene.root().number_or("time.max_dt", infinity)) {
+    particles::set_initial_velocity(scene, fluid_);
+    particles::add_effects(scene, effects_);
+    if (const auto* e = scene.effect("rest_density")) {
+        rest_times_ = e->numbers("times");
+        rest_values_ = e->numbers("values");
+        if (rest_times_.size() != rest_values_.size() || rest_times_.empty())
+            scene.refuse("effects.rest_density", "times and values must be lists of the same length, at least one");
+    }
+}
+
+/// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
+template <int D>
+StepReport SphSolver<D>::step(real dt) {
+    emitters_.apply(fluid_, dt);
+    find_neighbours();
+    find_densities();                         // eq. 3
+    find_forces();                            // eq. 10, 12 and 14
+    effects_.apply(Stage::force, flow_, dt);  // gravity and other fields
+    integrate(dt);
+    effects_.apply(Stage::finish, flow_, dt);  // XSPH, vorticity
+    const real speed = fluid_.max_speed();
+    const real rest = rho_rest_;
+    const int n = fluid_.count();
+    const auto excess = [&](int i) { return std::max<real>(0, fluid_.density[static_cast<std::size_t>(i)] / rest - 1); };
+    const real mean = n ? particles::block_sum(n, excess) / n : 0, worst = particles::block_max(n, excess);
+    if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
+    fluid_.cross_sides();
+    return {.dt = dt, .cfl = dt * (speed + options_.sound) / fluid_.domain.spacing, .density_error = mean, .max_density_error = worst};
+}
+
+template <int D>
+void SphSolver<D>::find_neighbours() {
+    const auto timed = passes_.time("neighbours");
+    pairs_.find(Fluid<D>::coordinates(fluid_.x), fluid_.count(), options_.support * fluid_.domain.spacing);
+    pairs_.fit(density_, 1);
+    pairs_.fit(velocity_, 4);
+    pairs_.fit(acceleration_, 4);
+    solids_.mark(pairs_);
+    if (!rest_times_.empty()) rho_rest_ = interpolate(rest_times_, rest_values_, fluid_.time);
+    params_.wall_rho = static_cast<float>(std::min(rho_rest_, fluid_.rho0));
+}
+
+template <int D>
+SphPass SphSolver<D>::pass() {
+    return {&params_,
+            &walls_,
+            pairs_.size(),
+            pairs_.a(),
+            velocity_.data(),
+            solids_.at(pairs_, pairs_.a()),
+            density_.data(),
+            acceleration_.data(),
+            pairs_.list().first(),
+            pairs_.list().rows()};
+}
+
+/// Densities, and from them pressures; images get what their owners have.
+template <int D>
+void SphSolver<D>::find_densities() {
+    const auto timed = passes_.time("density");
+    const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
+    const SphPass job = pass();
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
+    float* x = pairs_.a();
+    pairs_.each([&](int k) {
+        const auto at = static_cast<std::size_t>(k), i = static_cast<std::size_t>(pairs_.owner(k));
+        const real rho = static_cast<real>(density_[at]);
+        const Vec<D> u = fluid_.velocity(pairs_.owner(k));
+        x[4 * at + 3] = static_cast<float>(1 / rho);
+        for (std::size_t a = 0; a < 3; ++a) velocity_[4 * at + a] = a < D ? static_cast<float>(u[a]) : 0;
+        velocity_[4 * at + 3] = static_cast<float>(options_.pressure(rho, rho_rest_));
+        if (!pairs_.is_image(k)) fluid_.density[i] = rho, fluid_.carried[i] = options_.pressure(rho, rho_rest_);
+    });
+    pairs_.refresh_images(x, true);
+    pairs_.refresh_images(velocity_.data(), false);
+    for (int k = pairs_.size(); k < pairs_.size() + pairs_.table().lanes; ++k)  // the dummy
+        for (int c = 0; c < 4; ++c) velocity_[static_cast<std::size_t>(4 * k + c)] = 0;
+}
+
+template <int D>
+void SphSolver<D>::find_forces() {
+    const auto timed = passes_.time("forces");
+    const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
+    const SphPass job = pass();
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.force(job, chunk); });
+}
+
+/// Symplectic: the new velocity moves the particle. What would enter a wall or a solid is put back and loses its speed into it.
+template <int D>
+void SphSolver<D>::integrate(real dt) {
+    const auto timed = passes_.time("integrate");
+    fluid_.time += dt;
+    const auto& domain = fluid_.domain;
+    if (!domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
+    max_acceleration_ = std::sqrt(particles::block_max(pairs_.size(), [&](int k) {
+        real sum = 0;
+        for (std::size_t a = 0; a < D; ++a) {
+            const real c = static_cast<real>(acceleration_[4 * static_cast<std::size_t>(k) + a]);
+            sum += c * c;
+        }
+        return sum;
+    }));
+    pairs_.each([&](int k) {
+        if (pairs_.is_image(k)) return;
+        const int i = pairs_.owner(k);
+        Vec<D> u = fluid_.velocity(i);
+        for (int a = 0; a < D; ++a) u[a] += dt * static_cast<real>(acceleration_[static_cast<std::size_t>(4 * k + a)]);
+        const Vec<D> free = fluid_.position(i) + dt * u, x = domain.kept(free);
+        for (int a = 0; a < D; ++a)
+            if (x[a] != free[a]) u[a] = (x[a] - fluid_.position(i)[a]) / dt;
+        Fluid<D>::put(fluid_.v, i, u);
+        Fluid<D>::put(fluid_.x, i, x);
+    });
+}
+
+/// The limits of Monaghan 1992 and Morris 1997 with the smoothing length s = support / 2: sound, viscosity, force.
+template <int D>
+real SphSolver<D>::advised_dt() const {
+    const real s = 0.5 * options_.support * fluid_.domain.spacing, g = norm(fluid_.gravity);
+    const real acoustic = 0.4 * s / ((options_.sound + fluid_.max_speed()) * (1 + 0.6 * options_.artificial));
+    const real viscous = options_.viscosity > 0 ? 0.125 * s * s / options_.viscosity : infinity;
+    const real strongest = max_acceleration_ + g;
+    const real force = strongest > 0 ? 0.25 * std::sqrt(s / strongest) : infinity;
+    return std::min({acoustic, viscous, force, max_dt_, effects_.max_dt(flow_)});
+}
+
+template <int D>
+FieldSet SphSolver<D>::fields() const {
+    FieldSet set;
+    fluid_.show(set);
+    set.fields.push_back({"pressure", "Pa", Where::particle, "particles", {std::span<const real>(fluid_.carried)}});
+    return set;
+}
+
+template <int D>
+std::vector<Integral> SphSolver<D>::integrals() const {
+    auto list = fluid_.integrals();
+    const auto& counts = pairs_.list().neighbours();
+    const int n = static_cast<int>(counts.size());
+    list.push_back(
+        {"mean_neighbours", "1", n ? particles::block_sum(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); }) / n : 0});
+    list.push_back({"max_neighbours", "1", particles::block_max(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); })});
+    return list;
+}
+
+template <int D>
+void SphSolver<D>::save(Checkpoint& to) const {
+    fluid_.save(to);
+    emitters_.save(to);
+    to.put_value("sph.max_acceleration", max_acceleration_);
+}
+template <int D>
+void SphSolver<D>::restore(const Checkpoint& from) {
+    fluid_.restore(from);
+    emitters_.restore(from);
+    max_acceleration_ = from.get_value<real>("sph.max_acceleration");
+}
+
+template <int D>
+std::size_t SphSolver<D>::bytes() const {
+    return fluid_.bytes() + pairs_.bytes() + (velocity_.capacity() + acceleration_.capacity() + density_.capacity()) * sizeof(float);
+}
+
+template class SphSolver<2>;
+template class SphSolver<3>;
+
+}  // namespace weir::sph
