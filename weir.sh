@@ -1,38 +1,50 @@
 #!/usr/bin/env bash
-# weir's front door: ./weir.sh build | run SCENE [...] | validate [...] | test. Installs what is missing, configures, builds, does its job.
+# weir's front door: ./weir.sh build | run SCENE [...] | validate [...] | picture RESULT [...] | list ... | describe ... | test [...] | install DIR
+# Each call installs what is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a second call re-does only
+# what changed. The executable is build/release/weir.
 set -euo pipefail
-cd "$(dirname "$0")"
+here="$(cd "$(dirname "$0")" && pwd)"
 
 packages=(g++ cmake ninja-build ccache git libeigen3-dev libfmt-dev libgtest-dev libbenchmark-dev librapidcheck-dev libtomlplusplus-dev libcli11-dev
           nlohmann-json3-dev libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libhypre-dev libnanoflann-dev libvtk9-dev gnuplot-nox)
 
 install_missing() {
-    local missing=()
+    if ! command -v dpkg-query >/dev/null; then
+        echo "no apt here: these packages of Debian 12, or their likes, are assumed to be installed: ${packages[*]}" >&2
+        return
+    fi
+    local installed missing=()
+    installed="$(dpkg-query -W -f='${Package} ${Status}\n' "${packages[@]}" 2>/dev/null | sed -n 's/ install ok installed$//p' || true)"
     for p in "${packages[@]}"; do
-        dpkg-query -W -f='${Status}' "$p" 2>/dev/null | grep -q 'ok installed' || missing+=("$p")
+        grep -qx -- "$p" <<<"$installed" || missing+=("$p")
     done
     [ ${#missing[@]} -eq 0 ] && return
-    local sudo=''
-    [ "$(id -u)" -eq 0 ] || sudo=sudo
-    echo "installing: ${missing[*]}"
-    $sudo apt-get update -qq
-    $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+    local sudo=()
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || { echo "missing: ${missing[*]}; install them as root, or install sudo" >&2; exit 2; }
+        sudo=(sudo)
+    fi
+    echo "installing: ${missing[*]}" >&2
+    "${sudo[@]}" apt-get update -qq >&2
+    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# build [TARGET...]: everything where no target is named
 build() {
     install_missing
-    [ -f build/release/build.ninja ] || cmake --preset release
-    cmake --build --preset release
+    [ -f "$here/build/release/build.ninja" ] || (cd "$here" && cmake --preset release)
+    cmake --build "$here/build/release" ${1:+--target "$@"}
 }
 
 usage() {
-    sed -n '2s/^# //p' "$0"
+    sed -n '2,4s/^# //p' "$0" >&2
     exit 2
 }
 
 case "${1:-}" in
     build) build ;;
-    run | validate) build >&2 && exec build/release/weir "$@" ;;
-    test) build && cd build/release && exec ctest --output-on-failure "${@:2}" ;;
+    run | validate | picture | list | describe) build weir >&2 && exec "$here/build/release/weir" "$@" ;;
+    test) build && cd "$here/build/release" && exec ctest --output-on-failure "${@:2}" ;;
+    install) [ $# -eq 2 ] || usage; build && exec cmake --install "$here/build/release" --prefix "$2" ;;
     *) usage ;;
 esac

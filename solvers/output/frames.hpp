@@ -16,7 +16,7 @@ enum class Compression { none, zlib, lz4 };
 
 struct FrameOptions {
     std::vector<std::string> fields = {};  // names to write; all where empty. Positions of particles are always written
-    bool faces = false;               // also an image for each axis with the face components as they are, at the faces' centres
+    bool faces = false;                    // also an image for each axis with the face components as they are, at the faces' centres
     Compression compression = Compression::zlib;
     bool single_precision = false;
 };

@@ -16,8 +16,11 @@ using json = nlohmann::ordered_json;
 
 json scene_json(const scene::Scene& scene) {
     json overrides = json::array();
-    for (const auto& change : scene.overrides()) overrides.push_back(change.key + " = " + change.value);
-    return {{"file", scene.file()}, {"overrides", overrides}, {"values", json::parse(scene::to_json(scene.root()))}};
+    for (const auto& change : scene.overrides()) overrides.push_back(change.key + '=' + change.value);
+    return {{"file", scene.file()},
+            {"source", scene.source()},
+            {"overrides", overrides},
+            {"values", json::parse(scene::to_json(scene.root()))}};
 }
 
 json machine_json(const Machine& machine) {

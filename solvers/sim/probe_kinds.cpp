@@ -30,7 +30,7 @@ public:
             }
     }
     std::vector<real> measure(const Solver&, const FieldSet& fields) const override {
-        const FieldView& field = *fields.find(field_.name);
+        const FieldView& field = *fields.find("", field_.name);
         std::vector<real> row;
         for (const auto& x : points_)
             for (int c = 0; c < components_; ++c) row.push_back(sample(field, fields.grid, c, x));
@@ -78,7 +78,7 @@ public:
         for (const auto& integral : solver.integrals())
             if (integral.name == name_) return {integral.value};
         std::vector<real> sums;
-        for (const auto& values : fields.find(name_)->data) {
+        for (const auto& values : fields.find("", name_)->data) {
             real sum = 0;
             for (const real value : values) sum += value;
             sums.push_back(sum * cell_volume(fields.grid));
@@ -183,7 +183,7 @@ private:
         const std::string& name = table_.text("field");
         for (const auto& integral : solver_.integrals())
             if (integral.name == name) return std::make_unique<IntegralProbe>(name, std::vector{column(name, integral.unit)});
-        const FieldView* field = fields_.find(name);
+        const FieldView* field = fields_.find("", name);
         std::string known;
         for (const auto& integral : solver_.integrals()) known += integral.name + ", ";
         if (!field || field->where != Where::cell)

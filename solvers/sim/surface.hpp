@@ -8,7 +8,7 @@
 namespace weir::sim {
 
 /// The names by which solvers show them: a cell field, signed distance to the surface [m], negative in the liquid; and a particle set.
-inline constexpr const char* level_set_name = "level_set";
+inline constexpr const char* level_set_name = "phi";
 inline constexpr const char* marker_set_name = "markers";
 
 bool has_surface(const FieldSet& fields);

@@ -115,8 +115,10 @@ TEST("every #include names a folder that the target links") {
 
 /// Who may see whom, apart from what the link lists say. Peers of one level never see each other, but for scene below geometry.
 const std::map<std::string, std::set<std::string>>& allowed() {
-    static const std::set<std::string> below_solvers{"solvers/core", "solvers/scene", "solvers/geometry", "solvers/poisson"};
-    static const std::set<std::string> all_solvers{"solvers/core", "solvers/scene", "solvers/geometry", "solvers/poisson", "solvers/mac"};
+    static const std::set<std::string> below_solvers{"solvers/core", "solvers/scene", "solvers/geometry", "solvers/poisson",
+                                                     "solvers/particles"};
+    static const std::set<std::string> all_solvers{"solvers/core",      "solvers/scene", "solvers/geometry", "solvers/poisson",
+                                                   "solvers/particles", "solvers/mac",   "solvers/pbf"};
     static const std::set<std::string> validation{"solvers/core",       "solvers/scene",      "solvers/sim",      "solvers/output",
                                                   "solvers/geometry",   "solvers/poisson",    "solvers/mac",      "validation/references",
                                                   "validation/metrics", "validation/harness", "validation/report"};
@@ -125,7 +127,9 @@ const std::map<std::string, std::set<std::string>>& allowed() {
         {"solvers/scene", {"solvers/core"}},
         {"solvers/geometry", {"solvers/core", "solvers/scene"}},
         {"solvers/poisson", {"solvers/core", "solvers/scene", "solvers/geometry"}},
+        {"solvers/particles", {"solvers/core", "solvers/scene", "solvers/geometry"}},
         {"solvers/mac", below_solvers},
+        {"solvers/pbf", below_solvers},
         {"solvers/sim", all_solvers},
         {"solvers/output", {"solvers/core", "solvers/scene"}},
         {"validation/references", {"solvers/core", "solvers/scene"}},

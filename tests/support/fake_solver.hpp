@@ -47,7 +47,7 @@ public:
         for (const auto& f : faces_) velocity.data.emplace_back(f);
         for (const auto& p : positions_) position.data.emplace_back(p);
         set.fields = {
-            velocity, {"pressure", "Pa", Where::cell, "", {pressure_}}, {"level_set", "m", Where::cell, "", {level_set_}}, position};
+            velocity, {"pressure", "Pa", Where::cell, "", {pressure_}}, {"phi", "m", Where::cell, "", {level_set_}}, position};
         return set;
     }
     std::vector<Integral> integrals() const override { return {{"mass", "kg", 1 + memory_}}; }
@@ -67,7 +67,7 @@ public:
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override { return level_set_.size() * sizeof(real); }
 
-    /// What the fields are: velocity_a = (a + 1) x_a + t, pressure = 3 x - 2 y, level_set = y - 0.4 - t / 10 + 0.05 x.
+    /// What the fields are: velocity_a = (a + 1) x_a + t, pressure = 3 x - 2 y, phi = y - 0.4 - t / 10 + 0.05 x.
     static real velocity(int a, real x_a, real t) { return (a + 1) * x_a + t; }
     static real pressure(real x, real y) { return 3 * x - 2 * y; }
     static real surface(real x, real t) { return 0.4 + t / 10 - 0.05 * x; }

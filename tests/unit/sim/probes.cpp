@@ -79,7 +79,7 @@ TEST("a probe of what the solver does not have is refused, with the fields that 
         FAIL() << "accepted";
     } catch (const weir::scene::BadScene& bad) {
         EXPECT_NE(std::string(bad.what()).find("has no field \"smoke\""), std::string::npos) << bad.what();
-        EXPECT_NE(std::string(bad.what()).find("velocity, pressure, level_set"), std::string::npos) << bad.what();
+        EXPECT_NE(std::string(bad.what()).find("velocity, pressure, phi"), std::string::npos) << bad.what();
     }
 }
 

@@ -1,0 +1,97 @@
+// weir picture RESULT: one frame, or a row of frames, of a finished (or running) run as PNG.
+#include "app/commands.hpp"
+#include "app/picture/view.hpp"
+#include "core/error.hpp"
+#include "scene/scene.hpp"
+#include "sim/registry.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+namespace weir::app {
+
+namespace {
+
+struct PictureArguments {
+    std::string result, field, out;
+    double time = -1, range = 0;
+    int size = 900, sheet = 1;
+};
+
+/// The scene as run.json keeps it.
+scene::Scene scene_of_run(const std::filesystem::path& folder) {
+    std::ifstream file(folder / "run.json");
+    const auto j = nlohmann::json::parse(file, nullptr, false);
+    if (!j.is_object() || !j.contains("scene"))
+        throw BadInput(folder.string() + " is not the folder of a run: it has no readable run.json");
+    std::vector<scene::Override> overrides;
+    for (const auto& text : j["scene"]["overrides"]) overrides.push_back(scene::to_override(text.get<std::string>()));
+    return scene::parse(j["scene"]["source"].get<std::string>(), j["scene"]["file"].get<std::string>(), sim::schemas(), overrides);
+}
+
+/// The last frame at or before `time`; the last of all where none is asked for.
+std::size_t frame_at(const std::vector<real>& times, double time) {
+    if (time < 0) return times.size() - 1;
+    std::size_t frame = 0;
+    while (frame + 1 < times.size() && times[frame + 1] <= time * (1 + 1e-9)) ++frame;
+    return frame;
+}
+
+/// One frame, or `sheet` frames evenly spread over the run's times.
+std::vector<std::size_t> frames_of(const std::vector<real>& times, const PictureArguments& arguments) {
+    const std::size_t last = frame_at(times, arguments.time);
+    if (arguments.sheet <= 1) return {last};
+    std::vector<std::size_t> frames;
+    for (int i = 0; i < arguments.sheet; ++i)
+        frames.push_back(static_cast<std::size_t>(std::lround(static_cast<double>(last) * i / (arguments.sheet - 1))));
+    return frames;
+}
+
+picture::Canvas row_of(const std::vector<picture::Canvas>& pictures) {
+    constexpr int gap = 8;
+    int width = -gap, height = 0;
+    for (const auto& one : pictures) width += one.width() + gap, height = std::max(height, one.height());
+    picture::Canvas row(width, height, picture::hex(0xffffff));
+    int x = 0;
+    for (const auto& one : pictures) row.paste(one, x, 0), x += one.width() + gap;
+    return row;
+}
+
+int draw(const PictureArguments& arguments) {
+    const std::filesystem::path folder = arguments.result;
+    const scene::Scene scene = scene_of_run(folder);
+    std::vector<picture::Canvas> pictures;
+    for (const std::size_t number : frames_of(output::frame_times(folder), arguments)) {
+        const auto frame = output::read_frame(folder, number, scene.dim());
+        const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
+        if (field == "water" && !frame.particles.count("markers")) throw BadInput("this run has no markers to draw as water");
+        const picture::View view{scene, frame, field, arguments.size, arguments.range};
+        pictures.push_back(scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
+    }
+    const std::filesystem::path out = arguments.out.empty() ? folder / "picture.png" : std::filesystem::path(arguments.out);
+    row_of(pictures).write(out);
+    std::printf("%s\n", out.c_str());
+    return exit_success;
+}
+
+}  // namespace
+
+void add_picture(CLI::App& app, int& exit_code) {
+    auto arguments = std::make_shared<PictureArguments>();
+    CLI::App* picture = app.add_subcommand("picture", "Draw a frame of a run as PNG");
+    picture->add_option("result", arguments->result, "Output folder of a run")->required();
+    picture->add_option("--field", arguments->field,
+                        "smoke, speed, vorticity (2D), temperature, pressure, ..., or water (default: what the run is about)");
+    picture->add_option("--time", arguments->time, "Time of the frame [s] (default: the last)");
+    picture->add_option("--sheet", arguments->sheet, "Draw so many frames side by side, from the first to --time")
+        ->check(CLI::Range(1, 20));
+    picture->add_option("--range", arguments->range, "Value of the brightest colour (default: the frame's own)");
+    picture->add_option("--size", arguments->size, "Pixels of the longer side")->check(CLI::Range(32, 8192));
+    picture->add_option("--out", arguments->out, "File to write (default: RESULT/picture.png)");
+    picture->callback([arguments, &exit_code] { exit_code = draw(*arguments); });
+}
+
+}  // namespace weir::app

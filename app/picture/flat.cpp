@@ -1,0 +1,134 @@
+// 2D pictures: smoke, colour maps of fields, water from its markers, solids in front.
+#include "app/picture/view.hpp"
+#include "core/parallel.hpp"
+#include "geometry/solids.hpp"
+#include "sim/sampling.hpp"
+
+namespace weir::picture {
+
+namespace {
+
+constexpr int oversampling = 2;
+
+/// Pixels of the canvas against places in the domain.
+struct Plane {
+    real x0, y1, metre;  // left, top [m]; metres a pixel
+    int width, height;
+    Plane(const GridView& grid, int size) {
+        const Vec<3> upper = sim::upper_corner(grid);
+        const real wide = upper[0] - grid.origin[0], high = upper[1] - grid.origin[1];
+        metre = std::max(wide, high) / (size * oversampling);
+        width = oversampling * std::max(1, static_cast<int>(wide / metre / oversampling));
+        height = oversampling * std::max(1, static_cast<int>(high / metre / oversampling));
+        x0 = grid.origin[0];
+        y1 = upper[1];
+    }
+    Vec<2> place(int x, int y) const { return {{x0 + (x + 0.5) * metre, y1 - (y + 0.5) * metre}}; }
+};
+
+/// Percentile that ignores a few extreme cells, so that one spike does not darken the rest.
+real robust_max(std::vector<real> values) {
+    if (values.empty()) return 1;
+    for (auto& value : values) value = std::isfinite(value) ? std::abs(value) : 0;
+    const auto at = static_cast<std::ptrdiff_t>(0.995 * static_cast<real>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + at, values.end());
+    const real value = *(values.begin() + at);
+    return value > 0 ? value : std::max(1e-300, *std::max_element(values.begin(), values.end()));
+}
+
+/// Markers spread over pixels with a smooth kernel of one cell's radius: where their sum passes a threshold is water.
+struct Splats {
+    std::vector<real> weight, speed;
+    real fastest = 1;
+    Splats(const View& view, const Plane& plane)
+        : weight(static_cast<std::size_t>(plane.width) * static_cast<std::size_t>(plane.height)), speed(weight.size()) {
+        const auto& x = view.frame.particles.at("markers").at("position");
+        const auto speeds = marker_speeds(view.frame);
+        fastest = view.range > 0 ? view.range : robust_max(speeds);
+        const real radius = view.frame.grid.spacing[0] / plane.metre;  // pixels
+        for (std::size_t m = 0; m < speeds.size(); ++m)
+            add((x[0][m] - plane.x0) / plane.metre, (plane.y1 - x[1][m]) / plane.metre, radius, speeds[m], plane);
+    }
+    void add(real cx, real cy, real radius, real value, const Plane& plane) {
+        const int x0 = std::max(0, static_cast<int>(cx - radius)), x1 = std::min(plane.width - 1, static_cast<int>(cx + radius));
+        const int y0 = std::max(0, static_cast<int>(cy - radius)), y1 = std::min(plane.height - 1, static_cast<int>(cy + radius));
+        for (int y = y0; y <= y1; ++y)
+            for (int px = x0; px <= x1; ++px) {
+                const real d2 = ((px + 0.5 - cx) * (px + 0.5 - cx) + (y + 0.5 - cy) * (y + 0.5 - cy)) / (radius * radius);
+                if (d2 >= 1) continue;
+                const real w = (1 - d2) * (1 - d2);
+                const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(plane.width) + static_cast<std::size_t>(px);
+                weight[i] += w;
+                speed[i] += w * value;
+            }
+    }
+    /// With 4 markers a cell the sum is about 4 pi/3 inside: half the value of a single marker's centre is a thin drop still.
+    Colour colour(std::size_t i) const {
+        const Colour air = hex(0xf3f5f7);
+        if (weight[i] < 0.5) return air;
+        const real s = speed[i] / weight[i] / fastest;
+        const Colour water = colour_of("water", 0.08 + 0.8 * s);
+        return mix(hex(0xdff1fb), water, std::clamp((weight[i] - 0.5) / 0.9, 0.0, 1.0));  // a light rim: the surface
+    }
+};
+
+/// Colours of a cell field: smoke as light grey on dark, signed fields in two hues, others from dark to bright.
+class FieldColours {
+public:
+    explicit FieldColours(const View& view)
+        : name_(view.field), values_(scalar_field(view.frame, view.field)), lattice_(sim::Lattice::of_cells(view.frame.grid)) {
+        const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
+        const bool crosses = *low < 0 && *high > 0;
+        signed_ = name_ == "vorticity" || (crosses && name_ != "temperature");
+        upper_ = view.range > 0 ? view.range : signed_ || name_ == "speed" || name_ == "smoke" ? robust_max(values_) : *high;
+        lower_ = signed_ ? -upper_ : name_ == "speed" || name_ == "smoke" ? 0 : *low;
+    }
+    Colour operator()(const Vec<2>& x) const {
+        const real value = sim::sample(values_, lattice_, {{x[0], x[1], 0}});
+        const real s = (value - lower_) / std::max(upper_ - lower_, 1e-300);
+        if (name_ == "smoke") return mix(hex(0x10131a), hex(0xf2f0ea), 1 - std::exp(-2.5 * std::max(0.0, s)));
+        return colour_of(signed_ ? "coolwarm" : name_ == "temperature" ? "inferno" : "viridis", s);
+    }
+
+private:
+    std::string name_;
+    std::vector<real> values_;
+    sim::Lattice lattice_;
+    bool signed_ = false;
+    real lower_ = 0, upper_ = 1;
+};
+
+void draw_solids(const View& view, const Plane& plane, Canvas& canvas) {
+    geometry::Solids<2> solids(view.scene.root().tables("solids"));
+    if (solids.empty()) return;
+    solids.set_time(view.frame.time);
+    parallel_for(0, plane.height, [&](int y) {
+        for (int x = 0; x < plane.width; ++x) {
+            const real depth = -solids.distance(plane.place(x, y)) / plane.metre;  // pixels
+            if (depth > 0) canvas.at(x, y) = depth < 3 * oversampling ? hex(0x2b2f36) : hex(0x8d939c);
+        }
+    });
+}
+
+}  // namespace
+
+Canvas draw_2d(const View& view) {
+    const Plane plane(view.frame.grid, view.size);
+    Canvas canvas(plane.width, plane.height);
+    if (view.field == "water") {
+        const Splats splats(view, plane);
+        for (int y = 0; y < plane.height; ++y)
+            for (int x = 0; x < plane.width; ++x)
+                canvas.at(x, y) =
+                    splats.colour(static_cast<std::size_t>(y) * static_cast<std::size_t>(plane.width) + static_cast<std::size_t>(x));
+    } else {
+        const FieldColours colours(view);
+        parallel_for(0, plane.height, [&](int y) {
+            for (int x = 0; x < plane.width; ++x) canvas.at(x, y) = colours(plane.place(x, y));
+        });
+    }
+    draw_solids(view, plane, canvas);
+    return canvas.smaller(oversampling);
+}
+
+}  // namespace weir::picture

@@ -1,0 +1,29 @@
+// What a picture is made of: one frame and the scene that it belongs to.
+#pragma once
+#include "app/picture/canvas.hpp"
+#include "output/read_frame.hpp"
+#include "scene/scene.hpp"
+
+#include <string>
+
+namespace weir::picture {
+
+struct View {
+    const scene::Scene& scene;
+    const output::FrameData& frame;
+    std::string field;  // smoke, speed, vorticity, temperature, pressure, ...; or "water": the markers
+    int size = 900;     // pixels of the longer side
+    real range = 0;     // of colours: from 0 (or -range) to range; 0: the frame's own
+};
+
+/// The field worth showing: water where there are markers, else smoke, temperature, speed.
+std::string best_field(const output::FrameData& frame);
+/// A cell field by name; "speed" and (in 2D) "vorticity" are made from the velocity. Throws BadInput naming what there is.
+std::vector<real> scalar_field(const output::FrameData& frame, const std::string& name);
+/// Speed of each marker: its own velocity, or the grid's at its place.
+std::vector<real> marker_speeds(const output::FrameData& frame);
+
+Canvas draw_2d(const View& view);
+Canvas draw_3d(const View& view);
+
+}  // namespace weir::picture

@@ -1,0 +1,10 @@
+# cmake --install: the library for find_package(weir), its headers below include/weir, the executable.
+include(CMakePackageConfigHelpers)
+set(weir_package ${CMAKE_INSTALL_LIBDIR}/cmake/weir)
+get_property(libraries GLOBAL PROPERTY WEIR_LIBRARIES)
+install(TARGETS ${libraries} EXPORT weirTargets)
+install(DIRECTORY solvers/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/weir FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inl")
+install(EXPORT weirTargets NAMESPACE weir:: DESTINATION ${weir_package})
+configure_package_config_file(cmake/weirConfig.cmake.in ${PROJECT_BINARY_DIR}/weirConfig.cmake INSTALL_DESTINATION ${weir_package})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/weirConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/weirConfig.cmake ${PROJECT_BINARY_DIR}/weirConfigVersion.cmake DESTINATION ${weir_package})

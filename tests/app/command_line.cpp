@@ -1,0 +1,88 @@
+// What is refused, with which exit code, and that nothing is written then.
+#include "app/process.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test.hpp"
+
+#include <fstream>
+
+namespace {
+
+using weir::test::Process;
+using weir::test::TemporaryFolder;
+
+struct Answer {
+    int code;
+    std::string text;
+};
+
+Answer weir_says(std::vector<std::string> arguments) {
+    TemporaryFolder folder;
+    Process process(std::move(arguments), folder.path() / "log");
+    const int code = process.wait();
+    return {code, process.said()};
+}
+
+const std::string smoke = std::string(WEIR_SOURCE_DIR) + "/tests/app/scenes/smoke.toml";
+
+TEST("--version, list and describe answer with exit 0") {
+    EXPECT_EQ(weir_says({"--version"}).code, 0);
+    EXPECT_NE(weir_says({"list", "solvers"}).text.find("mac"), std::string::npos);
+    EXPECT_NE(weir_says({"list", "effects"}).text.find("buoyancy"), std::string::npos);
+    EXPECT_NE(weir_says({"describe", "time.cfl"}).text.find("cfl"), std::string::npos);
+}
+
+TEST("no command, an unknown command, an unknown option and a missing scene are bad input: exit 2") {
+    EXPECT_EQ(weir_says({}).code, 2);
+    EXPECT_EQ(weir_says({"rum"}).code, 2);
+    EXPECT_EQ(weir_says({"run", "--colour", smoke}).code, 2);
+    EXPECT_EQ(weir_says({"run"}).code, 2);
+    EXPECT_EQ(weir_says({"run", "/nowhere/scene.toml"}).code, 2);
+    EXPECT_EQ(weir_says({"run", smoke, "--threads", "0"}).code, 2);
+}
+
+TEST("a bad --set is refused with the key that was meant, and nothing is written") {
+    TemporaryFolder folder;
+    const auto answer = weir_says({"run", smoke, "--out", folder.path() / "out", "--set", "grid.cell=[8, 8]"});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.text.find("did you mean"), std::string::npos) << answer.text;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST("an output folder that cannot be written is refused before the run") {
+    TemporaryFolder folder;
+    std::ofstream(folder.path() / "file") << "x";
+    const auto answer = weir_says({"run", smoke, "--out", folder.path() / "file" / "out"});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.text.find("Not a directory"), std::string::npos) << answer.text;
+}
+
+TEST("a field that the scene does not have is refused before the run, with those that it has") {
+    TemporaryFolder folder;
+    const auto answer = weir_says({"run", smoke, "--out", folder.path() / "out", "--set", "output.fields=[\"smok\"]"});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.text.find("smoke"), std::string::npos) << answer.text;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST("a truncated checkpoint is refused") {
+    TemporaryFolder folder;
+    std::ofstream(folder.path() / "checkpoint.weir") << "weircp01 and no more";
+    const auto answer = weir_says({"run", "--restart", folder.path()});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.text.find("checkpoint"), std::string::npos) << answer.text;
+}
+
+TEST(
+    "a pressure solve that misses its tolerance is a numerical failure: exit 3, with step, time, quantity, and the last good state saved") {
+    TemporaryFolder folder;
+    const auto out = folder.path() / "out";
+    const auto answer = weir_says(
+        {"run", smoke, "--out", out, "--threads", "1", "--set", "scheme.poisson.max_iterations=1", "--set", "scheme.poisson.method=cg"});
+    EXPECT_EQ(answer.code, 3) << answer.text;
+    EXPECT_NE(answer.text.find("step "), std::string::npos) << answer.text;
+    EXPECT_NE(answer.text.find("pressure"), std::string::npos) << answer.text;
+    EXPECT_NE(answer.text.find("last_good.weir"), std::string::npos) << answer.text;
+    EXPECT_TRUE(std::filesystem::exists(out / "last_good.weir"));
+}
+
+}  // namespace

@@ -1,0 +1,87 @@
+// The executable as a user starts it: arguments, signals, exit code, what it says.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace weir::test {
+
+inline std::string text_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// build/<preset>/weir with arguments, its output in a file. Runs until wait() or the destructor, which kills it.
+class Process {
+public:
+    Process(std::vector<std::string> arguments, std::filesystem::path log, rlim_t largest_file = RLIM_INFINITY) : log_(std::move(log)) {
+        arguments.insert(arguments.begin(), WEIR_EXECUTABLE);
+        std::vector<char*> argv;
+        for (auto& argument : arguments) argv.push_back(argument.data());
+        argv.push_back(nullptr);
+        pid_ = fork();
+        if (pid_ != 0) return;
+        const int file = open(log_.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644);
+        dup2(file, STDOUT_FILENO);
+        dup2(file, STDERR_FILENO);
+        if (largest_file != RLIM_INFINITY) {
+            const rlimit limit{largest_file, largest_file};
+            setrlimit(RLIMIT_FSIZE, &limit);
+        }
+        execv(argv[0], argv.data());
+        _exit(127);
+    }
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+    ~Process() {
+        if (pid_ > 0) kill(pid_, SIGKILL), wait();
+    }
+    void signal(int number) const { kill(pid_, number); }
+    bool running() {
+        if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = 0;
+        return pid_ > 0;
+    }
+    /// Its exit code; 128 + the signal that killed it.
+    int wait() {
+        if (pid_ > 0) waitpid(pid_, &status_, 0);
+        pid_ = 0;
+        return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+    }
+    /// Waits until the file exists; throws when the process ends first.
+    void wait_for(const std::filesystem::path& file) {
+        while (!std::filesystem::exists(file)) {
+            if (!running()) throw std::runtime_error("weir ended before it wrote " + file.string() + ":\n" + said());
+            usleep(1000);
+        }
+    }
+    std::string said() const { return text_of(log_); }
+
+private:
+    std::filesystem::path log_;
+    pid_t pid_ = -1;
+    int status_ = 0;
+};
+
+/// Every file below `a` but run.json (it holds milliseconds) and checkpoints has a twin below `b` with the same bytes, and none is missing.
+/// Returns the first that differs; empty where all agree.
+inline std::string first_difference(const std::filesystem::path& a, const std::filesystem::path& b) {
+    for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}})
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(from)) {
+            const auto name = std::filesystem::relative(entry.path(), from);
+            if (!entry.is_regular_file() || name == "run.json" || name.extension() == ".weir" || name.extension() == ".log") continue;
+            if (!std::filesystem::exists(to / name)) return (to / name).string() + " is missing";
+            if (text_of(entry.path()) != text_of(to / name)) return name.string() + " differs";
+        }
+    return "";
+}
+
+}  // namespace weir::test
