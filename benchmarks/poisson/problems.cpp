@@ -54,12 +54,45 @@ void build_blocks(poisson::Operator<D>& A) {
     });
 }
 
-/// Open fractions as a moving solid makes them: smooth in space, most of them 1, some of them small.
+/// Face fractions in bands: contrast 50 over a few cells, smooth elsewhere.
 template <int D>
-real smooth_fraction(const Index<D>& I, int a, int n) {
+real banded_fraction(const Index<D>& I, int a, int n) {
     real s = 1;
     for (int d = 0; d < D; ++d) s *= std::sin(2 * pi * (3 + d) * (I[d] + 0.5 * (d != a)) / n + a);
     return std::clamp(0.6 + 1.2 * s, 0.02, 1.0);
+}
+
+/// Distance [cells] to the nearest of a lattice of round solids of many sizes; negative inside.
+template <int D>
+real distance_to_solids(const Vec<D>& x, int n) {
+    real nearest = infinity;
+    const real spacing = n / 4.0;
+    for (int corner = 0; corner < 1 << D; ++corner) {
+        Vec<D> away;
+        std::uint64_t seed = 0;
+        for (int a = 0; a < D; ++a) {
+            const real cell = std::floor(x[a] / spacing) + (corner >> a & 1);
+            seed = seed * 64 + static_cast<std::uint64_t>(cell);
+            away[a] = x[a] - cell * spacing - 0.31 * a;
+        }
+        nearest = std::min(nearest, norm(away) - spacing * (0.1 + 0.3 * random01(seed, 5)));
+    }
+    return nearest;
+}
+
+/// Open fractions of faces cut by round solids (Batty et al. 2007), as a scene with smooth obstacles has them.
+template <int D>
+void cut_by_solids(poisson::Operator<D>& A) {
+    const int n = A.cells.extent()[0];
+    const auto at = [&](const Index<D>& I, int a) {
+        Vec<D> x;
+        for (int d = 0; d < D; ++d) x[d] = I[d] + (d == a ? 0.0 : 0.5);
+        return distance_to_solids<D>(x, n);
+    };
+    set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return std::clamp(0.5 + at(I, a), 0.0, 1.0); });
+    for_each_cell<D>(A.cells.extent(), [&](const Index<D>& I) {
+        if (at(I, -1) < -1 && A.cells(I) == Cell::fluid) A.cells(I) = Cell::solid;
+    });
 }
 
 }  // namespace
@@ -85,10 +118,16 @@ Problem<D> make(const std::string& name, int n) {
         set_inner_weights(
             A, [&](const Index<D>&, int a, std::size_t i) { return std::pow(10, -4 * random01(i, static_cast<std::uint64_t>(a))); });
     else if (name == "box_weights" || name == "wavy_weights")
-        set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return smooth_fraction(I, a, n); });
+        cut_by_solids(A);
+    else if (name == "bands")
+        set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return banded_fraction(I, a, n); });
+    else if (name == "mild")
+        set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return 0.55 + 0.45 * std::sin(.1 * I[0] + .07 * I[1] + a); });
+    else if (name == "random")
+        set_inner_weights(A, [&](const Index<D>&, int a, std::size_t i) { return 0.5 + 0.5 * random01(i, static_cast<std::uint64_t>(a)); });
     else if (name != "box" && name != "wavy")
         throw BadInput("unknown case \"" + name +
-                       "\"; known: box, wavy, box_weights, wavy_weights, rooms, slits, blocks, fractions, magnitudes");
+                       "\"; known: box, wavy, box_weights, wavy_weights, rooms, slits, blocks, fractions, magnitudes, bands");
     for (std::size_t i = 0; i < A.cells.size(); ++i) {
         if (A.cells[i] != Cell::fluid) problem.b[i] = 0;
         problem.unknowns += A.cells[i] == Cell::fluid;

@@ -10,6 +10,18 @@ namespace {
 /// Reduction of r after which it is replaced: single precision leaves it wrong by some 1e-5 of what it was.
 constexpr real replace_counted = 1e-4, replace_weighted = 1e-3;
 
+/// sum += r·r, largest = max |r|; in the order of the compiler's vectors, whatever the threads.
+void add_norms(const real* r, int n, real& sum, real& largest) {
+    real rr = 0, most = largest;
+#pragma omp simd reduction(+ : rr) reduction(max : most)
+    for (int i = 0; i < n; ++i) {
+        rr += r[i] * r[i];
+        most = std::abs(r[i]) > most ? std::abs(r[i]) : most;
+    }
+    sum += rr;
+    largest = most;
+}
+
 /// Iterations before the speed of convergence is judged, and how many in all are still worth their price (open water takes 7 to 12).
 constexpr int judged_from = 6, worth_while = 32;
 
@@ -60,30 +72,25 @@ void GeometricCg<D>::gather(const Natural<D>& problem, const Grid<real, D>& p) {
     });
 }
 
-/// p = x less its mean over each closed component; zero outside fluid.
+template <int D>
+void GeometricCg<D>::clear_guess() {
+    const Layout<D>& at = hierarchy_.finest().at;
+    parallel_for(0, at.rows(), [&](int row) {
+        for (double* x : x_) std::fill_n(x + at.offset(row), at.width, 0.0);
+    });
+}
+
+/// p = x in fluid, zero elsewhere.
 template <int D>
 void GeometricCg<D>::scatter(const Natural<D>& problem, Grid<real, D>& p) {
     const Layout<D>& at = hierarchy_.finest().at;
-    const auto packed = [&](int row, int s, int i) { return x_[static_cast<std::size_t>((i ^ s) & 1)][at.offset(row) + i / 2]; };
-    const auto parity = [&](int row) { return D == 2 ? row & 1 : (row / at.n[1] + row % at.n[1]) & 1; };
-    problem.find_means([&](int row, const Run& run) {
-        const int s = parity(row);
-        real sum = 0;
-        for (int i = run.begin; i < run.end; ++i) sum += packed(row, s, i);
-        return sum;
-    });
     parallel_for(0, at.planes(), [&](int q) {
         for (int j = 0; j < at.rows_in_plane(); ++j) {
-            const int row = problem.row(q, j), s = parity(row);
+            const int row = problem.row(q, j);
+            const auto s = static_cast<std::size_t>(at.parity(q, j));
             real* to = p.data() + static_cast<std::ptrdiff_t>(row) * at.n[0];
-            int from = 0;
-            for (const Run* run = problem.runs_begin(row); run != problem.runs_end(row); ++run) {
-                std::fill(to + from, to + run->begin, 0.0);
-                const real mean = problem.mean(*run);
-                for (int i = run->begin; i < run->end; ++i) to[i] = packed(row, s, i) - mean;
-                from = run->end;
-            }
-            std::fill(to + from, to + at.n[0], 0.0);
+            merge(x_[s] + at.offset(row), x_[1 - s] + at.offset(row), at.n[0], to);
+            problem.clear_outside(row, to);
         }
     });
 }
@@ -101,11 +108,7 @@ real GeometricCg<D>::replace_residual(const Natural<D>& problem, const Grid<real
             const int row = problem.row(q, j);
             const auto s = static_cast<std::size_t>(at.parity(q, j));
             problem.residual_row(q, j, p.data(), b.data(), natural.data());
-            for (int i = 0; i < at.n[0]; ++i) {
-                const real r = natural[static_cast<std::size_t>(i)];
-                sums.rr += r * r;
-                sums.largest = std::abs(r) > sums.largest ? std::abs(r) : sums.largest;
-            }
+            add_norms(natural.data(), at.n[0], sums.rr, sums.largest);
             split(natural.data(), at.n[0], at.width, finest.r[s] + at.offset(row), finest.r[1 - s] + at.offset(row));
         }
         sums_[static_cast<std::size_t>(q)] = sums;
@@ -228,32 +231,14 @@ real GeometricCg<D>::iterate_down(real alpha, real beta) {
 
 template <int D>
 bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report) {
-    const auto b_row = [&](int row) { return b.data() + static_cast<std::ptrdiff_t>(row) * problem.extent()[0]; };
-    const auto find_b_means = [&] {
-        problem.find_means([&](int row, const Run& run) {
-            real sum = 0;
-            for (int i = run.begin; i < run.end; ++i) sum += b_row(row)[i];
-            return sum;
-        });
-    };
-    gather(problem, p);
-    scatter(problem, p);
-    find_b_means();
-    const std::vector<real> b_means = problem.means();
-    real b_norm = 0;
-    {
-        const int rows = problem.rows_in_plane();
-        b_norm = std::sqrt(ordered_sum(problem.planes(), [&](int q) {
-            real sum = 0;
-            for (int j = 0; j < rows; ++j)
-                for (const Run* run = problem.runs_begin(problem.row(q, j)); run != problem.runs_end(problem.row(q, j)); ++run)
-                    for (int i = run->begin; i < run->end; ++i) {
-                        const real v = b_row(problem.row(q, j))[i] - problem.mean(*run);
-                        sum += v * v;
-                    }
-            return sum;
-        }));
-    }
+    problem.find_means(b);
+    const bool from_zero = problem.clean(p);
+    if (from_zero)
+        clear_guess();
+    else
+        gather(problem, p);
+    real norm = std::sqrt(replace_residual(problem, p, b));
+    const real b_norm = from_zero ? norm : problem.norm(b);
     Progress progress(options, report);
     report.iterations = 0;
     report.history.clear();
@@ -262,7 +247,7 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
         report.residual_before = report.residual_after = report.residual_max = 0;
         return true;
     }
-    real norm = std::sqrt(replace_residual(problem, p, b)) / b_norm;
+    norm /= b_norm;
     report.residual_before = norm;
     const real factor = hierarchy_.finest().by_count ? replace_counted : replace_weighted;
     real gamma = 0, alpha = 0, replaced = norm;
@@ -274,18 +259,18 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
         const real beta = gamma > 0 ? gamma_ / gamma : 0;
         alpha = gamma_ / (gamma > 0 ? delta_ - beta * gamma_ / alpha : delta_);
         gamma = gamma_;
-        if (!(alpha > 0)) break;
+        if (!(alpha > 0)) return false;
         norm = std::sqrt(iterate_down(alpha, beta)) / b_norm;
         progress.count(norm);
         const bool gives_up = !options.fixed_iterations && is_slow(report, norm, options.tolerance);
         if (norm > factor * replaced && progress.wants_more(norm) && !gives_up) continue;
         scatter(problem, p);
-        problem.set_means(b_means);
         norm = std::sqrt(replace_residual(problem, p, b)) / b_norm;
         if (gives_up && norm > options.tolerance) return false;
         replaced = norm;
         fresh = true;
     }
+    problem.remove_means(p);
     report.residual_after = norm;
     report.residual_max = 0;
     for (const PlaneSums& plane : sums_) report.residual_max = std::max(report.residual_max, plane.largest);

@@ -28,6 +28,7 @@ private:
     struct PlaneSums {
         real rr = 0, ru = 0, uAu = 0, largest = 0;
     };
+    void clear_guess();
     void gather(const Natural<D>& problem, const Grid<real, D>& p);
     void scatter(const Natural<D>& problem, Grid<real, D>& p);
     real replace_residual(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b);

@@ -90,9 +90,7 @@ template <int D>
 bool Hierarchy<D>::plan(const Natural<D>& problem) {
     std::vector<Level<D>> levels(1);
     levels[0].at = Layout<D>(problem.extent(), problem.periodic());
-    const Vec<D>& axis = problem.axis_weight();
-    const bool cubic = std::all_of(axis.begin(), axis.end(), [&](real w) { return w == axis[0]; });
-    levels[0].by_count = cubic && !problem.weighted();
+    levels[0].by_count = !problem.weighted();
     for (int a = 0; a < D; ++a) {
         levels[0].plain_weight[static_cast<std::size_t>(a)] = static_cast<float>(problem.axis_weight()[a]);
         if (levels[0].at.periodic[static_cast<std::size_t>(a)] && levels[0].at.n[a] % 2 == 1) return false;
@@ -138,7 +136,9 @@ void Hierarchy<D>::lay_out() {
             if (level.by_count)
                 for (auto& p : level.count) vector(p);
             else
-                for (auto& p : level.weight) vector(p);
+                for (auto& p : level.weight)
+                    piece(p, packed + static_cast<std::size_t>(level.at.side_rows() * level.at.stride),
+                          static_cast<std::size_t>(level.at.stride + lanes));
             if (l == 0) continue;
             for (auto& p : level.face) piece(p, natural, std::size_t{0});
             piece(level.zero, natural, std::size_t{0});

@@ -72,8 +72,10 @@ std::array<const float*, 2 * D> weights_of(const Level<D>& level, int q, int j, 
                 w[k] = level.weight[k] + own;
             else if (a == 0)
                 w[k] = level.weight[k ^ 1] + own + (side - s);
-            else
-                w[k] = level.weight[k ^ 1] + at.offset(at.neighbour(q, j, a, side));
+            else {
+                const int other = at.neighbour(q, j, a, side);
+                w[k] = level.weight[k ^ 1] + at.offset(other >= 0 ? other : at.side_row(q, j, a));
+            }
         }
     return w;
 }

@@ -6,6 +6,7 @@
 #include "poisson/poisson.hpp"
 #include "poisson/simd.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct Layout {
     int rows() const { return planes() * rows_in_plane(); }
     /// Row −1 is all zero: the neighbour of a row at a closed or open side.
     std::size_t entries() const { return static_cast<std::size_t>(rows() + 1) * static_cast<std::size_t>(stride) + 2 * lanes; }
+    /// Rows after the others that hold the weights of sides, as the black cells beside them read them: one for each row along a side.
+    int side_rows() const { return D == 2 ? 1 : std::max(planes(), rows_in_plane()); }
+    int side_row(int q, int j, int a) const { return rows() + (a == D - 1 ? j : q); }
     std::ptrdiff_t offset(int row) const { return static_cast<std::ptrdiff_t>(row) * stride; }
     /// Row of the plane q at height j (j is 0 in 2D).
     int row(int q, int j) const { return D == 2 ? q : q * n[1] + j; }

@@ -14,10 +14,12 @@ constexpr auto solid = static_cast<std::uint8_t>(Cell::solid), fluid = static_ca
 template <int D>
 void Natural<D>::build(const Operator<D>& A) {
     n_ = A.cells.extent();
-    weighted_ = !A.weight[0].empty();
     axis_weight_ = A.axis_weight;
+    const bool cubic = std::all_of(axis_weight_.begin(), axis_weight_.end(), [&](real w) { return w == axis_weight_[0]; });
+    weighted_ = !A.weight[0].empty() || !cubic;
     for (int a = 0; a < D; ++a) periodic_[static_cast<std::size_t>(a)] = A.periodic[static_cast<std::size_t>(a)] && n_[a] > 1;
     copy_cells(A);
+    count_faces();
     clean_faces(A);
     find_runs();
     find_closed();
@@ -50,6 +52,25 @@ void Natural<D>::copy_cells(const Operator<D>& A) {
 }
 
 template <int D>
+void Natural<D>::count_faces() {
+    count_.resize(weighted_ ? 0 : product(n_));
+    parallel_for(0, weighted_ ? 0 : planes(), [&](int q) {
+        for (int j = 0; j < rows_in_plane(); ++j) {
+            const std::uint8_t* c = cells(row(q, j));
+            std::array<const std::uint8_t*, 2 * D> beside{c - 1, c + 1};
+            for (int a = 1; a < D; ++a)
+                for (int side = 0; side < 2; ++side) beside[static_cast<std::size_t>(2 * a + side)] = cells(neighbour(q, j, a, side));
+            std::uint8_t* to = count_.data() + static_cast<std::ptrdiff_t>(row(q, j)) * n_[0];
+            for (int i = 0; i < n_[0]; ++i) {
+                std::uint8_t open = 0;
+                for (std::size_t k = 0; k < 2 * D; ++k) open = static_cast<std::uint8_t>(open + (beside[k][i] != solid));
+                to[i] = c[i] == fluid ? open : std::uint8_t{0};
+            }
+        }
+    });
+}
+
+template <int D>
 void Natural<D>::clean_faces(const Operator<D>& A) {
     for (int a = 0; a < D; ++a) {
         auto& clean = faces_[static_cast<std::size_t>(a)];
@@ -58,7 +79,7 @@ void Natural<D>::clean_faces(const Operator<D>& A) {
             continue;
         }
         const auto& given = A.weight[static_cast<std::size_t>(a)];
-        clean.resize(given.size());
+        clean.resize(product(n_ + e<D>(a)));
         const bool self = A.periodic[static_cast<std::size_t>(a)] && n_[a] == 1;
         const bool ring = periodic_[static_cast<std::size_t>(a)];
         const real scale = self ? 0 : axis_weight_[a];
@@ -73,11 +94,14 @@ void Natural<D>::clean_faces(const Operator<D>& A) {
                 const int low_row = t > 0 ? row(q_low, j_low) : neighbour(q, j, a, 0);
                 const std::uint8_t *up = cells(up_row), *low = a == 0 ? up - 1 : cells(low_row);
                 const bool wraps = last && ring;
-                const real* w = given.data() + face_offset(a, wraps && a == D - 1 ? 0 : q, wraps && a != D - 1 ? 0 : j);
+                const real* w =
+                    given.empty() ? nullptr : given.data() + face_offset(a, wraps && a == D - 1 ? 0 : q, wraps && a != D - 1 ? 0 : j);
                 real* to = clean.data() + face_offset(a, q, j);
                 for (int i = 0; i < entries; ++i) {
                     const bool open = (up[i] == fluid && low[i] != solid) || (low[i] == fluid && up[i] != solid);
-                    to[i] = open ? scale * w[i] : 0;
+                    const bool side = a == 0 ? !ring && (i == 0 || i == n_[0]) : up_row < 0 || low_row < 0;
+                    const real given_weight = w != nullptr ? w[i] : side ? 0 : 1;
+                    to[i] = open ? scale * given_weight : 0;
                 }
                 if (a == 0 && ring) to[n_[0]] = to[0];
             }
@@ -150,11 +174,11 @@ void Natural<D>::find_closed() {
     closed_ = 0;
     for (std::size_t k = 0; k < runs_.size(); ++k)
         if (parent[k] == static_cast<int>(k) && !open[k]) number[k] = closed_++;
-    count_.assign(static_cast<std::size_t>(closed_), 0);
+    size_.assign(static_cast<std::size_t>(closed_), 0);
     mean_.assign(static_cast<std::size_t>(closed_), 0);
     for (std::size_t k = 0; k < runs_.size(); ++k) {
         runs_[k].component = number[static_cast<std::size_t>(parent[k])];
-        if (runs_[k].component >= 0) count_[static_cast<std::size_t>(runs_[k].component)] += runs_[k].end - runs_[k].begin;
+        if (runs_[k].component >= 0) size_[static_cast<std::size_t>(runs_[k].component)] += runs_[k].end - runs_[k].begin;
     }
 }
 
@@ -197,12 +221,18 @@ Operator<D> Natural<D>::as_operator() const {
 
 template <int D>
 std::size_t Natural<D>::bytes() const {
-    std::size_t sum = cells_.capacity() + run_start_.capacity() * sizeof(int) + runs_.capacity() * sizeof(Run);
+    std::size_t sum = cells_.capacity() + count_.capacity() + run_start_.capacity() * sizeof(int) + runs_.capacity() * sizeof(Run);
     for (const auto& f : faces_) sum += f.capacity() * sizeof(real);
-    return sum + (count_.capacity() + mean_.capacity() + sum_.capacity()) * sizeof(real);
+    return sum + (size_.capacity() + mean_.capacity() + sum_.capacity()) * sizeof(real);
 }
 
-template class Natural<2>;
-template class Natural<3>;
+template void Natural<2>::build(const Operator<2>&);
+template void Natural<3>::build(const Operator<3>&);
+template int Natural<2>::neighbour(int, int, int, int) const;
+template int Natural<3>::neighbour(int, int, int, int) const;
+template Operator<2> Natural<2>::as_operator() const;
+template Operator<3> Natural<3>::as_operator() const;
+template std::size_t Natural<2>::bytes() const;
+template std::size_t Natural<3>::bytes() const;
 
 }  // namespace weir::poisson

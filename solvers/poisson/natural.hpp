@@ -40,12 +40,16 @@ public:
     std::int64_t fluid_cells() const { return fluid_cells_; }
     std::size_t bytes() const;
 
-    /// Means over closed components, from sums over runs: sum(row, run) in any row order, added in the order of the rows.
-    template <class F>
-    void find_means(F&& sum) const;
-    const std::vector<real>& means() const { return mean_; }
-    void set_means(const std::vector<real>& means) const { std::copy(means.begin(), means.end(), mean_.begin()); }
+    /// Means of the values over closed components, from sums over runs, added in the order of the runs.
+    void find_means(const Grid<real, D>& values) const;
     void clear_means() const { std::fill(mean_.begin(), mean_.end(), 0.0); }
+    /// Subtracts from p its mean over each closed component.
+    void remove_means(Grid<real, D>& p) const;
+    /// ‖b − means‖₂ over fluid.
+    real norm(const Grid<real, D>& b) const;
+    /// Makes p zero outside fluid; answers whether it is zero everywhere.
+    bool clean(Grid<real, D>& p) const;
+    void clear_outside(int row, real* values) const;
     real mean(const Run& run) const { return run.component < 0 ? 0 : mean_[static_cast<std::size_t>(run.component)]; }
     const Run* runs_begin(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row)]; }
     const Run* runs_end(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row) + 1]; }
@@ -59,6 +63,7 @@ private:
         return nx * (D == 2 ? q : j + ny * q);
     }
     void copy_cells(const Operator<D>& A);
+    void count_faces();
     void clean_faces(const Operator<D>& A);
     void find_runs();
     void find_closed();
@@ -68,28 +73,14 @@ private:
     bool weighted_ = false;
     Vec<D> axis_weight_{};
     std::array<bool, D> periodic_{};
-    std::vector<std::uint8_t> cells_;
+    std::vector<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
     std::array<std::vector<real>, D> faces_;
     std::vector<int> run_start_;
     std::vector<Run> runs_;
     int closed_ = 0;
     std::int64_t fluid_cells_ = 0;
-    std::vector<real> count_;               // cells of each closed component
+    std::vector<real> size_;                // cells of each closed component
     mutable std::vector<real> mean_, sum_;  // of components, of runs
 };
-
-template <int D>
-template <class F>
-void Natural<D>::find_means(F&& sum) const {
-    if (closed_ == 0) return;
-    parallel_for(0, static_cast<int>(run_start_.size()) - 1, [&](int row) {
-        for (const Run* run = runs_begin(row); run != runs_end(row); ++run)
-            sum_[static_cast<std::size_t>(run - runs_.data())] = sum(row, *run);
-    });
-    clear_means();
-    for (std::size_t k = 0; k < runs_.size(); ++k)
-        if (runs_[k].component >= 0) mean_[static_cast<std::size_t>(runs_[k].component)] += sum_[k];
-    for (std::size_t c = 0; c < mean_.size(); ++c) mean_[c] /= count_[c];
-}
 
 }  // namespace weir::poisson

@@ -31,19 +31,14 @@ void Natural<D>::residual_row(int q, int j, const real* p, const real* b, real* 
     const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(here) * nx;
     const real* centre = with_margins(p + own, nx, periodic_[0]);
     std::array<const real*, 2 * (D - 1)> other, weight{};
-    std::array<const std::uint8_t*, 2 * (D - 1)> kind;
     for (int a = 1; a < D; ++a)
         for (int side = 0; side < 2; ++side) {
             const auto k = static_cast<std::size_t>(2 * (a - 1) + side);
             const int beside = neighbour(q, j, a, side);
             other[k] = beside < 0 ? zeros(nx) : p + static_cast<std::ptrdiff_t>(beside) * nx;
-            kind[k] = cells(beside);
             if (weighted_) weight[k] = faces(a, q + (a == D - 1 ? side : 0), j + (a == D - 1 ? 0 : side));
         }
-    const std::uint8_t* c = cells(here);
     const real* wx = weighted_ ? faces(0, q, j) : nullptr;
-    const Vec<D> w = axis_weight_;
-    constexpr auto closed_cell = static_cast<std::uint8_t>(Cell::solid);
     std::fill(r, r + nx, 0.0);
     for (const Run* run = runs_begin(here); run != runs_end(here); ++run) {
         const real m = mean(*run);
@@ -55,19 +50,93 @@ void Natural<D>::residual_row(int q, int j, const real* p, const real* b, real* 
                 r[i] = b[own + i] - m - Ap;
             }
         } else {
+            const std::uint8_t* count = count_.data() + own;
+            std::array<const real*, 2 * (D - 1)> o = other;
+            const real w0 = axis_weight_[0];
 #pragma omp simd
             for (int i = run->begin; i < run->end; ++i) {
-                real Ap = w[0] * ((c[i - 1] != closed_cell ? centre[i] - centre[i - 1] : 0) +
-                                  (c[i + 1] != closed_cell ? centre[i] - centre[i + 1] : 0));
-                for (std::size_t k = 0; k < 2 * (D - 1); ++k)
-                    Ap += w[static_cast<int>(1 + k / 2)] * (kind[k][i] != closed_cell ? centre[i] - other[k][i] : 0);
-                r[i] = b[own + i] - m - Ap;
+                real beside = centre[i - 1] + centre[i + 1];
+                for (std::size_t k = 0; k < 2 * (D - 1); ++k) beside += o[k][i];
+                r[i] = b[own + i] - m - w0 * (count[i] * centre[i] - beside);
             }
         }
     }
 }
 
-template void Natural<2>::residual_row(int, int, const real*, const real*, real*) const;
-template void Natural<3>::residual_row(int, int, const real*, const real*, real*) const;
+template <int D>
+void Natural<D>::find_means(const Grid<real, D>& values) const {
+    if (closed_ == 0) return;
+    parallel_for(0, planes() * rows_in_plane(), [&](int row) {
+        const real* v = values.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
+        for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
+            real sum = 0;
+#pragma omp simd reduction(+ : sum)
+            for (int i = run->begin; i < run->end; ++i) sum += v[i];
+            sum_[static_cast<std::size_t>(run - runs_.data())] = sum;
+        }
+    });
+    clear_means();
+    for (std::size_t k = 0; k < runs_.size(); ++k)
+        if (runs_[k].component >= 0) mean_[static_cast<std::size_t>(runs_[k].component)] += sum_[k];
+    for (std::size_t c = 0; c < mean_.size(); ++c) mean_[c] /= size_[c];
+}
+
+template <int D>
+void Natural<D>::remove_means(Grid<real, D>& p) const {
+    if (closed_ == 0) return;
+    find_means(p);
+    parallel_for(0, planes() * rows_in_plane(), [&](int row) {
+        real* v = p.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
+        for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
+            const real m = mean(*run);
+            for (int i = run->begin; i < run->end; ++i) v[i] -= m;
+        }
+    });
+}
+
+template <int D>
+real Natural<D>::norm(const Grid<real, D>& b) const {
+    return std::sqrt(ordered_sum(planes(), [&](int q) {
+        real sum = 0;
+        for (int row = q * rows_in_plane(); row < (q + 1) * rows_in_plane(); ++row) {
+            const real* v = b.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
+            for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
+                const real m = mean(*run);
+                real part = 0;
+#pragma omp simd reduction(+ : part)
+                for (int i = run->begin; i < run->end; ++i) part += (v[i] - m) * (v[i] - m);
+                sum += part;
+            }
+        }
+        return sum;
+    }));
+}
+
+template <int D>
+void Natural<D>::clear_outside(int row, real* values) const {
+    int from = 0;
+    for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
+        if (run->begin > from) std::fill(values + from, values + run->begin, 0.0);
+        from = run->end;
+    }
+    std::fill(values + from, values + n_[0], 0.0);
+}
+
+template <int D>
+bool Natural<D>::clean(Grid<real, D>& p) const {
+    const real nonzero = ordered_sum(planes(), [&](int q) {
+        int found = 0;
+        for (int row = q * rows_in_plane(); row < (q + 1) * rows_in_plane(); ++row) {
+            real* v = p.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
+            clear_outside(row, v);
+            for (int i = 0; i < n_[0]; ++i) found |= v[i] != 0;
+        }
+        return real(found);
+    });
+    return nonzero == 0;
+}
+
+template class Natural<2>;
+template class Natural<3>;
 
 }  // namespace weir::poisson

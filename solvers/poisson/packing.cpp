@@ -87,6 +87,24 @@ bool is_plain(const Level<D>& level, const RowView<D, T>& v) {
     return different == 0;
 }
 
+/// A black cell finds its weights with its red neighbours; beyond a side there is none, so what the side weighs is kept in its place.
+template <int D, class T>
+void pack_sides(Level<D>& level, int q, int j, const RowView<D, T>& v) {
+    const Layout<D>& at = level.at;
+    const int row = at.row(q, j), n = at.n[0], s = at.parity(q, j);
+    if (!at.periodic[0]) {
+        if (s == 1) level.weight[1][at.offset(row) - 1] = static_cast<float>(v.weight[0][0]);
+        if ((n - 1 + s) % 2 == 1) level.weight[0][at.offset(row) + (n - 1) / 2 + 1 - s] = static_cast<float>(v.weight[1][n - 1]);
+    }
+    for (int a = 1; a < D; ++a)
+        for (int side = 0; side < 2; ++side) {
+            if (at.neighbour(q, j, a, side) >= 0) continue;
+            const auto k = static_cast<std::size_t>(2 * a + side);
+            float* to = level.weight[k ^ 1] + at.offset(at.side_row(q, j, a));
+            for (int i = 1 - s; i < n; i += 2) to[i / 2] = static_cast<float>(v.weight[k][i]);
+        }
+}
+
 template <int D, class T>
 void pack_row(Level<D>& level, int q, int j, const RowView<D, T>& v, Buffers& buffers) {
     const Layout<D>& at = level.at;
@@ -108,6 +126,7 @@ void pack_row(Level<D>& level, int q, int j, const RowView<D, T>& v, Buffers& bu
             for (int m = 0; m < at.width; ++m) to[m] = 2 * m + 1 < n ? static_cast<float>(v.weight[k][2 * m + 1]) : 0;
         if (k < 2) at.wrap(to);
     }
+    pack_sides(level, q, j, v);
     level.plain[static_cast<std::size_t>(row)] = is_plain(level, v);
 }
 

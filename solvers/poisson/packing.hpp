@@ -30,4 +30,14 @@ void split(const From* row, int n, int width, To* even, To* odd) {
     }
 }
 
+/// The reverse: row[2m] = even[m], row[2m + 1] = odd[m].
+template <class T>
+void merge(const T* even, const T* odd, int n, T* row) {
+    for (int m = 0; m < n / 2; ++m) {
+        row[2 * m] = even[m];
+        row[2 * m + 1] = odd[m];
+    }
+    if (n % 2 == 1) row[n - 1] = even[n / 2];
+}
+
 }  // namespace weir::poisson
