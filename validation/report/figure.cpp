@@ -107,6 +107,8 @@ void add_profiles(std::vector<Panel>& panels, const CaseResult& result) {
 
 /// What a series shows: itself, or for a drift its change relative to the start.
 Curve shown(Curve series, const std::string& metric) {
+    const Metric* m = find_metric(metric);
+    if (m && m->measure) series.label = "what " + metric + " is taken from";  // the metric is made of the series, not the series itself
     if (!metric.ends_with(".drift") || series.y.empty()) return series;
     const real first = series.y.front();
     for (real& y : series.y) y = (y - first) / std::abs(first);
@@ -123,7 +125,7 @@ void add_histories(std::vector<Panel>& panels, const CaseResult& result) {
             const auto at = v.runs.back().series.find(metric);
             if (at == v.runs.back().series.end() || at->second.size() < 2) continue;
             Curve c = shown(at->second, metric);
-            panel.title = c.label + " over the run";
+            panel.title = c.label;
             panel.y.label = c.label + unit_label(result, metric);
             c.label = label_of(v, "weir") + (v.runs.back().label.empty() ? "" : " " + v.runs.back().label);
             panel.curves.push_back(std::move(c));
