@@ -16,9 +16,9 @@ struct Options {
     int iterations = 4;  // fixed, where tolerance is 0
     real tolerance = 0;  // mean compression at which the iterations end
     int max_iterations = 100;
-    real cfm = 1e-4;        // epsilon of eq. 11, in units of 1 / support^2
-    real relaxation = 0.7;  // Jacobi over all pairs overshoots: its iteration matrix has eigenvalues up to 2.8 for a support of 2 spacings
-    real warm_start = 0;  // part of the last step's multipliers that the iterations start from
+    real cfm = 1e-4;         // epsilon of eq. 11, in units of 1 / support^2
+    real relaxation = 0.7;   // Jacobi over all pairs overshoots: its iteration matrix has eigenvalues up to 2.8 for a support of 2 spacings
+    real warm_start = 0.8;   // part of the last step's multipliers that the iterations start from; at 1 the liquid gains energy
     real pressure_k = 0;     // artificial pressure (eq. 13): k in units of support^2, 0: none
     real pressure_dq = 0.2;  // delta q over the support
     std::string isa = "auto";
