@@ -35,7 +35,7 @@ REFERENCE(thermal) {
 REFERENCE(plume) {
     const scene::Table& source = scene.root().tables("emitters").at(0);
     Reference ref{.source = "self-similarity: Morton, Taylor & Turner 1956; Lee & Emmons 1961 (exponents exact, factors not)"};
-    ref.numbers = {{"exponent", 3.0 / (scene.dim() + 1)},
+    ref.numbers = {{"exponent", 1},  // of the length (F t^2)^(1/(D+1)), whatever the history of the heat F
                    {"origin", source.has("max") ? source.numbers("max").at(1) : above_floor(scene, 0)}};
     return ref;
 }
