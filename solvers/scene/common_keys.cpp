@@ -299,7 +299,7 @@ const std::vector<Key>& common_keys() {
         {.name = "title", .type = Type::text, .doc = "One line for people.", .fallback = std::string()},
         {.name = "solver",
          .type = Type::text,
-         .doc = "Name of the solver; see `weir list`.",
+         .doc = "Name of the solver; see `weir list solvers`.",
          .required = true,
          .example = "solver = \"mac\""},
         {.name = "dim", .type = Type::integer, .doc = "2 or 3 dimensions.", .required = true, .min = 2, .max = 3, .example = "dim = 2"},
