@@ -157,10 +157,15 @@ void GeometricCg<D>::black_products(int q) {
     for (int j = 0; j < finest.at.rows_in_plane(); ++j) {
         const int row = finest.at.row(q, j);
         const float *u = finest.u[1] + finest.at.offset(row), *r = finest.r[1] + finest.at.offset(row);
+        const auto diagonal_at = [&, own = finest.at.offset(row)](int m) {
+            return finest.by_count ? to_float(finest.count[1] + own + m) : load16(finest.dinv[1] + own + m);
+        };
         with_product(finest, finest.u, q, j, 1, [&](const auto& product) {
             for (const Span& span : RowSpans<D>(finest, row))
                 for (int m = span.begin; m < span.end; m += lanes) {
-                    const d16 Au = product(m), v = load_wide(u + m), f = load_wide(r + m);
+                    // Past the end of a periodic row stands its first entry again: it must not count twice.
+                    const f16 value = load16(u + m), inside = diagonal_at(m) != f16{} ? value : f16{};
+                    const d16 Au = product(m), v = {low(inside), high(inside)}, f = load_wide(r + m);
                     ru += v.lo * f.lo + v.hi * f.hi;
                     uAu += v.lo * Au.lo + v.hi * Au.hi;
                 }
