@@ -24,10 +24,12 @@ public:
     const std::vector<int>& start() const { return start_; }
     const std::array<int, 3>& cells() const { return n_; }
     std::size_t bytes() const;
+    /// The first half of sort: chooses the cells.
+    void cover(const Coordinates& x, int count, real cell_size);
+    /// The cell of a point that is covered.
+    int cell(const Coordinates& x, int i) const;
 
 private:
-    void cover(const Coordinates& x, int count, real cell_size);
-    int cell(const Coordinates& x, int i) const;
     void place_starts(int chunks);
 
     int count_ = 0;

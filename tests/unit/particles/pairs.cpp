@@ -1,6 +1,7 @@
 // The neighbour list of the fast path: its sets are those of brute force and of nanoflann, on random, clustered, coincident points and
 // points on the borders of cells; periodic images; lattice counts from the reference table.
 #include "particles/pairs.hpp"
+#include "particles/neighbours.hpp"
 
 #include "support/csv.hpp"
 #include "support/test.hpp"
@@ -117,4 +118,28 @@ TEST_IN_2D_AND_3D("a repeating lattice has the neighbour counts of the reference
         for (const auto& set : sets(pairs, n)) ASSERT_EQ(static_cast<int>(set.size()), static_cast<int>(row[2]));
     }
     EXPECT_GE(compared, 4);
+}
+
+TEST_IN_2D_AND_3D("brute force, grid and sorted grid give the same lists, and those are what the distances say") {
+    for (const std::string how : {"random", "clustered", "coincident", "borders"})
+        for (const int count : {1, 3}) {
+            set_threads(count);
+            const int n = 500;
+            const Points p = random_points(n, D, how);
+            const Coordinates x{p[0].data(), p[1].data(), D == 3 ? p[2].data() : nullptr};
+            std::vector<int> expected;
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) {
+                    real d2 = 0;
+                    for (std::size_t a = 0; a < 3; ++a) {
+                        const real d = p[a][static_cast<std::size_t>(i)] - p[a][static_cast<std::size_t>(j)];
+                        d2 += d * d;
+                    }
+                    if (j != i && d2 < 0.125 * 0.125) expected.push_back(j);
+                }
+            EXPECT_GT(expected.size(), 0u);
+            for (const auto& method : neighbour_methods())
+                EXPECT_EQ(make_neighbour_search(method)->find(x, n, 0.125).index, expected) << method << " " << how;
+        }
+    set_threads(2);
 }
