@@ -68,7 +68,7 @@ Choice read_options(int argc, char** argv) {
             throw BadInput("unknown option " + key + "; known: --case --dim --n --threads --solver --repeat --quick --obstacles --csv");
     }
     if (c.cases.empty()) c.cases = {"box", "wavy", "box_weights", "wavy_weights"};
-    if (c.obstacles) c.cases = {"rooms", "slits", "blocks", "fractions", "magnitudes"};
+    if (c.obstacles) c.cases = {"rooms", "slits", "blocks", "fractions", "magnitudes", "bands"};
     if (c.dims.empty()) c.dims = {2, 3};
     if (c.threads.empty()) c.threads = {1, 2};
     return c;

@@ -121,10 +121,6 @@ Problem<D> make(const std::string& name, int n) {
         cut_by_solids(A);
     else if (name == "bands")
         set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return banded_fraction(I, a, n); });
-    else if (name == "mild")
-        set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return 0.55 + 0.45 * std::sin(.1 * I[0] + .07 * I[1] + a); });
-    else if (name == "random")
-        set_inner_weights(A, [&](const Index<D>&, int a, std::size_t i) { return 0.5 + 0.5 * random01(i, static_cast<std::uint64_t>(a)); });
     else if (name != "box" && name != "wavy")
         throw BadInput("unknown case \"" + name +
                        "\"; known: box, wavy, box_weights, wavy_weights, rooms, slits, blocks, fractions, magnitudes, bands");

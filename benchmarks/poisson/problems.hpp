@@ -13,7 +13,8 @@ struct Problem {
     std::int64_t unknowns = 0;
 };
 
-/// box, wavy, box_weights, wavy_weights; rooms, slits, blocks, fractions, magnitudes. n cells along each axis.
+/// box, wavy, box_weights, wavy_weights (cut by round solids); rooms, slits, blocks, fractions (uniform in [1e-4, 1]), magnitudes
+/// (log-uniform there), bands (contrast 50). n cells along each axis.
 template <int D>
 Problem<D> make(const std::string& name, int n);
 

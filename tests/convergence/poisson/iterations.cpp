@@ -32,7 +32,7 @@ TEST_IN_2D_AND_3D("box and wavy take at most 12 iterations at any size, with fac
 }
 
 TEST_IN_2D_AND_3D("walls, slits, blocks and face fractions of four magnitudes take at most 40 iterations") {
-    for (const std::string name : {"rooms", "slits", "blocks", "fractions", "magnitudes"})
+    for (const std::string name : {"rooms", "slits", "blocks", "fractions", "magnitudes", "bands"})
         EXPECT_LE(iterations<D>(name, D == 2 ? 256 : 64), 40) << name;
 }
 
