@@ -4,6 +4,10 @@
 
 namespace weir::mac {
 
+namespace {
+constexpr std::uint8_t queued = 255;
+}
+
 /// The face next to I among those along a; around a periodic axis face n is face 0.
 template <int D>
 bool Extrapolation<D>::step(Index<D>& I, int a, int axis, int by) const {
@@ -17,31 +21,34 @@ bool Extrapolation<D>::step(Index<D>& I, int a, int axis, int by) const {
     return true;
 }
 
+/// Unknown faces of the cells that have a known neighbour.
 template <int D>
-void Extrapolation<D>::find_front(const Grid<std::uint8_t, D>& mark, int a) {
-    front_.clear();
-    const Index<D> n = mark.extent();
-    const std::uint8_t* m = mark.data();
-    std::size_t at = 0;
-    Index<D> I{};
-    const auto look = [&] {
-        if (m[at] == 0)
-            for (int axis = 0; axis < D; ++axis)
-                for (const int by : {-1, 1}) {
-                    Index<D> J = I;
-                    if (step(J, a, axis, by) && mark(J) == 1) {
-                        front_.push_back(I);
-                        return;
-                    }
-                }
-    };
-    for (int k = 0; k < (D == 3 ? n[D - 1] : 1); ++k)
-        for (int j = 0; j < n[1]; ++j)
-            for (int i = 0; i < n[0]; ++i, ++at) {
-                I[0] = i, I[1] = j;
-                if constexpr (D == 3) I[2] = k;
-                look();
+void Extrapolation<D>::find_front(Grid<std::uint8_t, D>& mark, int a, std::span<const Index<D>> cells) {
+    const auto has_known_neighbour = [&](const Index<D>& face) {
+        for (int axis = 0; axis < D; ++axis)
+            for (const int by : {-1, 1}) {
+                Index<D> J = face;
+                if (step(J, a, axis, by) && mark(J) == 1) return true;
             }
+        return false;
+    };
+    for (const Index<D>& I : cells)
+        for (const Index<D>& face : {I, I + e<D>(a)}) {
+            auto& m = mark(face);
+            if (m != 0 || !has_known_neighbour(face)) continue;
+            m = queued;
+            front_.push_back(face);
+        }
+}
+
+/// What u changed by from the face behind J to J. The next face goes on like this (Aslam 2004: linear), as far as the second layer, which
+/// is as far as cells beside the surface look, and by at most 0.3 |u|: a wave of ten cells or longer is not limited, a splash is.
+template <int D>
+real Extrapolation<D>::slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by,
+                             int layer) const {
+    const real here = u(J), most = 0.3 * std::abs(here);
+    if (layer > 2 || !step(J, a, axis, -by) || mark(J) == 0 || mark(J) > layer) return 0;
+    return std::clamp(here - u(J), -most, most);
 }
 
 template <int D>
@@ -58,7 +65,7 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
             if (!step(J, a, axis, by) || mark(J) == 0 || mark(J) > layer) continue;
             const real w = std::max(0.0, here - phi_at(J)) * frame_.inv_h[axis] * frame_.inv_h[axis];
             weights_axis += w;
-            sum_axis += w * u(J);
+            sum_axis += w * (u(J) + slope(u, mark, J, a, axis, -by, layer));
             plain_axis += u(J);
             ++count;
         }
@@ -71,16 +78,19 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
 }
 
 template <int D>
-void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const Grid<real, D>& phi, int layers) {
+void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const LevelSet<D>& surface, int layers) {
+    const std::span<const Index<D>> near(surface.band().data(), surface.layer_end(std::min(3, surface.layers())));
     for (int a = 0; a < D; ++a) {
         auto& mark = marks[static_cast<std::size_t>(a)];
-        find_front(mark, a);
+        front_.clear();
+        find_front(mark, a, near);
+        find_front(mark, a, surface.skin());
         for (int layer = 1; layer <= layers && !front_.empty(); ++layer) {
             const int count = static_cast<int>(front_.size());
             value_.resize(front_.size());
             parallel_for(0, count, [&](int i) {
                 const auto at = static_cast<std::size_t>(i);
-                value_[at] = value(u[a], mark, phi, front_[at], a, layer);
+                value_[at] = value(u[a], mark, surface.phi, front_[at], a, layer);
             });
             for (std::size_t i = 0; i < front_.size(); ++i) {
                 u[a](front_[i]) = value_[i];
@@ -93,7 +103,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
                         for (const int by : {-1, 1}) {
                             Index<D> J = I;
                             if (!step(J, a, axis, by) || mark(J) != 0) continue;
-                            mark(J) = 255;  // queued
+                            mark(J) = queued;
                             next_.push_back(J);
                         }
             front_.swap(next_);

@@ -1,11 +1,13 @@
-// Velocity beyond the liquid: ∇u·∇φ = 0 outwards from the faces whose velocity is known (Adalsteinsson & Sethian 1999; upwind
-// differences as in the fast sweeping of Zhao 2005). Faces are visited layer by layer from the known ones, each from finished layers
-// only: one visit a face, and no result depends on threads, on the direction of a sweep, or on a mirror.
+// Velocity beyond the liquid, outwards from the faces whose velocity is known: ∇(∇u·∇φ)·∇φ = 0 in the first two layers (Aslam 2004),
+// ∇u·∇φ = 0 beyond (Adalsteinsson & Sethian 1999), with upwind differences as in the fast sweeping of Zhao 2005. Faces are visited layer by
+// layer from the known ones, each from finished layers only: one visit a face, and no result depends on threads, on the direction of a
+// sweep, or on a mirror.
 #pragma once
-#include "mac/water_frame.hpp"
+#include "mac/level_set.hpp"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace weir::mac {
@@ -18,14 +20,16 @@ class Extrapolation {
 public:
     Extrapolation() = default;
     explicit Extrapolation(const Frame<D>& frame) : frame_(frame) {}
-    /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer.
-    void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const Grid<real, D>& phi, int layers);
+    /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer. It starts at the faces
+    /// of cells near the surface and of the skin of solids; anywhere else no one asks.
+    void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, int layers);
     std::size_t bytes() const { return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real); }
 
 private:
-    void find_front(const Grid<std::uint8_t, D>& mark, int a);
+    void find_front(Grid<std::uint8_t, D>& mark, int a, std::span<const Index<D>> cells);
     real value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
                int layer) const;
+    real slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by, int layer) const;
     bool step(Index<D>& I, int a, int axis, int by) const;
 
     Frame<D> frame_;

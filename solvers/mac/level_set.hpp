@@ -43,6 +43,8 @@ public:
     int layers() const { return layers_; }
     /// Cells of the band, layer by layer from the surface; layer 1 is beside it.
     const std::vector<Index<D>>& band() const { return band_; }
+    /// Closed cells beside open ones, three deep.
+    const std::vector<Index<D>>& skin() const { return skin_; }
     std::size_t layer_begin(int layer) const { return layer_start_[static_cast<std::size_t>(layer - 1)]; }
     std::size_t layer_end(int layer) const { return layer_start_[static_cast<std::size_t>(layer)]; }
 
@@ -60,6 +62,7 @@ private:
     /// where a neighbour's distance is not known, it goes on as on the other side.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
     void find_surface();
+    bool crosses_in_liquid(const Index<D>& I) const;
     void rescale_surface();
     void grow_band();
     void fill_layer(int layer);

@@ -7,37 +7,57 @@ namespace weir::mac {
 template <int D>
 void LevelSet<D>::redistance() {
     continue_into_solids();
-    for (const Index<D>& I : band_) layer_(I) = 0;
     find_surface();
     rescale_surface();
     grow_band();
     for (int layer = 2; layer <= layers_; ++layer) fill_layer(layer);
 }
 
-/// Layer 1: the cells with a neighbour on the other side of the surface. All others become ± cap until their layer is filled.
+/// Layer 1: the cells with a neighbour on the other side of the surface.
 template <int D>
 void LevelSet<D>::find_surface() {
-    band_.clear();
-    Index<D> I{};
     const Index<D>& n = frame_.cells;
-    for (int k = 0; k < (D == 3 ? n[D - 1] : 1); ++k)
-        for (int j = 0; j < n[1]; ++j)
-            for (int i = 0; i < n[0]; ++i) {
-                I[0] = i, I[1] = j;
-                if constexpr (D == 3) I[2] = k;
-                const bool inside = phi(I) < 0;
-                bool beside = false;
-                for (int d = 0; d < D; ++d)
-                    for (const int by : {-1, 1}) {
-                        Index<D> J = I;
-                        if (!frame_.step(J, d, by) || (phi(J) < 0) == inside) continue;
-                        beside |= closed_.empty() || !(closed_(I) && closed_(J));
-                    }
-                if (beside) band_.push_back(I);
+    for_each_line(n, [&](const Index<D>& first, std::size_t at) {
+        const real* line = phi.data() + at;
+        std::uint8_t* mark = layer_.data() + at;
+        for (int i = 0; i < n[0]; ++i) mark[i] = 0;
+        for (int i = 0; i + 1 < n[0]; ++i) {
+            const std::uint8_t crosses = (line[i] < 0) != (line[i + 1] < 0);
+            mark[i] = static_cast<std::uint8_t>(mark[i] | crosses);
+            mark[i + 1] = static_cast<std::uint8_t>(mark[i + 1] | crosses);
+        }
+        if (frame_.periodic(0) && (line[0] < 0) != (line[n[0] - 1] < 0)) mark[0] = mark[n[0] - 1] = 1;
+        for (int d = 1; d < D; ++d)
+            for (const int by : {-1, 1}) {
+                Index<D> J = first;
+                if (!frame_.step(J, d, by)) continue;
+                const real* other = phi.data() + phi.linear(J);
+                for (int i = 0; i < n[0]; ++i) mark[i] = static_cast<std::uint8_t>(mark[i] | ((line[i] < 0) != (other[i] < 0)));
             }
-    for (const Index<D>& J : band_) layer_(J) = 1;
+    });
+    band_.clear();
+    for (std::size_t cell = 0; cell < layer_.size(); ++cell)
+        if (layer_[cell]) {
+            const Index<D> I = frame_.index_of(cell);
+            if (crosses_in_liquid(I))
+                band_.push_back(I);
+            else
+                layer_[cell] = 0;
+        }
     layer_start_[0] = 0;
     layer_start_[1] = band_.size();
+}
+
+/// A change of sign between two closed cells is no surface.
+template <int D>
+bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
+    if (closed_.empty() || !closed_(I)) return true;
+    for (int d = 0; d < D; ++d)
+        for (const int by : {-1, 1}) {
+            Index<D> J = I;
+            if (frame_.step(J, d, by) && !closed_(J) && (phi(J) < 0) != (phi(I) < 0)) return true;
+        }
+    return false;
 }
 
 /// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13). Only
@@ -76,8 +96,10 @@ void LevelSet<D>::grow_band() {
                 }
         layer_start_[static_cast<std::size_t>(layer)] = band_.size();
     }
-    for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        if (layer_(I) == 0) phi(I) = phi(I) < 0 ? -cap() : cap();
+    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
+        const real far = cap();
+        for (std::size_t i = at; i < at + static_cast<std::size_t>(frame_.cells[0]); ++i)
+            phi[i] = layer_[i] ? phi[i] : phi[i] < 0 ? -far : far;
     });
 }
 

@@ -10,7 +10,7 @@ template <int D>
 StepReport Water<D>::step(real dt) {
     place_solids(state_.time + dt);
     move_surface(dt);                             // Dx/Dt = u for markers, Dφ/Dt = 0
-    pour_and_drain();                             // emitters, open sides
+    pour_and_drain(dt);                           // emitters, open sides
     redistribute_markers();                       // no holes, no heaps
     correct_surface();                            // φ joins escaped markers, and is a distance again
     momentum_to_faces(dt);                        // u* = what the markers carry, or D u/Dt = 0 on the grid
@@ -22,7 +22,7 @@ StepReport Water<D>::step(real dt) {
     state_.time += dt;
     ++steps_;
     return {.dt = dt,
-            .cfl = dt * max_speed_rate(),
+            .cfl = dt * rate_,
             .max_divergence = divergence,
             .iterations = poisson.iterations,
             .residual_before = poisson.residual_before,
@@ -56,7 +56,7 @@ void Water<D>::momentum_to_faces(real dt) {
         markers_to_faces(markers_, frame_, sums_, state_.u, known_);
     impose_emitters();
     set_fixed_faces();
-    extrapolate_(state_.u, known_, surface_.phi, 2);  // liquid cells without a marker, faces at the edge
+    extrapolate_(state_.u, known_, surface_, 2);  // liquid cells without a marker, faces at the edge
     if (options_.transfer == Transfer::flip)
         for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
 }
@@ -79,9 +79,10 @@ template <int D>
 void Water<D>::extend_velocity() {
     const auto timed = passes_.time("extrapolate");
     mark_liquid_faces();
-    extrapolate_(state_.u, known_, surface_.phi, surface_.layers() - 1);
+    extrapolate_(state_.u, known_, surface_, surface_.layers() - 1);
     set_velocity_in_solids();
     sync_periodic(state_.u, state_.sides);
+    rate_ = max_speed_rate();
 }
 
 template <int D>
@@ -120,12 +121,22 @@ template <int D>
 void Water<D>::mark_liquid_faces() {
     for (int a = 0; a < D; ++a) {
         auto& known = known_[static_cast<std::size_t>(a)];
-        for_each_cell(known.extent(), [&](const Index<D>& I) {
+        const auto is_known = [&](const Index<D>& I) {
             const bool on_side = !frame_.periodic(a) && (I[a] == 0 || I[a] == frame_.cells[a]);
             const bool liquid =
                 state_.cells(frame_.near(I, a, -1)) == poisson::Cell::fluid || state_.cells(frame_.near(I, a, 0)) == poisson::Cell::fluid;
             const bool open = !state_.solid.any() || state_.solid.open[static_cast<std::size_t>(a)](I) > 0;
-            known(I) = on_side ? !state_.sides.open(a, I[a] == 0 ? 0 : 1) || liquid : liquid && open;
+            return on_side ? !state_.sides.open(a, I[a] == 0 ? 0 : 1) || liquid : liquid && open;
+        };
+        for_each_line(known.extent(), [&](Index<D> I, std::size_t at) {
+            if (a > 0 && I[a] > 0 && I[a] < frame_.cells[a] && !state_.solid.any()) {  // the common line
+                const poisson::Cell* above = &state_.cells(I);
+                const poisson::Cell* below = above - state_.cells.stride(a);
+                for (int i = 0; i < frame_.cells[0]; ++i)
+                    known[at + static_cast<std::size_t>(i)] = below[i] == poisson::Cell::fluid || above[i] == poisson::Cell::fluid;
+                return;
+            }
+            for (; I[0] < known.extent()[0]; ++I[0], ++at) known[at] = is_known(I);
         });
     }
 }
@@ -195,7 +206,15 @@ real Water<D>::max_speed_rate() const {
     real rate = 0;
     for (int a = 0; a < D; ++a) {
         const auto& known = known_[static_cast<std::size_t>(a)];
-        const real largest = max_over(known.extent(), [&](const Index<D>& I) { return known(I) == 1 ? std::abs(state_.u[a](I)) : 0.0; });
+        const auto& u = state_.u[a];
+        const Index<D>& n = known.extent();
+        const auto plane = known.size() / static_cast<std::size_t>(n[D - 1]);
+        const real largest = ordered_max(n[D - 1], [&](int k) {
+            real m = 0;
+            for (std::size_t i = static_cast<std::size_t>(k) * plane; i < static_cast<std::size_t>(k + 1) * plane; ++i)
+                if (const real v = std::abs(u[i]); known[i] == 1 && (v > m || std::isnan(v))) m = v;
+            return m;
+        });
         if (std::isnan(largest)) return largest;
         rate = std::max(rate, largest * frame_.inv_h[a]);
     }
@@ -206,9 +225,9 @@ real Water<D>::max_speed_rate() const {
 /// pressure is stable to 2), and the capillary wave of two cells (Brackbill, Kothe & Zemach 1992: dt ≤ √(ρ h³ / (4π σ)) for one fluid).
 template <int D>
 real Water<D>::advised_dt() const {
-    const real h = frame_.h_min(), g = norm(gravity_), rate = max_speed_rate();
+    const real h = frame_.h_min(), g = norm(gravity_);
     real dt = infinity;
-    if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
+    if (rate_ > 0 || g > 0) dt = options_.cfl / (rate_ + std::sqrt(options_.cfl * g / h));
     if (g > 0) dt = std::min(dt, std::sqrt(h / (pi * g)));
     if (options_.sigma > 0) dt = std::min(dt, std::sqrt(state_.rho * h * h * h / (4 * pi * options_.sigma)));
     return std::min(dt, effects_.max_dt(state_));

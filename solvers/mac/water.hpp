@@ -47,6 +47,7 @@ struct Emitter {
     geometry::ShapePtr<D> shape;
     Vec<D> velocity{};
     real start = 0, end = infinity;
+    Index<D> lo{}, hi{};  // the cells that it can reach
     bool works(real t) const { return t >= start && t < end; }
 };
 
@@ -80,9 +81,11 @@ private:
     // The passes of a step, in order (water.cpp, water_sources.cpp)
     void place_solids(real t);
     void move_surface(real dt);
-    void pour_and_drain();
+    void pour_and_drain(real dt);
     void redistribute_markers();
-    bool fill_cell(const Index<D>& I, int wanted, const geometry::Shape<D>* inside, const Vec<D>* velocity);
+    bool fill_cell(const Index<D>& I, int wanted);
+    void pour(const Emitter<D>& emitter, real dt);
+    bool holds(const Emitter<D>& emitter, const Vec<D>& x) const;
     void impose_emitters();
     void curvature();
     void correct_surface();
@@ -123,6 +126,8 @@ private:
     std::unique_ptr<SurfaceViscosity<D>> viscosity_;
     real volume_target_ = 0;  // what the ledger says: start + poured in − drained [m^D]
     std::int64_t steps_ = 0;
+    real rate_ = 0;  // max |u|/h over known faces [1/s]
+    int up_ = 1;     // the axis that gravity is most along
     std::int64_t escaped_ = 0, reseeded_ = 0;
     real volume_shift_ = 0;  // how far volume control moved the surface, all steps together [m]
     Passes passes_;

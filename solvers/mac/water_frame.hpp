@@ -100,6 +100,18 @@ struct Frame {
     }
 };
 
+/// f(I, at) for the first entry I of every line along x of a box, and its place in memory; threaded over the slowest axis.
+template <int D, class F>
+void for_each_line(const Index<D>& extent, F&& f) {
+    Index<D> columns = extent;
+    columns[0] = 1;
+    for_each_in(Index<D>{}, columns, [&](const Index<D>& I) {
+        std::size_t at = 0;
+        for (int d = D - 1; d >= 0; --d) at = at * static_cast<std::size_t>(extent[d]) + static_cast<std::size_t>(I[d]);
+        f(I, at);
+    });
+}
+
 /// Linear samples of faces and centres around one point: the interval along each axis for both kinds of sample.
 template <int D>
 struct Stencil {

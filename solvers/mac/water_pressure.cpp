@@ -6,7 +6,11 @@ using poisson::Cell;
 
 template <int D>
 SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice)
-    : frame_(frame), b_(frame.cells), solver_(poisson::make_solver<D>(choice.method, choice.options)), h2_(frame.h[0] * frame.h[0]) {
+    : frame_(frame),
+      b_(frame.cells),
+      r_(frame.cells),
+      solver_(poisson::make_solver<D>(choice.method, choice.options)),
+      h2_(frame.h[0] * frame.h[0]) {
     A_.cells = Grid<Cell, D>(frame.cells, Cell::air);
     for (int a = 0; a < D; ++a) {
         A_.weight[static_cast<std::size_t>(a)] = Grid<real, D>(state.u[a].extent());
@@ -26,7 +30,20 @@ void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std:
     liquid_cells_ = static_cast<std::size_t>(sum_over(frame_.cells, [&](const Index<D>& I) { return A_.cells(I) == Cell::fluid; }));
     for (int a = 0; a < D; ++a) {
         auto& weight = A_.weight[static_cast<std::size_t>(a)];
-        for_each_cell(weight.extent(), [&](const Index<D>& I) { weight(I) = face_weight(surface, state, a, I); });
+        for_each_line(weight.extent(), [&](const Index<D>& first, std::size_t at) {
+            Index<D> I = first;
+            if (a > 0 && !frame_.periodic(a) && I[a] > 0 && I[a] < frame_.cells[a] && !state.solid.any()) {  // the common line
+                const Cell* above = &A_.cells(I);
+                const Cell* below = above - A_.cells.stride(a);
+                for (int i = 0; i < frame_.cells[0]; ++i) {
+                    const bool one = below[i] == Cell::fluid, other = above[i] == Cell::fluid;
+                    I[0] = i;
+                    weight[at + static_cast<std::size_t>(i)] = one != other ? face_weight(surface, state, a, I) : one ? 1 : 0;
+                }
+                return;
+            }
+            for (; I[0] < weight.extent()[0]; ++I[0]) weight[at + static_cast<std::size_t>(I[0])] = face_weight(surface, state, a, I);
+        });
     }
 }
 
@@ -60,6 +77,18 @@ real SurfacePressure<D>::surface_pressure(const LevelSet<D>& surface, const Inde
     return sigma * ((1 - theta) * curvature(liquid) + theta * curvature(air));
 }
 
+/// The last pressure, unless it is further from the answer than zero is: liquid that has just left the ground has none, and a residual
+/// relative to a right-hand side of round-off cannot be reached from a large guess.
+template <int D>
+void SurfacePressure<D>::choose_guess(Grid<real, D>& p) {
+    for_each_cell(frame_.cells, [&](const Index<D>& I) {
+        if (A_.cells(I) != Cell::fluid) p(I) = 0;
+    });
+    poisson::residual(A_, p, b_, r_);
+    const auto norm2 = [&](const Grid<real, D>& q) { return sum_over(frame_.cells, [&](const Index<D>& I) { return q(I) * q(I); }); };
+    if (norm2(r_) > norm2(b_)) p.fill(0);
+}
+
 template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature) {
@@ -78,6 +107,7 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
                     A_.axis_weight[a] * A_.weight[static_cast<std::size_t>(a)](face) * surface_pressure(surface, I, J, sigma, *curvature);
             }
     });
+    choose_guess(state.p);
     solver_->setup(A_);
     const poisson::Report& report = solver_->solve(state.p, b_);
     subtract_gradient(state, surface, dt, sigma, curvature);
@@ -90,8 +120,7 @@ void SurfacePressure<D>::subtract_gradient(MacState<D>& state, const LevelSet<D>
     for (int a = 0; a < D; ++a) {
         const auto& weight = A_.weight[static_cast<std::size_t>(a)];
         const real scale = dt / state.rho * frame_.inv_h[a];
-        for_each_cell(weight.extent(), [&](const Index<D>& I) {
-            if (weight(I) == 0) return;
+        const auto subtract = [&](const Index<D>& I) {
             Index<D> lower = I, upper = I;
             bool has_lower = frame_.step(lower, a, -1), has_upper = I[a] < frame_.cells[a];
             if (frame_.periodic(a) && !has_upper) has_upper = true, upper[a] = 0;
@@ -109,6 +138,10 @@ void SurfacePressure<D>::subtract_gradient(MacState<D>& state, const LevelSet<D>
                 difference = (below ? p_surface - p_lower : p_upper - p_surface) * inv_theta;
             }
             state.u[a](I) -= scale * difference;
+        };
+        for_each_line(weight.extent(), [&](Index<D> I, std::size_t at) {
+            for (; I[0] < weight.extent()[0]; ++I[0], ++at)
+                if (weight[at] != 0) subtract(I);
         });
     }
 }
@@ -121,7 +154,7 @@ real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
 
 template <int D>
 std::size_t SurfacePressure<D>::bytes() const {
-    std::size_t total = A_.cells.size() + b_.size() * sizeof(real) + solver_->bytes();
+    std::size_t total = A_.cells.size() + 2 * b_.size() * sizeof(real) + solver_->bytes();
     for (const auto& weight : A_.weight) total += weight.size() * sizeof(real);
     return total;
 }

@@ -38,10 +38,11 @@ private:
 
     Frame<D> frame_;
     poisson::Operator<D> A_;
-    Grid<real, D> b_;
+    Grid<real, D> b_, r_;
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;
     std::size_t liquid_cells_ = 0;
+    void choose_guess(Grid<real, D>& p);
     real h2_ = 0;  // h of axis 0, squared: what the matrix is scaled by
 };
 

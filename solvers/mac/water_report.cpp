@@ -78,12 +78,11 @@ real Water<D>::crossing(const Index<D>& I, int axis) const {
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
     const std::string volume_unit = D == 2 ? "m^2" : "m^3", per_depth = D == 2 ? "/m" : "";
-    const int up = D - 1;
     const Vec<D> p = momentum();
     const auto furthest = [&](int axis) { return max_over(frame_.cells, [&](const Index<D>& I) { return crossing(I, axis); }); };
-    Index<D> column = frame_.cells;
-    column[0] = 1;
-    const real height = max_over(column, [&](const Index<D>& I) { return crossing(I, up); });
+    Index<D> column = frame_.cells;  // the cells at the lower end of x, or of y where gravity is along x
+    column[up_ == 0 ? 1 : 0] = 1;
+    const real height = max_over(column, [&](const Index<D>& I) { return crossing(I, up_); });
     std::vector<Integral> list = {
         {"volume", volume_unit, surface_.volume()},
         {"marker_volume", volume_unit, markers_.volume * static_cast<real>(markers_.count())},
@@ -95,7 +94,7 @@ std::vector<Integral> Water<D>::integrals() const {
     };
     if constexpr (D == 3) list.push_back({"momentum_z", "kg m/s", p[2]});
     list.push_back({"front_x", "m", furthest(0)});
-    list.push_back({"top", "m", furthest(up)});
+    list.push_back({"top", "m", furthest(up_)});
     list.push_back({"height_at_x_min", "m", height});
     list.push_back({"markers", "", static_cast<real>(markers_.count())});
     list.push_back({"volume_shift", "m", volume_shift_});
@@ -130,6 +129,7 @@ void Water<D>::restore(const Checkpoint& from) {
     steps_ = counts[0], escaped_ = counts[1], reseeded_ = counts[2];
     markers_.sort(frame_);
     mark_liquid_faces();
+    rate_ = max_speed_rate();
 }
 
 template <int D>

@@ -3,6 +3,25 @@
 
 namespace weir::mac {
 
+namespace {
+
+/// f(I) for I in [lo, hi), one after the other: what is added to a list keeps one order.
+template <int D, class F>
+void for_each_serial(const Index<D>& lo, const Index<D>& hi, F&& f) {
+    Index<D> I = lo;
+    for (int d = 0; d < D; ++d)
+        if (hi[d] <= lo[d]) return;
+    while (I[D - 1] < hi[D - 1]) {
+        f(I);
+        for (int d = 0; d < D; ++d) {
+            if (++I[d] < hi[d] || d == D - 1) break;
+            I[d] = lo[d];
+        }
+    }
+}
+
+}  // namespace
+
 template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
@@ -29,10 +48,9 @@ void Water<D>::set_velocity_in_solids() {
     }
 }
 
-/// Adds markers to half cells of I that have none, up to `wanted` in the cell; only inside the shape if there is one. With their own
-/// velocity, or that of the liquid there.
+/// Adds markers to half cells of I that have none, up to `wanted` in the cell, with the velocity of the liquid there.
 template <int D>
-bool Water<D>::fill_cell(const Index<D>& I, int wanted, const geometry::Shape<D>* inside, const Vec<D>* velocity) {
+bool Water<D>::fill_cell(const Index<D>& I, int wanted) {
     const std::size_t cell = surface_.phi.linear(I);
     int occupied = 0, count = markers_.in_cell(cell);
     for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p) {
@@ -44,34 +62,57 @@ bool Water<D>::fill_cell(const Index<D>& I, int wanted, const geometry::Shape<D>
     for (int sub = 0; sub < Markers<D>::per_cell && count < wanted; ++sub) {
         if (occupied >> sub & 1) continue;
         const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed + static_cast<std::uint64_t>(steps_) + 1);
-        if (inside && !inside->contains(x)) continue;
         if (solids_.any() && solids_.solids().distance(x) <= 0) continue;
-        markers_.add(x, velocity ? *velocity : sample(state_.u, Stencil<D>(frame_, x)));
+        markers_.add(x, sample(state_.u, Stencil<D>(frame_, x)));
         ++count;
         added = true;
     }
     return added;
 }
 
-/// Markers beyond open sides go; emitters fill their half cells that are empty. The ledger of volume follows the markers.
 template <int D>
-void Water<D>::pour_and_drain() {
+bool Water<D>::holds(const Emitter<D>& emitter, const Vec<D>& x) const {
+    for (int d = 0; d < D; ++d)
+        if (x[d] < frame_.origin[d] || x[d] >= frame_.origin[d] + frame_.h[d] * frame_.cells[d]) return false;
+    return emitter.shape->contains(x) && (!solids_.any() || solids_.solids().distance(x) > 0);
+}
+
+/// A jittered lattice of half cells moves with the emitter's velocity; its points become markers as they enter the emitter, all of them
+/// when it starts. So what is poured is area × speed × time, neither more where markers crowd nor less where they are slow.
+template <int D>
+void Water<D>::pour(const Emitter<D>& emitter, real dt) {
+    const real running = state_.time - emitter.start;
+    const bool starts = running < dt;  // this step is the first in which it works
+    for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
+        if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
+            surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
+        for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
+            Vec<D> x;
+            std::array<std::int64_t, D> k;
+            std::uint64_t key = 0;
+            for (int d = 0; d < D; ++d) {  // the lattice point whose undisturbed place is nearest to this half cell
+                const real travelled = emitter.velocity[d] * running / (0.5 * frame_.h[d]);
+                k[static_cast<std::size_t>(d)] = 2 * I[d] + (sub >> d & 1) - static_cast<std::int64_t>(std::floor(travelled));
+                key = key * 0x100000001B3u + static_cast<std::uint64_t>(k[static_cast<std::size_t>(d)]);
+            }
+            for (int d = 0; d < D; ++d) {
+                const real jitter = hashed_random(options_.seed, key, static_cast<std::uint64_t>(d));
+                x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
+                       emitter.velocity[d] * running;
+            }
+            if (holds(emitter, x) && (starts || !holds(emitter, x - dt * emitter.velocity))) markers_.add(x, emitter.velocity);
+        }
+    });
+}
+
+/// Markers beyond open sides go; emitters pour. The ledger of volume follows the markers.
+template <int D>
+void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
     volume_target_ -= markers_.volume * static_cast<real>(remove_departed(markers_, frame_, state_.sides));
-    markers_.sort(frame_);
     const std::size_t before = markers_.count();
-    for (const auto& emitter : emitters_) {
-        if (!emitter.works(state_.time)) continue;
-        const std::size_t cells = product(frame_.cells);
-        for (std::size_t i = 0; i < cells; ++i) {
-            const Index<D> I = frame_.index_of(i);
-            const real distance = emitter.shape->distance(frame_.centre(I));
-            if (distance > norm(frame_.h) || (!closed_.empty() && closed_(I))) continue;
-            surface_.phi(I) = std::min(surface_.phi(I), distance);
-            fill_cell(I, Markers<D>::per_cell, emitter.shape.get(), &emitter.velocity);
-        }
-    }
-    if (markers_.count() == before) return;
+    for (const auto& emitter : emitters_)
+        if (emitter.works(state_.time)) pour(emitter, dt);
     volume_target_ += markers_.volume * static_cast<real>(markers_.count() - before);
     markers_.sort(frame_);
 }
@@ -104,7 +145,7 @@ void Water<D>::redistribute_markers() {
         const int count = markers_.in_cell(cell);
         heaps |= count > many;
         if (count >= few || surface_.phi[cell] > deep || (!closed_.empty() && closed_[cell])) continue;
-        changed |= fill_cell(frame_.index_of(cell), few, nullptr, nullptr);
+        changed |= fill_cell(frame_.index_of(cell), few);
     }
     reseeded_ += static_cast<std::int64_t>(markers_.count() - before);
     if (changed) markers_.sort(frame_);
@@ -120,7 +161,7 @@ void Water<D>::redistribute_markers() {
 #define WEIR_INSTANTIATE(D)                           \
     template void Water<D>::place_solids(real);       \
     template void Water<D>::set_velocity_in_solids(); \
-    template void Water<D>::pour_and_drain();         \
+    template void Water<D>::pour_and_drain(real);     \
     template void Water<D>::impose_emitters();        \
     template void Water<D>::redistribute_markers();
 WEIR_INSTANTIATE(2)

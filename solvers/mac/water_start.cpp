@@ -16,7 +16,12 @@ bool at_contact(const geometry::Shape<D>& liquid, const geometry::Solids<D>& sol
         n[a] = (liquid.distance(x + eps * Vec<D>::unit(a)) - liquid.distance(x - eps * Vec<D>::unit(a))) / (2 * eps);
     const Vec<D> boundary = x - d * n;
     for (int a = 0; a < D; ++a) {
-        if (frame.periodic(a) || std::abs(n[a]) < 0.99) continue;  // a boundary that cuts the wall at an angle does not lie on it
+        if (frame.periodic(a)) continue;
+        // On the ridge between two contacts the gradient points at neither: then the wall's own distance tells.
+        const real lower = x[a] - frame.origin[a], upper = frame.h[a] * frame.cells[a] - lower;
+        if (n[a] < -0.3 && std::abs(lower + d) < touching) return true;
+        if (n[a] > 0.3 && std::abs(upper + d) < touching) return true;
+        if (std::abs(n[a]) < 0.99) continue;  // a boundary that cuts the wall at an angle does not lie on it
         if (n[a] < 0 && boundary[a] < frame.origin[a] + touching) return true;
         if (n[a] > 0 && boundary[a] > frame.origin[a] + frame.h[a] * frame.cells[a] - touching) return true;
     }
@@ -105,6 +110,8 @@ Water<D>::Water(const scene::Scene& scene)
       solids_(solids_of<D>(scene), state_),
       effects_(body_forces<D>(scene)) {
     if (const auto* gravity = scene.effect("gravity")) gravity_ = gravity->template vec<D>("g");
+    for (int d = 0; d < D; ++d)
+        if (std::abs(gravity_[d]) > std::abs(gravity_[up_])) up_ = d;
     markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
     pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
@@ -151,6 +158,14 @@ void Water<D>::read_emitters(const scene::Scene& scene) {
             emitter.velocity = side.velocity;
             emitters_.push_back(std::move(emitter));
         }
+    for (auto& emitter : emitters_) {
+        emitter.lo = frame_.cells;
+        for (std::size_t i = 0; i < product(frame_.cells); ++i) {
+            const Index<D> I = frame_.index_of(i);
+            if (emitter.shape->distance(frame_.centre(I)) > 2 * norm(frame_.h)) continue;
+            for (int d = 0; d < D; ++d) emitter.lo[d] = std::min(emitter.lo[d], I[d]), emitter.hi[d] = std::max(emitter.hi[d], I[d] + 1);
+        }
+    }
 }
 
 template <int D>

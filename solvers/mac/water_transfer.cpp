@@ -67,19 +67,43 @@ void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
     }
 }
 
+/// f(place, count) on the lines of faces along `a` within reach of markers, g(place, count) on all others.
+template <int D, class F, class G>
+void for_lines_near(const Markers<D>& markers, const Frame<D>& frame, const Index<D>& extent, F&& f, G&& g) {
+    const auto row_holds = [&](const Index<D>& I) {
+        Index<D> J = I;
+        J[0] = 0;
+        std::size_t cell = 0;
+        for (int d = D - 1; d >= 0; --d) cell = cell * static_cast<std::size_t>(frame.cells[d]) + static_cast<std::size_t>(J[d]);
+        return markers.begin(cell) < markers.end(cell + static_cast<std::size_t>(frame.cells[0]) - 1);
+    };
+    for_each_line(extent, [&](const Index<D>& I, std::size_t at) {
+        const auto count = static_cast<std::size_t>(extent[0]);
+        bool near = false;
+        for (const int j : {-1, 0, 1}) {
+            if constexpr (D == 2) {
+                near = near || row_holds(frame.near(I, 1, j));
+            } else {
+                for (const int k : {-1, 0, 1}) near = near || row_holds(frame.near(frame.near(I, 1, j), 2, k));
+            }
+        }
+        if (near)
+            f(at, count);
+        else
+            g(at, count);
+    });
+}
+
 }  // namespace
 
 template <int D>
 void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums<D>& sums, MacVelocity<D>& u,
                       std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known) {
-    for (auto& sum : sums.sum) {
-        const int planes = sum.extent()[D - 1];
-        const std::size_t plane = sum.size() / static_cast<std::size_t>(planes);
-        parallel_for(0, planes, [&](int k) {
-            FaceSum* first = sum.data() + static_cast<std::size_t>(k) * plane;
-            std::fill(first, first + plane, FaceSum{});
-        });
-    }
+    const auto nothing = [](std::size_t, std::size_t) {};
+    for (auto& sum : sums.sum)
+        for_lines_near(
+            markers, frame, sum.extent(),
+            [&](std::size_t at, std::size_t count) { std::fill(sum.data() + at, sum.data() + at + count, FaceSum{}); }, nothing);
     const int planes = frame.cells[D - 1], slabs = (planes + slab_planes - 1) / slab_planes;
     const std::size_t plane_cells = product(frame.cells) / static_cast<std::size_t>(planes);
     const auto scatter_slab = [&](int slab) {
@@ -94,15 +118,15 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
     for (int a = 0; a < D; ++a) {
         const auto& sum = sums.sum[static_cast<std::size_t>(a)];
         auto& seen = known[static_cast<std::size_t>(a)];
-        const int face_planes = sum.extent()[D - 1];
-        const std::size_t plane = sum.size() / static_cast<std::size_t>(face_planes);
-        parallel_for(0, face_planes, [&](int k) {
-            const std::size_t first = static_cast<std::size_t>(k) * plane;
-            for (std::size_t i = first; i < first + plane; ++i) {
-                seen[i] = sum[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
-                if (seen[i]) u[a][i] = sum[i].momentum / sum[i].weight;
-            }
-        });
+        for_lines_near(
+            markers, frame, sum.extent(),
+            [&](std::size_t at, std::size_t count) {
+                for (std::size_t i = at; i < at + count; ++i) {
+                    seen[i] = sum[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
+                    if (seen[i]) u[a][i] = sum[i].momentum / sum[i].weight;
+                }
+            },
+            [&](std::size_t at, std::size_t count) { std::fill(seen.data() + at, seen.data() + at + count, std::uint8_t{0}); });
     }
 }
 
@@ -117,14 +141,13 @@ void pic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& 
 
 template <int D>
 void flip_to_markers(const MacVelocity<D>& u, MacVelocity<D>& before, real beta, const Frame<D>& frame, Markers<D>& markers) {
-    for (int a = 0; a < D; ++a) {  // β v + Σ w (u − β u_before): one interpolation instead of two
-        const int planes = u[a].extent()[D - 1];
-        const std::size_t plane = u[a].size() / static_cast<std::size_t>(planes);
-        parallel_for(0, planes, [&](int k) {
-            const std::size_t first = static_cast<std::size_t>(k) * plane;
-            for (std::size_t i = first; i < first + plane; ++i) before[a][i] = u[a][i] - beta * before[a][i];
-        });
-    }
+    for (int a = 0; a < D; ++a)  // β v + Σ w (u − β u_before): one interpolation instead of two
+        for_lines_near(
+            markers, frame, u[a].extent(),
+            [&](std::size_t at, std::size_t count) {
+                for (std::size_t i = at; i < at + count; ++i) before[a][i] = u[a][i] - beta * before[a][i];
+            },
+            [](std::size_t, std::size_t) {});
     parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
         const auto p = static_cast<std::size_t>(i);
         const Vec<D> v = sample(before, Stencil<D>(frame, markers.position(p)));
