@@ -102,6 +102,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         row.skipped = result.failure;
         row.setup_ms = result.setup_ms, row.solve_ms = result.solve_ms, row.residual = result.residual;
         row.iterations = result.iterations, row.bytes = result.bytes;
+        if (row.skipped.empty() && !(row.residual <= 1e-7)) row.skipped = "did not converge", row.solve_ms = 0;
         return row;
     }
     set_threads(threads);
