@@ -42,13 +42,19 @@ void Extrapolation<D>::find_front(Grid<std::uint8_t, D>& mark, int a, std::span<
 }
 
 /// What u changed by from the face behind J to J. The next face goes on like this (Aslam 2004: linear), as far as the second layer, which
-/// is as far as cells beside the surface look, and by at most 0.3 |u|: a wave of ten cells or longer is not limited, a splash is.
+/// is as far as cells beside the surface look. It goes on only where the flow is smooth: by the smaller of the last two changes (minmod),
+/// and by at most 0.3 |u|. A wave of ten cells or longer is not limited; a splash on a wall is, or FLIP would feed on the extrapolation.
 template <int D>
 real Extrapolation<D>::slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by,
                              int layer) const {
     const real here = u(J), most = 0.3 * std::abs(here);
-    if (layer > 2 || !step(J, a, axis, -by) || mark(J) == 0 || mark(J) > layer) return 0;
-    return std::clamp(here - u(J), -most, most);
+    const auto finished_behind = [&] { return step(J, a, axis, -by) && mark(J) != 0 && mark(J) <= layer; };
+    if (layer > 2 || !finished_behind()) return 0;
+    const real behind = u(J);
+    if (!finished_behind()) return 0;
+    const real last = here - behind, before = behind - u(J);
+    if (last * before <= 0) return 0;
+    return std::clamp(std::abs(last) < std::abs(before) ? last : before, -most, most);
 }
 
 template <int D>
