@@ -5,23 +5,23 @@
 
 /* The walls of the domain as the kernel sees them: planes at lo[a] and hi[a] (a side that is no wall stands at -+1e30). */
 typedef struct {
-    SCALAR lo[3], hi[3];               /* walls [m] */
-    SCALAR keep_lo[3], keep_hi[3];     /* where particles are kept: a hair inside the walls [m] */
-    SCALAR inv_h, reach;               /* 1 / support [1/m]; support [m] */
-    SCALAR fraction[WEIR_WALL_TERMS];  /* u^2 T_k(2u - 1) coefficients, u = 1 - s/h, of the density kernel's part behind a wall [1] */
-    SCALAR slope[WEIR_WALL_TERMS];     /* the same for the gradient kernel's integral over the wall's plane [1/m] */
+    SCALAR lo[3], hi[3];              /* walls [m] */
+    SCALAR keep_lo[3], keep_hi[3];    /* where particles are kept: a hair inside the walls [m] */
+    SCALAR inv_h, reach;              /* 1 / support [1/m]; support [m] */
+    SCALAR fraction[WEIR_WALL_TERMS]; /* u^2 T_k(2u - 1) coefficients, u = 1 - s/h, of the density kernel's part behind a wall [1] */
+    SCALAR slope[WEIR_WALL_TERMS];    /* the same for the gradient kernel's integral over the wall's plane [1/m] */
 } WallParams;
 
 typedef struct {
-    SCALAR h, h2;        /* support and its square [m], [m^2] */
-    SCALAR guard;        /* added to r^2, so that coincident particles stay finite [m^2] */
-    SCALAR self;         /* m W(0) / rho0: what a particle adds to its own density [1] */
-    SCALAR density;      /* factor of the density kernel over rho0 / m */
-    SCALAR gradient;     /* factor of the gradient kernel over rho0 / m */
-    SCALAR cfm;          /* constraint force mixing, epsilon of eq. 11 [1/m^2] */
-    SCALAR relaxation;   /* factor of every correction [1] */
-    SCALAR corr_k;       /* artificial pressure: k of eq. 13 as a length squared [m^2] */
-    SCALAR corr_inv_wq;  /* 1 / W(dq) in units of the density kernel's factor */
+    SCALAR h, h2;       /* support and its square [m], [m^2] */
+    SCALAR guard;       /* added to r^2, so that coincident particles stay finite [m^2] */
+    SCALAR self;        /* m W(0) / rho0: what a particle adds to its own density [1] */
+    SCALAR density;     /* factor of the density kernel over rho0 / m */
+    SCALAR gradient;    /* factor of the gradient kernel over rho0 / m */
+    SCALAR cfm;         /* constraint force mixing, epsilon of eq. 11 [1/m^2] */
+    SCALAR relaxation;  /* factor of every correction [1] */
+    SCALAR corr_k;      /* artificial pressure: k of eq. 13 as a length squared [m^2] */
+    SCALAR corr_inv_wq; /* 1 / W(dq) in units of the density kernel's factor */
 } PbfParams;
 
 typedef struct {
