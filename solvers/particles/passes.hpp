@@ -79,10 +79,11 @@ struct SphPass {
     const float* positions = nullptr;
     const float* velocities = nullptr;
     const float* solid = nullptr;
-    float* density = nullptr;       // rho
+    float* density = nullptr;       // rho, or its rate
     float* acceleration = nullptr;  // float4
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
+    bool wall_forces = false;  // gravity behind walls, or walls that are stuck to
 };
 
 /// One instruction set's passes; each works on the slices of one chunk.
@@ -103,7 +104,10 @@ struct PassTable {
     } finish[3];
     struct Sph {
         void (*density)(const SphPass&, const ListChunk&);
+        void (*rate)(const SphPass&, const ListChunk&);
         void (*force)(const SphPass&, const ListChunk&);
+        void (*normal)(const SphPass&, const ListChunk&);
+        void (*tension)(const SphPass&, const ListChunk&);
     } sph[3];
 };
 

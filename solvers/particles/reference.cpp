@@ -53,13 +53,19 @@ struct Functions {
     double (*slope)(double, const PbfParams*);
     double (*correction)(double, double, const PbfParams*);
     double (*sph_density)(double, const SphParams*);
+    double (*sph_rate)(double, double, double, const SphParams*);
+    double (*sph_diffusion)(double, double, double, const SphParams*);
     double (*sph_push)(double, double, double, double, const SphParams*);
     double (*sph_drag)(double, double, const SphParams*);
+    double (*sph_colour)(double, double, const SphParams*);
+    double (*sph_tension)(double, double, const SphParams*);
 };
-constexpr Functions functions[3] = {
-    {muller::pbf_density, muller::pbf_slope, muller::pbf_correction_with_pressure, muller::sph_density, muller::sph_push, muller::sph_drag},
-    {spline::pbf_density, spline::pbf_slope, spline::pbf_correction_with_pressure, spline::sph_density, spline::sph_push, spline::sph_drag},
-    {c2::pbf_density, c2::pbf_slope, c2::pbf_correction_with_pressure, c2::sph_density, c2::sph_push, c2::sph_drag}};
+#define WEIR_FUNCTIONS(k)                                                                                                          \
+    {                                                                                                                              \
+        k::pbf_density, k::pbf_slope, k::pbf_correction_with_pressure, k::sph_density, k::sph_rate, k::sph_diffusion, k::sph_push, \
+            k::sph_drag, k::sph_colour, k::sph_tension                                                                             \
+    }
+constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(spline), WEIR_FUNCTIONS(c2)};
 
 /// Walls and solids at one particle: gradient, then part.
 std::array<double, 4> walls_at(const WallParams& walls, const Point& x) {
@@ -158,19 +164,63 @@ std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
     return rho;
 }
 
+std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
+                                        double rho0) const {
+    std::vector<double> rate(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const auto wall = walls_at(walls, x[i]);
+        double relative = 2 * (wall[0] * v[i][0] + wall[1] * v[i][1] + wall[2] * v[i][2]), spread = 0;
+        for (std::size_t j = 0; j < x.size(); ++j) {
+            const Point d = difference(x[i], x[j]), u = difference(v[i], v[j]);
+            if (j == i || square(d) >= p.h2) continue;
+            double excess = (rho[j] - rho0) - (rho[i] - rho0);
+            for (std::size_t b = 0; b < 3; ++b) excess += p.layers[b] * d[b];
+            relative += functions[kernel].sph_rate(square(d), d[0] * u[0] + d[1] * u[1] + d[2] * u[2], 1 / rho[j], &p);
+            spread += functions[kernel].sph_diffusion(square(d), excess, 1 / rho[j], &p);
+        }
+        rate[i] = rho[i] * relative + spread;
+    }
+    return rate;
+}
+
+std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std::vector<double>& rho) const {
+    std::vector<Point> q(x.size()), a(x.size(), Point{0, 0, 0});
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const auto wall = walls_at(walls, x[i]);
+        q[i] = {wall[0], wall[1], wall[2]};
+        for (std::size_t j = 0; j < x.size(); ++j) {
+            const Point d = difference(x[i], x[j]);
+            if (j == i || square(d) >= p.h2) continue;
+            const double f = functions[kernel].sph_colour(square(d), 1 / rho[j], &p);
+            for (std::size_t b = 0; b < 3; ++b) q[i][b] += f * d[b];
+        }
+        const double scale = muller::sph_normal(square(q[i]), &p);
+        for (double& c : q[i]) c *= scale;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (std::size_t j = 0; j < x.size(); ++j) {
+            const Point d = difference(x[i], x[j]);
+            if (j == i || square(d) >= p.h2) continue;
+            const double f = functions[kernel].sph_tension(square(d), 1 / (rho[i] * rho[j]), &p), both = square(q[i]) + square(q[j]);
+            const double own = q[i][0] * d[0] + q[i][1] * d[1] + q[i][2] * d[2], other = q[j][0] * d[0] + q[j][1] * d[1] + q[j][2] * d[2];
+            for (std::size_t b = 0; b < 3; ++b) a[i][b] += f * (both * d[b] - own * q[i][b] - other * q[j][b]);
+        }
+    return a;
+}
+
 std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
                                                const std::vector<double>& pressure) const {
     std::vector<Point> a(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(walls, x[i]);
-        a[i] = {0, 0, 0};
-        for (std::size_t b = 0; b < 3; ++b) a[i][b] = -pressure[i] / rho[i] * wall[b];
+        muller::sph_wall_force(x[i].data(), v[i].data(), pressure[i], wall[3], &walls, &p, a[i].data());
+        for (std::size_t b = 0; b < 3; ++b) a[i][b] -= 2 * pressure[i] / rho[i] * wall[b];
         for (std::size_t j = 0; j < x.size(); ++j) {
             const Point d = difference(x[i], x[j]), u = difference(v[i], v[j]);
             const double r2 = square(d), approach = d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
             if (j == i || r2 >= p.h2) continue;
-            const double push = functions[kernel].sph_push(r2, approach, (pressure[i] + pressure[j]) / (2 * rho[i] * rho[j]),
-                                                           0.5 / rho[i] + 0.5 / rho[j], &p);
+            const double push =
+                functions[kernel].sph_push(r2, approach, (pressure[i] + pressure[j]) / (rho[i] * rho[j]), 0.5 / rho[i] + 0.5 / rho[j], &p);
             const double drag = functions[kernel].sph_drag(r2, 1 / (rho[i] * rho[j]), &p);
             for (std::size_t b = 0; b < 3; ++b) a[i][b] += push * d[b] - drag * u[b];
         }

@@ -36,6 +36,10 @@ struct ReferenceSph {
     int kernel = 0;
 
     std::vector<double> densities(const std::vector<Point>& x) const;
+    /// d rho / dt by continuity and diffusion.
+    std::vector<double> rates(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho, double rho0) const;
+    /// By surface tension.
+    std::vector<Point> tensions(const std::vector<Point>& x, const std::vector<double>& rho) const;
     std::vector<Point> accelerations(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
                                      const std::vector<double>& pressure) const;
 };

@@ -17,6 +17,11 @@ public:
     void mark(Pairs& pairs);
     /// The terms at these positions (float4, as the passes read them), or nullptr without solids.
     const float* at(const Pairs& pairs, const float* positions);
+    /// f(k, place, terms) for the particles that can meet a solid; the terms are those of the last call of at().
+    template <class F>
+    void each_near(const float* positions, F&& f) const {
+        for (const int k : near_) f(k, world(positions + 4 * k), terms_.data() + 4 * k);
+    }
     /// Moves marked particles out of solids.
     void push_out(const Pairs& pairs, float* positions) const;
 

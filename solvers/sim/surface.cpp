@@ -27,28 +27,37 @@ real coordinate(const Lattice& lattice, int axis, real index) {
     return lattice.first[axis] + index * lattice.spacing[static_cast<std::size_t>(axis)];
 }
 
-const FieldView* marker_positions(const FieldSet& fields) { return fields.find(marker_set_name, "position"); }
+/// The points that stand for liquid, and how far it reaches beyond them: a marker is a point, a particle's own volume half a spacing.
+struct Wet {
+    const FieldView* position = nullptr;
+    real reach = 0;
+};
+Wet wet_points(const FieldSet& fields) {
+    if (const FieldView* markers = fields.find(marker_set_name, "position")) return {markers, 0};
+    return {fields.find(particle_set_name, "position"), 0.5 * fields.grid.spacing[0]};
+}
 
-/// Highest marker no farther than half a cell from the line through x along `axis`.
-real highest_marker(const FieldSet& fields, const Vec<3>& x, int axis) {
-    const auto& position = marker_positions(fields)->data;
+/// Highest marker or particle no farther than half a cell from the line through x along `axis`.
+real highest_point(const FieldSet& fields, const Vec<3>& x, int axis) {
+    const Wet wet = wet_points(fields);
+    const auto& position = wet.position->data;
     real highest = fields.grid.origin[static_cast<std::size_t>(axis)];
     for (std::size_t m = 0; m < position[0].size(); ++m) {
         bool near = true;
         for (std::size_t a = 0; a < position.size(); ++a)
             if (static_cast<int>(a) != axis && std::abs(position[a][m] - x[a]) > 0.5 * fields.grid.spacing[a]) near = false;
-        if (near) highest = std::max(highest, position[static_cast<std::size_t>(axis)][m]);
+        if (near) highest = std::max(highest, position[static_cast<std::size_t>(axis)][m] + wet.reach);
     }
     return highest;
 }
 
 }  // namespace
 
-bool has_surface(const FieldSet& fields) { return fields.find(level_set_name) || marker_positions(fields); }
+bool has_surface(const FieldSet& fields) { return fields.find(level_set_name) || wet_points(fields).position; }
 
 real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
     const FieldView* level_set = fields.find(level_set_name);
-    if (!level_set) return highest_marker(fields, x, axis);
+    if (!level_set) return highest_point(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
     const real zero = uppermost_zero(lattice.n[static_cast<std::size_t>(axis)], [&](int i) {
         Vec<3> at = x;
@@ -75,7 +84,8 @@ real front(const FieldSet& fields, int axis) {
             }
         return farthest;
     }
-    for (const real x : marker_positions(fields)->data[along]) farthest = std::max(farthest, x);
+    const Wet wet = wet_points(fields);
+    for (const real x : wet.position->data[along]) farthest = std::max(farthest, x + wet.reach);
     return farthest;
 }
 

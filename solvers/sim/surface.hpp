@@ -1,4 +1,5 @@
-// Where the free surface stands: from the solver's level set (linear between cell centres), or from its markers where it has none.
+// Where the free surface stands: from the solver's level set (linear between cell centres), or from its markers or particles where it
+// has none.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
@@ -7,9 +8,11 @@
 
 namespace weir::sim {
 
-/// The names by which solvers show them: a cell field, signed distance to the surface [m], negative in the liquid; and a particle set.
+/// The names by which solvers show them: a cell field, signed distance to the surface [m], negative in the liquid; and the
+/// particle sets of grid and of particle solvers.
 inline constexpr const char* level_set_name = "phi";
 inline constexpr const char* marker_set_name = "markers";
+inline constexpr const char* particle_set_name = "particles";
 
 bool has_surface(const FieldSet& fields);
 /// The highest coordinate along `axis` that liquid reaches on the line through x along that axis [m]; the lower end where it is dry.

@@ -37,6 +37,11 @@ Key scheme() {
                       .fallback = std::string("linear"),
                       .choices = {"linear", "tait"}},
                      {.name = "gamma", .type = Type::number, .doc = "Of Tait's equation.", .fallback = 7.0, .min = 1.0},
+                     {.name = "density",
+                      .type = Type::choice,
+                      .doc = "summation: of the kernel over neighbours; continuity: by its rate, which a free surface does not thin.",
+                      .fallback = std::string("summation"),
+                      .choices = {"summation", "continuity"}},
                      {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension},
                      {.name = "isa",
                       .type = Type::choice,
@@ -47,7 +52,17 @@ Key scheme() {
 
 std::vector<scene::Variant> effects() {
     auto list = particles::effect_schemas();
-    list.push_back({"viscosity", "Viscous forces (Müller et al. 2003, eq. 14) with fluid.viscosity.", {}});
+    list.push_back({"viscosity",
+                    "Viscous forces with fluid.viscosity (Müller et al. 2003, eq. 14; with the other kernels Morris et al. 1997), and at "
+                    "walls with slip = \"no\".",
+                    {}});
+    list.push_back({"density_diffusion",
+                    "Density spreads over neighbours, but for what it varies by at rest (delta-SPH: Molteni & Colagrossi 2009; Fourtakas "
+                    "et al. 2019).",
+                    {{.name = "delta", .type = Type::number, .doc = "Its strength.", .fallback = 0.1, .min = 0, .max = 1}}});
+    list.push_back({"surface_tension",
+                    "Stress of the colour's gradient (Müller et al. 2003, eq. 15; Lafaurie et al. 1994); keeps momentum.",
+                    {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0}}});
     list.push_back({"artificial_viscosity",
                     "Viscosity of approaching pairs only (Monaghan 1992).",
                     {{.name = "alpha", .type = Type::number, .doc = "Its strength.", .fallback = 0.05, .min = 0}}});
@@ -59,13 +74,24 @@ std::vector<scene::Variant> effects() {
     return list;
 }
 
+Key initial() {
+    Key key = particles::initial_key();
+    key.keys.push_back({.name = "surface",
+                        .type = Type::numbers,
+                        .doc = "A point of the surface: pressure begins as rho g.(x - surface) where that is positive, of effects.gravity. "
+                               "Needs scheme.density = \"continuity\"; absent: no pressure.",
+                        .unit = "m",
+                        .length = -1});
+    return key;
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
     scene::SolverSchema schema;
     schema.name = "sph";
     schema.doc = "Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003), weakly compressible.";
-    schema.keys = {scheme(), particles::initial_key(), particles::sinks_key()};
+    schema.keys = {scheme(), initial(), particles::sinks_key()};
     schema.effects = effects();
     return {schema, [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
                 if (scene.dim() == 2) return std::make_unique<SphSolver<2>>(scene);

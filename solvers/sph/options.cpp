@@ -9,6 +9,18 @@ namespace weir::sph {
 using particles::Kernel;
 using particles::KernelKind;
 
+template <int D>
+void Options::read_sides(const scene::Scene& scene) {
+    const geometry::Sides<D> sides(scene);
+    for (int a = 0; a < D; ++a)
+        for (int end = 0; end < 2; ++end) {
+            const auto& side = sides.side(a, end);
+            const auto at = static_cast<std::size_t>(2 * a + end);
+            if (side.no_slip) stick[at] = 2 * viscosity;
+            for (int b = 0; b < D; ++b) slide[3 * at + static_cast<std::size_t>(b)] = side.velocity[b];
+        }
+}
+
 Options::Options(const scene::Scene& scene) {
     const std::string& name = scene.text("scheme.kernel");
     smoothing = name == "cubic" ? Smoothing::cubic : name == "wendland" ? Smoothing::wendland : Smoothing::muller;
@@ -16,14 +28,37 @@ Options::Options(const scene::Scene& scene) {
     sound = scene.number("scheme.sound_speed");
     gamma = scene.text("scheme.state") == "tait" ? scene.number("scheme.gamma") : 1;
     tension = scene.flag("scheme.tension");
+    continuity = scene.text("scheme.density") == "continuity";
     isa = scene.text("scheme.isa");
     if (scene.effect("viscosity")) viscosity = scene.number("fluid.viscosity");
     if (const auto* a = scene.effect("artificial_viscosity")) artificial = a->number("alpha");
+    if (const auto* d = scene.effect("density_diffusion")) diffusion = d->number("delta");
+    if (const auto* t = scene.effect("surface_tension")) sigma = t->number("sigma");
+    if (diffusion > 0 && !continuity)
+        scene.refuse("effects.density_diffusion", "a density that is summed does not diffuse", "set scheme.density = \"continuity\"");
+    if (const auto* g = scene.effect("gravity")) {
+        const auto list = g->numbers("g");
+        for (std::size_t a = 0; a < list.size(); ++a) gravity[a] = list[a];
+    }
+    if (scene.dim() == 2)
+        read_sides<2>(scene);
+    else
+        read_sides<3>(scene);
+}
+
+bool Options::wall_forces() const {
+    const auto any = [](const auto& list) { return std::any_of(list.begin(), list.end(), [](real v) { return v != 0; }); };
+    return any(gravity) || any(stick);
 }
 
 real Options::pressure(real rho, real rho0) const {
     const real p = gamma == 1 ? sound * sound * (rho - rho0) : sound * sound * rho0 / gamma * (std::pow(rho / rho0, gamma) - 1);
     return tension ? p : std::max<real>(0, p);
+}
+
+real Options::density(real p, real rho0) const {
+    const real c2 = sound * sound;
+    return gamma == 1 ? rho0 + p / c2 : rho0 * std::pow(1 + gamma * p / (c2 * rho0), 1 / gamma);
 }
 
 template <int D>
@@ -36,6 +71,26 @@ Kernel<D> gradient_kernel(const Options& o, real spacing) {
     const KernelKind kinds[] = {KernelKind::spiky, KernelKind::cubic, KernelKind::wendland};
     return {kinds[static_cast<int>(o.smoothing)], o.support * spacing};
 }
+
+/// What gravity and walls do to the parameters.
+template <class Params>
+void add_surroundings(Params& p, const Options& o, real spacing, real rho0) {
+    using Number = decltype(Params::h);
+    const auto to_number = [](real value) { return static_cast<Number>(value); };
+    real g = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        p.gravity[a] = to_number(o.gravity[a]);
+        p.layers[a] = to_number(rho0 * o.gravity[a] / (o.sound * o.sound));
+        g = std::hypot(g, o.gravity[a]);
+    }
+    p.per_depth = to_number(g > 0 ? 1 / (rho0 * g * spacing) : 0);
+    p.closest = to_number(0.25 * spacing);  // half of where particles of a lattice stand
+    std::transform(o.stick.begin(), o.stick.end(), p.stick, to_number);
+    std::transform(o.slide.begin(), o.slide.end(), p.slide, to_number);
+}
+
+/// The colour's gradient is some 1.5 / h at a surface; inside a liquid in disorder it is less than this over h.
+constexpr real colour_noise = 0.05;
 
 template <class Params, int D>
 Params sph_params(const Options& o, real spacing, real rho0) {
@@ -67,6 +122,10 @@ Params sph_params(const Options& o, real spacing, real rho0) {
     p.viscosity = static_cast<Number>(o.viscosity * rho0);
     p.artificial = static_cast<Number>(o.artificial * o.sound * h / 2);
     p.soften = static_cast<Number>(0.01 * h * h / 4);
+    p.diffusion = static_cast<Number>(o.diffusion * o.sound * h);
+    p.tension = static_cast<Number>(2 * o.sigma);
+    p.noise = static_cast<Number>(colour_noise / h);
+    add_surroundings(p, o, spacing, rho0);
     return p;
 }
 

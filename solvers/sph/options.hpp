@@ -1,5 +1,6 @@
 // The choices of an SPH scene, and the numbers that the pair physics reads, made from them.
 #pragma once
+#include "geometry/sides.hpp"
 #include "particles/kernels.hpp"
 #include "scene/scene.hpp"
 
@@ -11,18 +12,32 @@ enum class Smoothing { muller, cubic, wendland };
 
 struct Options {
     Smoothing smoothing = Smoothing::muller;
-    real support = 2;      // over the spacing
-    real sound = 10;       // speed of sound [m/s]
-    real gamma = 1;        // 1: the linear equation of state of Müller et al.; else Tait's
-    bool tension = false;  // whether pressure may be negative
+    real support = 2;         // over the spacing
+    real sound = 10;          // speed of sound [m/s]
+    real gamma = 1;           // 1: the linear equation of state of Müller et al.; else Tait's
+    bool tension = false;     // whether pressure may be negative
+    bool continuity = false;  // density by its rate, not by a sum
     std::string isa = "auto";
     real viscosity = 0;   // kinematic, acts only where the effect is named [m^2/s]
     real artificial = 0;  // alpha
+    real diffusion = 0;   // delta of the density's diffusion
+    real sigma = 0;       // surface tension [N/m]
+    std::array<real, 3> gravity{0, 0, 0};
+    std::array<real, 6> stick{};   // 2 nu at the sides where the fluid sticks to a wall: x lo, x hi, y lo, ...
+    std::array<real, 18> slide{};  // and the velocities of these walls
 
     Options() = default;
     explicit Options(const scene::Scene& scene);
     /// p = c^2 (rho - rho0), or B ((rho / rho0)^gamma - 1) with B = c^2 rho0 / gamma (Monaghan 1994).
     real pressure(real rho, real rho0) const;
+    /// The density that has this pressure.
+    real density(real pressure, real rho0) const;
+    /// Whether walls add to the forces more than a particle's own pressure.
+    bool wall_forces() const;
+
+private:
+    template <int D>
+    void read_sides(const scene::Scene& scene);
 };
 
 template <int D>

@@ -1,5 +1,7 @@
 #include "sph/solver.hpp"
 
+#include "sph/tension.hpp"
+
 #include <algorithm>
 
 namespace weir::sph {
@@ -51,6 +53,8 @@ SphSolver<D>::SphSolver(const scene::Scene& scene)
       max_dt_(scene.root().number_or("time.max_dt", infinity)) {
     particles::set_initial_velocity(scene, fluid_);
     particles::add_effects(scene, effects_);
+    if (scene.effect("surface_tension")) effects_.add(std::make_unique<SurfaceTension<D>>(options_, params_, walls_, solids_));
+    start_pressure(scene);
     if (const auto* e = scene.effect("rest_density")) {
         rest_times_ = e->numbers("times");
         rest_values_ = e->numbers("values");
@@ -59,12 +63,30 @@ SphSolver<D>::SphSolver(const scene::Scene& scene)
     }
 }
 
+template <int D>
+void SphSolver<D>::start_pressure(const scene::Scene& scene) {
+    if (!scene.has("initial.surface")) return;
+    if (!options_.continuity)
+        scene.refuse("initial.surface", "a density that is summed has the pressure of its particles",
+                     "set scheme.density = \"continuity\"");
+    const Vec<D> surface = scene.vec<D>("initial.surface");
+    for (int i = 0; i < fluid_.count(); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        fluid_.carried[at] = std::max<real>(0, fluid_.rho0 * dot(fluid_.gravity, fluid_.position(i) - surface));
+        fluid_.density[at] = options_.density(fluid_.carried[at], fluid_.rho0);
+    }
+}
+
 /// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
 template <int D>
 StepReport SphSolver<D>::step(real dt) {
     emitters_.apply(fluid_, dt);
     find_neighbours();
-    find_densities();                         // eq. 3
+    if (options_.continuity)
+        advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
+    else
+        find_densities();  // eq. 3
+    find_pressures();
     find_forces();                            // eq. 10, 12 and 14
     effects_.apply(Stage::force, flow_, dt);  // gravity and other fields
     integrate(dt);
@@ -102,30 +124,69 @@ SphPass SphSolver<D>::pass() {
             density_.data(),
             acceleration_.data(),
             pairs_.list().first(),
-            pairs_.list().rows()};
+            pairs_.list().rows(),
+            options_.wall_forces()};
 }
 
-/// Densities, and from them pressures; images get what their owners have.
 template <int D>
 void SphSolver<D>::find_densities() {
     const auto timed = passes_.time("density");
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
+    pairs_.each([&](int k) {
+        if (!pairs_.is_image(k))
+            fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] = static_cast<real>(density_[static_cast<std::size_t>(k)]);
+    });
+}
+
+/// rho += dt d rho / dt, in double precision: the old velocities' rate before the new pressures' forces keeps sound waves neutral.
+template <int D>
+void SphSolver<D>::advance_densities(real dt) {
+    const auto timed = passes_.time("density");
+    load([&](int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0; });
+    const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
+    const SphPass job = pass();
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.rate(job, chunk); });
+    const auto& solids = fluid_.domain.solids;
+    if (!solids.empty() && solids.moving())  // their walls' images move with them
+        solids_.each_near(pairs_.a(), [&](int k, const Vec<D>& at, const float* term) {
+            const Vec<D> u = solids.velocity(at);
+            real into = 0;
+            for (int a = 0; a < D; ++a) into += u[a] * static_cast<real>(term[a]);
+            density_[static_cast<std::size_t>(k)] -=
+                static_cast<float>(2 * fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] * into);
+        });
+    pairs_.each([&](int k) {
+        if (!pairs_.is_image(k))
+            fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] += dt * static_cast<real>(density_[static_cast<std::size_t>(k)]);
+    });
+}
+
+/// Velocities and one more number, and in the positions 1 / rho, as the passes read them; images get what their owners have.
+template <int D>
+template <class F>
+void SphSolver<D>::load(F&& more) {
     float* x = pairs_.a();
     pairs_.each([&](int k) {
-        const auto at = static_cast<std::size_t>(k), i = static_cast<std::size_t>(pairs_.owner(k));
-        const real rho = static_cast<real>(density_[at]);
-        const Vec<D> u = fluid_.velocity(pairs_.owner(k));
-        x[4 * at + 3] = static_cast<float>(1 / rho);
+        const auto at = static_cast<std::size_t>(k);
+        const int i = pairs_.owner(k);
+        const Vec<D> u = fluid_.velocity(i);
+        x[4 * at + 3] = static_cast<float>(1 / fluid_.density[static_cast<std::size_t>(i)]);
         for (std::size_t a = 0; a < 3; ++a) velocity_[4 * at + a] = a < D ? static_cast<float>(u[a]) : 0;
-        velocity_[4 * at + 3] = static_cast<float>(options_.pressure(rho, rho_rest_));
-        if (!pairs_.is_image(k)) fluid_.density[i] = rho, fluid_.carried[i] = options_.pressure(rho, rho_rest_);
+        velocity_[4 * at + 3] = static_cast<float>(more(i));
     });
-    pairs_.refresh_images(x, true);
-    pairs_.refresh_images(velocity_.data(), false);
     for (int k = pairs_.size(); k < pairs_.size() + pairs_.table().lanes; ++k)  // the dummy
         for (int c = 0; c < 4; ++c) velocity_[static_cast<std::size_t>(4 * k + c)] = 0;
+}
+
+template <int D>
+void SphSolver<D>::find_pressures() {
+    parallel_for(0, fluid_.count(), [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        fluid_.carried[at] = options_.pressure(fluid_.density[at], rho_rest_);
+    });
+    load([&](int i) { return fluid_.carried[static_cast<std::size_t>(i)]; });
 }
 
 template <int D>

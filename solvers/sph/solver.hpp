@@ -38,7 +38,12 @@ public:
 
 private:
     void find_neighbours();
+    void start_pressure(const scene::Scene& scene);
     void find_densities();
+    void advance_densities(real dt);
+    void find_pressures();
+    template <class F>
+    void load(F&& more);
     void find_forces();
     void integrate(real dt);
     particles::SphPass pass();

@@ -34,4 +34,13 @@ typedef struct {
     SCALAR viscosity;  /* dynamic viscosity mu [Pa s] */
     SCALAR artificial; /* artificial viscosity: alpha c h / 2 [m^2/s] */
     SCALAR soften;     /* keeps the artificial viscosity finite: 0.01 (h / 2)^2 [m^2] */
+    SCALAR diffusion;  /* of density: 2 delta c h / 2 [m^2/s] */
+    SCALAR layers[3];  /* gradient of the density of the liquid at rest, rho0 g / c^2 [kg/m^4] */
+    SCALAR tension;    /* of the surface: 2 sigma [N/m] */
+    SCALAR noise;      /* a gradient of the colour below this is disorder, not a surface [1/m] */
+    SCALAR gravity[3]; /* by which the pressure goes on behind walls [m/s^2] */
+    SCALAR per_depth;  /* 1 / (rho0 |g| d): the pressure of one spacing of depth [1/Pa]; 0: no gravity */
+    SCALAR closest;    /* distance to a wall below which drag does not grow [m] */
+    SCALAR stick[6];   /* 2 nu where the fluid sticks to a wall (x lo, x hi, y lo, ...), else 0 [m^2/s] */
+    SCALAR slide[18];  /* velocity of the walls, three numbers each [m/s] */
 } SphParams;

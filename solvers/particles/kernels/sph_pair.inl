@@ -4,15 +4,65 @@
 /* m W(r)                                                                                          Mueller et al. 2003, eq. 3 */
 WEIR_FN REAL sph_density(REAL r2, WEIR_PARAM SphParams* p) { return p->density * WEIR_DENSITY(r2, p); }
 
-/* Acceleration along x_i - x_j: -m ((p_i + p_j) / (2 rho_i rho_j) + Pi) s, grad W = s (x_i - x_j)           eq. 10 over rho_i
+/* Continuity: the rate of rho_i over rho_i, m / rho_j (v_i - v_j).grad W                           Colagrossi & Landrini 2003, eq. 10
+   approach: (v_i - v_j).(x_i - x_j); volume: 1 / rho_j */
+WEIR_FN REAL sph_rate(REAL r2, REAL approach, REAL volume, WEIR_PARAM SphParams* p) {
+    return p->gradient * WEIR_SLOPE(r2, p) * approach * volume;
+}
+
+/* Diffusion of density (delta-SPH): 2 delta h c (rho_j - rho_i) (x_j - x_i).grad W / r^2 m / rho_j  Molteni & Colagrossi 2009, eq. 18
+   excess: rho_j - rho_i less the difference that the liquid has at rest, so that rest is left alone    Fourtakas et al. 2019, eq. 21 */
+WEIR_FN REAL sph_diffusion(REAL r2, REAL excess, REAL volume, WEIR_PARAM SphParams* p) {
+    return -p->diffusion * p->gradient * WEIR_SLOPE(r2, p) * excess * volume;
+}
+
+/* Acceleration along x_i - x_j: -m ((p_i + p_j) / (rho_i rho_j) + Pi) s, grad W = s (x_i - x_j)              eq. 10 over rho_i
+   without the 1/2 of eq. 10, under which a linear pressure would have half its gradient (Colagrossi & Landrini 2003, eq. 12)
    Pi = -alpha c h mu / rho, mu = v.x / (r^2 + eta^2) for approaching pairs                     artificial viscosity, Monaghan 1992
-   pressures: (p_i + p_j) / (2 rho_i rho_j); approach: (v_i - v_j).(x_i - x_j); volume: the mean of 1 / rho */
+   pressures: (p_i + p_j) / (rho_i rho_j); approach: (v_i - v_j).(x_i - x_j); volume: the mean of 1 / rho */
 WEIR_FN REAL sph_push(REAL r2, REAL approach, REAL pressures, REAL volume, WEIR_PARAM SphParams* p) {
     REAL closing = MAX0(-approach) / (r2 + p->soften);
     return -(pressures + p->artificial * closing * volume) * p->gradient * WEIR_SLOPE(r2, p);
 }
 
-/* Acceleration along v_j - v_i: mu m lap W / (rho_i rho_j)                                                  eq. 14 over rho_i */
+/* Acceleration along v_j - v_i: mu m lap W / (rho_i rho_j)                                                  eq. 14 over rho_i
+   For the cubic and the Wendland kernel the Laplacian is -2 times the slope (Morris, Fox & Zhu 1997, eq. 22). */
 WEIR_FN REAL sph_drag(REAL r2, REAL volumes, WEIR_PARAM SphParams* p) {
     return p->viscosity * volumes * p->laplacian * WEIR_LAPLACIAN(r2, p);
+}
+
+/* Gradient of the colour, which is 1 in liquid and 0 outside: m / rho_j grad W = factor (x_i - x_j)          Mueller et al. 2003, eq. 15 */
+WEIR_FN REAL sph_colour(REAL r2, REAL volume, WEIR_PARAM SphParams* p) { return p->gradient * WEIR_SLOPE(r2, p) * volume; }
+
+/* Surface tension as the stress 2 sigma (|n| 1 - n n / |n|) of the colour's gradient n (Lafaurie et al. 1994, in SPH Hu & Adams 2006).
+   The factor 2: particles fill only the inner half of the layer in which n lives. Unlike sigma kappa n it is a force between pairs,
+   equal and opposite. The normal is kept as q = n / sqrt |n|, so the stress on x is 2 sigma (q.q x - q q.x). Returns the scale of q. */
+WEIR_FN REAL sph_normal(REAL length2, WEIR_PARAM SphParams* p) {
+    REAL per_length = RSQRT(length2 + p->noise * p->noise * (SCALAR)1e-6);
+    REAL length = length2 * per_length;
+    REAL seen = MAX0(length - p->noise * p->noise * per_length);
+    return seen * RSQRT(length * seen * length + p->noise * p->noise * p->noise * (SCALAR)1e-9);
+}
+WEIR_FN REAL sph_tension(REAL r2, REAL volumes, WEIR_PARAM SphParams* p) { return p->tension * volumes * p->gradient * WEIR_SLOPE(r2, p); }
+
+/* What walls add to the acceleration beside the particle's own pressure (which has no gradient through them):
+   - the pressure goes on behind a wall as p_i + rho0 g.(x - x_i) (Adami, Hu & Adams 2012, eq. 27); the first moment of grad W over what
+     lies behind a plane at distance s is its part along the plane, part + s plane across. It fades where the liquid is less than one
+     spacing deep, so that a drop on a wall falls;
+   - a wall that is stuck to drags with 2 nu plane / s (v_wall - v_i): velocity goes on behind it linearly (Morris et al. 1997, sec. 3.2).
+   part: of the kernel behind all walls. */
+WEIR_FN void sph_wall_force(const REAL* x, const REAL* v, REAL pressure, REAL part, WEIR_PARAM WallParams* w, WEIR_PARAM SphParams* p,
+                            REAL* out) {
+    REAL faded = (SCALAR)1 - MAX0((SCALAR)1 - MAX0(pressure) * p->per_depth);
+    int a, b, end;
+    for (a = 0; a < 3; ++a) out[a] = -p->gravity[a] * part * faded;
+    for (a = 0; a < 3; ++a)
+        for (end = 0; end < 2; ++end) {
+            REAL s = end ? w->hi[a] - x[a] : x[a] - w->lo[a];
+            REAL plane = wall_series(s, w->slope, w->inv_h);
+            REAL drag = p->stick[2 * a + end] * plane / (s + MAX0(p->closest - s));
+            out[a] -= p->gravity[a] * s * plane * faded;
+            for (b = 0; b < 3; ++b)
+                if (b != a) out[b] += drag * (p->slide[3 * (2 * a + end) + b] - v[b]);
+        }
 }

@@ -19,6 +19,27 @@ static void sph_densities(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
+/* The rate of density of every particle, from `velocities` (whose fourth number is the excess rho - rho0). Behind a wall the velocity's
+   image moves against the particle, as fast: the work of the wall's pressure is then what the particle's volume loses. */
+static void sph_rates(const SphPass& a, const ListChunk& chunk) {
+    const single::SphParams* p = a.p;
+    for (int s = chunk.begin; s < chunk.end; ++s) {
+        const int first = s * lanes;
+        const Four i = load(a.positions, first), u = load(a.velocities, first);
+        const Four w = walls_at(i, a.walls, a.solid, first);
+        vf rate = broadcast(2) * (w.x * u.x + w.y * u.y + w.z * u.z), spread = broadcast(0);
+        const std::uint32_t* row = chunk.entries + a.first[s];
+        for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
+            const Four j = gather(a.positions, row), v = gather(a.velocities, row);
+            prefetch(row);
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
+            rate += sph_rate(r2, (u.x - v.x) * dx + (u.y - v.y) * dy + (u.z - v.z) * dz, j.w, p);
+            spread += sph_diffusion(r2, v.w - u.w + p->layers[0] * dx + p->layers[1] * dy + p->layers[2] * dz, j.w, p);
+        }
+        store_numbers(a.density, first, live(first, a.count), rate / i.w + spread);
+    }
+}
+
 static void sph_forces(const SphPass& a, const ListChunk& chunk) {
     const single::SphParams* p = a.p;
     const vf half = broadcast(0.5f);
@@ -27,8 +48,14 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
         const Four i = load(a.positions, first), u = load(a.velocities, first);
         /* walls push back with the particle's own pressure: no gradient through them */
         const Four w = walls_at(i, a.walls, a.solid, first);
-        const vf own = u.w * i.w;
+        const vf own = (u.w + u.w) * i.w;
         vf ax = -own * w.x, ay = -own * w.y, az = -own * w.z;
+        if (a.wall_forces && any_below(-w.w, 0)) {
+            const vf x[3] = {i.x, i.y, i.z}, v[3] = {u.x, u.y, u.z};
+            vf more[3];
+            sph_wall_force(x, v, u.w, w.w, a.walls, p, more);
+            ax += more[0], ay += more[1], az += more[2];
+        }
         const std::uint32_t* row = chunk.entries + a.first[s];
         for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
             const Four j = gather(a.positions, row), v = gather(a.velocities, row);
@@ -36,7 +63,7 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
             const vf ux = u.x - v.x, uy = u.y - v.y, uz = u.z - v.z;
             const vf volumes = i.w * j.w;
-            const vf push = sph_push(r2, ux * dx + uy * dy + uz * dz, half * (u.w + v.w) * volumes, half * (i.w + j.w), p);
+            const vf push = sph_push(r2, ux * dx + uy * dy + uz * dz, (u.w + v.w) * volumes, half * (i.w + j.w), p);
             const vf drag = sph_drag(r2, volumes, p);
             ax += push * dx - drag * ux;
             ay += push * dy - drag * uy;
@@ -46,4 +73,48 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
-static constexpr PassTable::Sph sph_table{sph_densities, sph_forces};
+/* Normals of the surface, as sph_normal keeps them, to `acceleration`. Liquid goes on behind walls. */
+static void sph_normals(const SphPass& a, const ListChunk& chunk) {
+    const single::SphParams* p = a.p;
+    for (int s = chunk.begin; s < chunk.end; ++s) {
+        const int first = s * lanes;
+        const Four i = load(a.positions, first);
+        const Four w = walls_at(i, a.walls, a.solid, first);
+        vf nx = w.x, ny = w.y, nz = w.z;
+        const std::uint32_t* row = chunk.entries + a.first[s];
+        for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
+            const Four j = gather(a.positions, row);
+            prefetch(row);
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
+            const vf f = sph_colour(dx * dx + dy * dy + dz * dz, j.w, p);
+            nx += f * dx, ny += f * dy, nz += f * dz;
+        }
+        const vf scale = sph_normal(nx * nx + ny * ny + nz * nz, p);
+        nx *= scale, ny *= scale, nz *= scale;
+        store(a.acceleration, first, live(first, a.count), {nx, ny, nz, nx * nx + ny * ny + nz * nz});
+    }
+}
+
+/* Acceleration by surface tension: `velocities` holds the normals. */
+static void sph_tensions(const SphPass& a, const ListChunk& chunk) {
+    const single::SphParams* p = a.p;
+    for (int s = chunk.begin; s < chunk.end; ++s) {
+        const int first = s * lanes;
+        const Four i = load(a.positions, first), q = load(a.velocities, first);
+        vf ax = broadcast(0), ay = ax, az = ax;
+        const std::uint32_t* row = chunk.entries + a.first[s];
+        for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
+            const Four j = gather(a.positions, row), n = gather(a.velocities, row);
+            prefetch(row);
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
+            const vf f = sph_tension(r2, i.w * j.w, p), both = q.w + n.w;
+            const vf own = q.x * dx + q.y * dy + q.z * dz, other = n.x * dx + n.y * dy + n.z * dz;
+            ax += f * (both * dx - own * q.x - other * n.x);
+            ay += f * (both * dy - own * q.y - other * n.y);
+            az += f * (both * dz - own * q.z - other * n.z);
+        }
+        store(a.acceleration, first, live(first, a.count), {ax, ay, az, broadcast(0)});
+    }
+}
+
+static constexpr PassTable::Sph sph_table{sph_densities, sph_rates, sph_forces, sph_normals, sph_tensions};

@@ -36,7 +36,67 @@ void disturb(Fluid<D>& fluid, real shake) {
         for (int a = 0; a < D; ++a) x[a] += shake * fluid.domain.spacing * jitter(random), u[a] = 0.2 * jitter(random);
         Fluid<D>::put(fluid.x, i, fluid.domain.kept(x));
         Fluid<D>::put(fluid.v, i, u);
+        fluid.density[static_cast<std::size_t>(i)] = fluid.rho0 * (1 + 0.02 * jitter(random));  // continuity starts from it
     }
+}
+
+/// The state in the reference's coordinates.
+template <int D>
+std::pair<std::vector<Point>, std::vector<Point>> points_of(const Fluid<D>& fluid) {
+    std::vector<Point> x, v;
+    for (int i = 0; i < fluid.count(); ++i) {
+        x.push_back({0, 0, 0}), v.push_back({0, 0, 0});
+        for (int a = 0; a < D; ++a) {
+            x.back()[static_cast<std::size_t>(a)] = fluid.position(i)[a] - fluid.domain.centre()[a];
+            v.back()[static_cast<std::size_t>(a)] = fluid.velocity(i)[a];
+        }
+    }
+    return {x, v};
+}
+
+/// One step by the double reference: densities, and positions before walls keep them.
+template <int D>
+std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::SphSolver<D>& solver, const Fluid<D>& before, real dt) {
+    const auto& o = solver.options();
+    const real d = before.domain.spacing;
+    particles::ReferenceSph reference;
+    reference.p = sph::sph_params<particles::plain::SphParams, D>(o, d, before.rho0);
+    reference.walls =
+        before.domain.template walls<particles::plain::WallParams>(sph::density_kernel<D>(o, d), sph::gradient_kernel<D>(o, d));
+    reference.kernel = static_cast<int>(o.smoothing);
+    const auto [x, v] = points_of(before);
+    std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
+    if (o.continuity) {
+        const auto rate = reference.rates(x, v, before.density, before.rho0);
+        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] += dt * rate[i];
+    }
+    for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
+    const auto acceleration = reference.accelerations(x, v, rho, pressure);
+    const auto tension = reference.tensions(x, rho);
+    std::vector<Vec<D>> after;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        after.push_back(before.position(static_cast<int>(i)));
+        for (std::size_t a = 0; a < D; ++a)
+            after.back()[static_cast<int>(a)] += dt * (v[i][a] + dt * (acceleration[i][a] + tension[i][a] + o.gravity[a]));
+    }
+    return {rho, after};
+}
+
+/// Each pair term, and each wall term, in some scene.
+struct Physics {
+    const char *scheme, *effects;
+};
+template <int D>
+std::vector<Physics> all_physics() {
+    const bool flat = D == 2;
+    return {{"", "effects.viscosity = {}\neffects.artificial_viscosity = { alpha = 0.1 }"},
+            {"density = \"continuity\", tension = true",
+             "effects.density_diffusion = { delta = 0.5 }\neffects.surface_tension = { sigma = 50 }"},
+            {"density = \"continuity\"",
+             flat ? "effects.gravity = { g = [3, -9.81] }\neffects.density_diffusion = {}\neffects.viscosity = {}\n"
+                    "sides.x_max = { kind = \"wall\", slip = \"no\" }\nsides.y_max = { kind = \"moving_wall\", velocity = [2, 0] }"
+                  : "effects.gravity = { g = [3, -9.81, 1] }\neffects.density_diffusion = {}\neffects.viscosity = {}\n"
+                    "sides.z_max = { kind = \"wall\", slip = \"no\" }\nsides.x_max = { kind = \"moving_wall\", velocity = [0, 2, 1] }"}};
 }
 
 }  // namespace
@@ -44,48 +104,43 @@ void disturb(Fluid<D>& fluid, real shake) {
 TEST_IN_2D_AND_3D("every instruction set agrees with the double reference to 1e-5 of the support after one step") {
     const real dt = 0.002;
     for (const auto* table : particles::available_passes())
-        for (const char* kernel : {"muller", "cubic", "wendland"}) {
-            sph::SphSolver<D> solver(sph_scene<D>(fmt::format("kernel = \"{}\", isa = \"{}\"", kernel, table->name),
-                                                  "effects.viscosity = {}\neffects.artificial_viscosity = { alpha = 0.1 }"));
-            disturb(solver.fluid(), 0.2);
-            const auto before = solver.fluid();
-            const auto& o = solver.options();
-            const real d = before.domain.spacing, h = o.support * d;
-            particles::ReferenceSph reference;
-            reference.p = sph::sph_params<particles::plain::SphParams, D>(o, d, before.rho0);
-            reference.walls =
-                before.domain.template walls<particles::plain::WallParams>(sph::density_kernel<D>(o, d), sph::gradient_kernel<D>(o, d));
-            reference.kernel = static_cast<int>(o.smoothing);
-            std::vector<Point> x, v;
-            for (int i = 0; i < before.count(); ++i) {
-                Point p{0, 0, 0}, u{0, 0, 0};
-                for (int a = 0; a < D; ++a) {
-                    p[static_cast<std::size_t>(a)] = before.position(i)[a] - before.domain.centre()[a];
-                    u[static_cast<std::size_t>(a)] = before.velocity(i)[a];
+        for (const char* kernel : {"muller", "cubic", "wendland"})
+            for (const Physics& physics : all_physics<D>()) {
+                sph::SphSolver<D> solver(sph_scene<D>(
+                    fmt::format("kernel = \"{}\", isa = \"{}\"{}{}", kernel, table->name, *physics.scheme ? ", " : "", physics.scheme),
+                    physics.effects));
+                disturb(solver.fluid(), 0.2);
+                const Fluid<D> before = solver.fluid();
+                const auto [rho, free] = reference_step(solver, before, dt);
+                const real h = solver.options().support * before.domain.spacing;
+                solver.step(dt);
+                real worst = 0, farthest = 0, densest = 0;
+                for (int i = 0; i < before.count(); ++i) {
+                    const auto at = static_cast<std::size_t>(i);
+                    worst = std::max(worst, norm(solver.fluid().position(i) - before.domain.kept(free[at])));
+                    farthest = std::max(farthest, norm(free[at] - before.position(i) - dt * before.velocity(i)));
+                    densest = std::max(densest, std::abs(solver.fluid().density[at] - rho[at]));
                 }
-                x.push_back(p), v.push_back(u);
+                EXPECT_GT(farthest, 1e-4 * h);  // forces must be there to be compared
+                EXPECT_LE(worst, 1e-5 * h) << table->name << " " << kernel << " " << physics.effects;
+                EXPECT_LE(densest, 1e-4 * before.rho0) << table->name << " " << kernel << " " << physics.effects;
             }
-            const auto rho = reference.densities(x);
-            std::vector<double> pressure;
-            for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
-            const auto acceleration = reference.accelerations(x, v, rho, pressure);
-            solver.step(dt);
-            real worst = 0, strongest = 0, densest = 0;
-            for (int i = 0; i < before.count(); ++i) {
-                const auto at = static_cast<std::size_t>(i);
-                Vec<D> expected = before.position(i);
-                for (int a = 0; a < D; ++a) {
-                    const auto axis = static_cast<std::size_t>(a);
-                    expected[a] += dt * (v[at][axis] + dt * acceleration[at][axis]);
-                    strongest = std::max(strongest, std::abs(acceleration[at][axis]));
-                }
-                worst = std::max(worst, norm(solver.fluid().position(i) - before.domain.kept(expected)));
-                densest = std::max(densest, std::abs(solver.fluid().density[at] - rho[at]));
-            }
-            EXPECT_GT(strongest * dt * dt, 1e-4 * h);  // forces must be there to be compared
-            EXPECT_LE(worst, 1e-5 * h) << table->name << " " << kernel;
-            EXPECT_LE(densest, 1e-4 * before.rho0) << table->name << " " << kernel;
-        }
+}
+
+TEST("each effect on pairs and walls does something in the scenes of the comparison") {
+    const auto after = [](const Physics& physics, const std::string& scheme) {
+        sph::SphSolver<2> solver(sph_scene<2>(scheme, physics.effects));
+        disturb(solver.fluid(), 0.2);
+        solver.step(0.002);
+        return std::pair{solver.fluid().v, solver.fluid().density};
+    };
+    const std::string continuity = "density = \"continuity\", tension = true";
+    const auto still = after({"", ""}, continuity);
+    EXPECT_NE(after({"", "effects.density_diffusion = { delta = 0.5 }"}, continuity).second, still.second);
+    EXPECT_NE(after({"", "effects.surface_tension = { sigma = 50 }"}, continuity).first, still.first);
+    const auto sticky = after({"", "effects.viscosity = {}"}, continuity);
+    EXPECT_NE(sticky.first, still.first);
+    EXPECT_NE(after({"", "effects.viscosity = {}\nsides.x_max = { kind = \"wall\", slip = \"no\" }"}, continuity).first, sticky.first);
 }
 
 TEST_IN_2D_AND_3D("a free drop keeps its momentum to round-off, whatever its particles do to each other") {

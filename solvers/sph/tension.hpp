@@ -1,0 +1,29 @@
+// Surface tension as an effect: two passes over pairs, one for the normals of the surface and one for the stress (kernels/sph_pair.inl).
+#pragma once
+#include "particles/flow.hpp"
+#include "particles/solid_terms.hpp"
+#include "sph/options.hpp"
+
+namespace weir::sph {
+
+template <int D>
+class SurfaceTension final : public Effect<particles::Flow<D>> {
+public:
+    SurfaceTension(const Options& options, const particles::single::SphParams& params, const particles::single::WallParams& walls,
+                   particles::SolidTerms<D>& solids)
+        : options_(options), params_(params), walls_(walls), solids_(solids) {}
+    Stage stage() const override { return Stage::force; }
+    /// Reads 1 / rho in the pairs' positions, where the force pass has left it.
+    void apply(particles::Flow<D>& flow, real dt) override;
+    /// The period of the shortest capillary wave that a support of two smoothing lengths s holds (Brackbill, Kothe & Zemach 1992).
+    real max_dt(const particles::Flow<D>& flow) const override;
+
+private:
+    const Options& options_;
+    const particles::single::SphParams& params_;
+    const particles::single::WallParams& walls_;
+    particles::SolidTerms<D>& solids_;
+    std::vector<float> normal_;
+};
+
+}  // namespace weir::sph
