@@ -56,9 +56,12 @@ void Water<D>::momentum_to_faces(real dt) {
         markers_to_faces(markers_, frame_, sums_, state_.u, known_);
     impose_emitters();
     set_fixed_faces();
+    forget_closed_faces();
     extrapolate_(state_.u, known_, surface_, 2);  // liquid cells without a marker, faces at the edge
-    if (options_.transfer == Transfer::flip)
+    if (options_.transfer == Transfer::flip) {
+        set_velocity_in_solids();
         for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
+    }
 }
 
 template <int D>

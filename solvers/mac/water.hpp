@@ -99,6 +99,7 @@ private:
     void control_volume();
     void set_fixed_faces();
     void mark_liquid_faces();
+    void forget_closed_faces();
     void set_velocity_in_solids();
     real max_speed_rate() const;
     real kinetic_energy() const;

@@ -28,11 +28,17 @@ FieldSet Water<D>::fields() const {
 
 namespace {
 
+/// Liquid part of a cell; where φ is only continued, in cells that solids close, there is none.
+template <int D>
+real liquid_part(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, const Index<D>& I) {
+    return !closed.empty() && closed(I) ? 0 : surface.fraction(I);
+}
+
 /// Sum over faces of the liquid volume that a face stands for (half of either cell's) times f.
 template <int D, class F>
-real sum_over_faces(const Frame<D>& frame, const LevelSet<D>& surface, int a, F&& f) {
+real sum_over_faces(const Frame<D>& frame, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, int a, F&& f) {
     return 0.5 * frame.cell_volume() * sum_over(frame.cells, [&](const Index<D>& I) {
-               const real part = surface.fraction(I);
+               const real part = liquid_part(surface, closed, I);
                return part > 0 ? part * (f(I) + f(I + e<D>(a))) : 0;
            });
 }
@@ -43,8 +49,8 @@ template <int D>
 real Water<D>::kinetic_energy() const {
     real energy = 0;
     for (int a = 0; a < D; ++a)
-        energy +=
-            0.5 * state_.rho * sum_over_faces(frame_, surface_, a, [&](const Index<D>& I) { return state_.u[a](I) * state_.u[a](I); });
+        energy += 0.5 * state_.rho *
+                  sum_over_faces(frame_, surface_, closed_, a, [&](const Index<D>& I) { return state_.u[a](I) * state_.u[a](I); });
     return energy;
 }
 
@@ -52,7 +58,7 @@ template <int D>
 Vec<D> Water<D>::momentum() const {
     Vec<D> sum;
     for (int a = 0; a < D; ++a)
-        sum[a] = state_.rho * sum_over_faces(frame_, surface_, a, [&](const Index<D>& I) { return state_.u[a](I); });
+        sum[a] = state_.rho * sum_over_faces(frame_, surface_, closed_, a, [&](const Index<D>& I) { return state_.u[a](I); });
     return sum;
 }
 
@@ -60,7 +66,7 @@ Vec<D> Water<D>::momentum() const {
 template <int D>
 real Water<D>::potential_energy() const {
     return -state_.rho * frame_.cell_volume() *
-           sum_over(frame_.cells, [&](const Index<D>& I) { return surface_.fraction(I) * dot(gravity_, frame_.centre(I)); });
+           sum_over(frame_.cells, [&](const Index<D>& I) { return liquid_part(surface_, closed_, I) * dot(gravity_, frame_.centre(I)); });
 }
 
 /// Coordinate along the axis where the surface leaves liquid cell I upwards, or −infinity if its upper neighbour is liquid too.

@@ -31,6 +31,19 @@ void Water<D>::place_solids(real t) {
     mark_near_solids(solids_.solids(), frame_, near_solid_);
 }
 
+/// Markers reach over a solid's surface with their hats, but what they leave on closed faces is not the liquid's velocity.
+template <int D>
+void Water<D>::forget_closed_faces() {
+    if (!solids_.any()) return;
+    for (int a = 0; a < D; ++a) {
+        auto& known = known_[static_cast<std::size_t>(a)];
+        const auto& open = state_.solid.open[static_cast<std::size_t>(a)];
+        for_each_free_face(state_.u, state_.sides, a, [&](const Index<D>& I) {
+            if (open(I) == 0) known(I) = 0;
+        });
+    }
+}
+
 /// Where a solid closes a face between liquid's side and its own, its velocity stands; between two closed cells the continued velocity
 /// of the liquid stands (free slip), or the solid's (no slip).
 template <int D>
@@ -160,6 +173,7 @@ void Water<D>::redistribute_markers() {
 
 #define WEIR_INSTANTIATE(D)                           \
     template void Water<D>::place_solids(real);       \
+    template void Water<D>::forget_closed_faces();    \
     template void Water<D>::set_velocity_in_solids(); \
     template void Water<D>::pour_and_drain(real);     \
     template void Water<D>::impose_emitters();        \
