@@ -63,9 +63,9 @@ void Simulation::run_until(real t) {
 
 StepReport Simulation::step_towards(real target) {
     const real frame_target = next_target();
-    const real dt = next_dt(target);
     StepReport report;
     try {
+        const real dt = next_dt(target);
         report = solver_->step(dt);
         sim::check_finite(fields(), report);
     } catch (NumericalFailure& failure) {
@@ -97,7 +97,7 @@ real Simulation::next_dt(real target) const {
     const bool fixed = root.has("time.dt");
     const real dt = fixed ? root.number("time.dt") : std::min(solver_->advised_dt(), root.number_or("time.max_dt", infinity));
     if (!(dt > slack(time())) && remaining > 0)
-        throw NumericalFailure("time step", "the advised time step is " + std::to_string(dt) + " s: time no longer advances");
+        throw NumericalFailure("time step", "the advised time step is " + scene::number_text(dt) + " s: time no longer advances");
     if (remaining <= 0) return dt;
     if (dt * stretch >= remaining) return remaining;
     return !fixed && 2 * dt > remaining ? remaining / 2 : dt;  // two equal steps rather than one step and a sliver

@@ -1,5 +1,6 @@
 // A solver without physics: fields on faces, cells and markers that change by a rule known exactly, so that the time loop, probes, output
-// and restarts can be tested apart from any fluid. Its advised step varies from step to step; at step `fail_at` it yields a NaN.
+// and restarts can be tested apart from any fluid. Its advised step varies from step to step; at step `fail_at` it yields a NaN,
+// and after step `stall_at` its advised step is nothing.
 #pragma once
 #include "core/solver.hpp"
 #include "scene/solver_kind.hpp"
@@ -13,7 +14,8 @@ namespace weir::test {
 
 class FakeSolver final : public Solver {
 public:
-    explicit FakeSolver(const scene::Scene& scene) : dim_(scene.dim()), fail_at_(scene.integer("fail_at")) {
+    explicit FakeSolver(const scene::Scene& scene)
+        : dim_(scene.dim()), fail_at_(scene.integer("fail_at")), stall_at_(scene.integer("stall_at")) {
         grid_.dim = dim_;
         const auto cells = scene.index<3>("grid.cells");
         const auto size = scene.vec<3>("grid.size"), origin = scene.vec<3>("grid.origin");
@@ -39,15 +41,14 @@ public:
         if (step_ == fail_at_) pressure_[1] = std::nan("");
         return {.dt = dt, .cfl = memory_, .max_divergence = 1e-12, .iterations = static_cast<int>(step_)};
     }
-    real advised_dt() const override { return 0.01 + 0.02 * memory_; }
+    real advised_dt() const override { return step_ == stall_at_ ? 1e-20 : 0.01 + 0.02 * memory_; }
     FieldSet fields() const override {
         FieldSet set;
         set.grid = grid_;
         FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, "markers", {}};
         for (const auto& f : faces_) velocity.data.emplace_back(f);
         for (const auto& p : positions_) position.data.emplace_back(p);
-        set.fields = {
-            velocity, {"pressure", "Pa", Where::cell, "", {pressure_}}, {"phi", "m", Where::cell, "", {level_set_}}, position};
+        set.fields = {velocity, {"pressure", "Pa", Where::cell, "", {pressure_}}, {"phi", "m", Where::cell, "", {level_set_}}, position};
         return set;
     }
     std::vector<Integral> integrals() const override { return {{"mass", "kg", 1 + memory_}}; }
@@ -100,7 +101,7 @@ private:
                 }
     }
     int dim_;
-    std::int64_t fail_at_;
+    std::int64_t fail_at_, stall_at_;
     GridView grid_;
     std::vector<std::vector<real>> faces_, positions_;
     std::vector<real> pressure_, level_set_;
@@ -114,7 +115,9 @@ inline std::vector<scene::SolverKind> fake_kinds() {
     kind.schema.name = "fake";
     kind.schema.doc = "Without physics.";
     kind.schema.dims = {2, 3};
-    kind.schema.keys = {{.name = "fail_at", .type = scene::Type::integer, .doc = "Step that yields a NaN.", .fallback = std::int64_t{-1}}};
+    kind.schema.keys = {
+        {.name = "fail_at", .type = scene::Type::integer, .doc = "Step that yields a NaN.", .fallback = std::int64_t{-1}},
+        {.name = "stall_at", .type = scene::Type::integer, .doc = "Step after which none is advised.", .fallback = std::int64_t{-1}}};
     kind.make = [](const scene::Scene& scene) { return std::make_unique<FakeSolver>(scene); };
     return {kind};
 }

@@ -84,6 +84,27 @@ TEST("at a numerical failure the last good state is saved, and the message tells
     EXPECT_TRUE(good.at_frame());
 }
 
+TEST("a time step that vanishes is a failure like any other: step, time, quantity, and the last good state") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("stall_at = 20\n" + scene);
+    Counter counter;
+    weir::sim::LoopOptions options;
+    options.folder = folder;
+    try {
+        weir::sim::run(simulation, counter, options);
+        FAIL() << "time stood still";
+    } catch (const weir::NumericalFailure& failure) {
+        const std::string text = failure.what();
+        EXPECT_EQ(failure.quantity, "time step");
+        EXPECT_EQ(failure.step, 21);
+        EXPECT_EQ(failure.time, simulation.time());
+        EXPECT_GT(failure.time, 0);
+        EXPECT_NE(text.find("step 21, t = "), std::string::npos) << text;
+        EXPECT_NE(text.find("time step: the advised time step is 1e-20 s"), std::string::npos) << text;
+    }
+    EXPECT_TRUE(std::filesystem::exists(weir::sim::last_good_file(folder)));
+}
+
 TEST("checkpoints are saved every so many steps") {
     TemporaryFolder folder;
     auto simulation = fake_simulation("time = { end = 1.0, dt = 0.1 }");
