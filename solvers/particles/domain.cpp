@@ -1,7 +1,5 @@
 #include "particles/domain.hpp"
 
-#include <algorithm>
-
 namespace weir::particles {
 
 template <int D>
@@ -31,13 +29,6 @@ Frame Domain<D>::frame() const {
         f.period[at] = sides.periodic(a) ? hi[a] - lo[a] : 0;
     }
     return f;
-}
-
-template <int D>
-Vec<D> Domain<D>::kept(Vec<D> x) const {
-    if (!solids.empty()) x = solids.push_out(x, margin, 1e-3 * spacing);
-    for (int a = 0; a < D; ++a) x[a] = std::min(std::max(x[a], keep_lo[a]), keep_hi[a]);
-    return x;
 }
 
 template <int D>

@@ -8,6 +8,8 @@
 #include "particles/walls.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
+
 namespace weir::particles {
 
 template <int D>
@@ -30,7 +32,11 @@ struct Domain {
     Vec<D> centre() const { return 0.5 * (lo + hi); }
     Frame frame() const;
     /// The nearest place inside the walls and outside the solids.
-    Vec<D> kept(Vec<D> x) const;
+    Vec<D> kept(Vec<D> x) const {
+        if (!solids.empty()) x = solids.push_out(x, margin, 1e-3 * spacing);
+        for (int a = 0; a < D; ++a) x[a] = std::min(std::max(x[a], keep_lo[a]), keep_hi[a]);
+        return x;
+    }
     Vec<D> wrapped(Vec<D> x) const;
     /// Beyond an open side (where it is taken out), or, which must never be, beyond a wall or inside a solid.
     bool left(const Vec<D>& x) const;

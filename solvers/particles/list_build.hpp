@@ -1,9 +1,9 @@
-// Building the sliced ELL list for one instruction set: included by pair_passes.cpp only, after simd.hpp. The candidates of a cell are
+// Building the sliced ELL list for one instruction set: included by pair_passes.cpp only. The candidates of a cell are
 // packed once (nine runs of three cells, cut to the bounding box of the cell's particles grown by the radius), then each particle of the
 // cell tests them lane by lane and appends the hits.
 #pragma once
 #include "particles/passes.hpp"
-#include "particles/simd.hpp"
+#include "particles/simd_choose.hpp"
 
 namespace {
 
@@ -48,73 +48,34 @@ inline Bounds bounds(const ListJob& job, int cell) {
     return b;
 }
 
+/// The candidates of the runs that are closer than the radius to the box of the cell's particles, `lanes` at a time.
 inline void pack(const ListJob& job, ListChunk& chunk, int cell, const Runs& runs) {
     const Bounds box = bounds(job, cell);
-    const __m128 r2 = _mm_set1_ps(job.radius2), xyz = _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0));
+    typedef float four __attribute__((vector_size(16)));
+    const four lo = (four)box.lo, hi = (four)box.hi;
     int n = 0;
     for (int r = 0; r < runs.count; ++r)
-        for (int i = runs.begin[r]; i < runs.end[r]; ++i) {
-            const __m128 p = _mm_load_ps(job.positions + 4 * i);
-            const __m128 out = _mm_and_ps(_mm_max_ps(_mm_max_ps(_mm_sub_ps(box.lo, p), _mm_sub_ps(p, box.hi)), _mm_setzero_ps()), xyz);
-            __m128 d2 = _mm_mul_ps(out, out);
-            d2 = _mm_add_ps(d2, _mm_movehl_ps(d2, d2));
-            d2 = _mm_add_ss(d2, _mm_shuffle_ps(d2, d2, 1));
-            _mm_store_ss(chunk.x + n, p);
-            _mm_store_ss(chunk.y + n, _mm_shuffle_ps(p, p, 1));
-            _mm_store_ss(chunk.z + n, _mm_movehl_ps(p, p));
-            chunk.offset[n] = static_cast<std::uint32_t>(16 * i);
-            n += _mm_comilt_ss(d2, r2);
+        for (int i = runs.begin[r]; i < runs.end[r]; i += lanes) {
+            const Four p = load_block(job.positions + 4 * i);
+            const vf x = max0(higher(lo[0] - p.x, p.x - hi[0])), y = max0(higher(lo[1] - p.y, p.y - hi[1]));
+            const vf z = max0(higher(lo[2] - p.z, p.z - hi[2]));
+            const unsigned chosen = below(x * x + y * y + z * z, job.radius2) & block_lanes(runs.end[r] - i);
+            store_chosen(chunk.x + n, p.x, chosen);
+            store_chosen(chunk.y + n, p.y, chosen);
+            store_chosen(chunk.z + n, p.z, chosen);
+            n += store_chosen(reinterpret_cast<float*>(chunk.offset + n), block_offsets(i), chosen);
         }
     for (int pad = n; pad < n + lanes; ++pad) chunk.x[pad] = chunk.y[pad] = chunk.z[pad] = weir::particles::dummy_position;
     chunk.packed = n;
     chunk.packed_cell = cell;
 }
 
-#if WEIR_ISA == 256
-/// For each mask of eight lanes: the chosen lanes first.
-struct CompressTable {
-    std::uint32_t lane[256][8];
-    constexpr CompressTable() : lane{} {
-        for (int m = 0; m < 256; ++m) {
-            int n = 0;
-            for (int l = 0; l < 8; ++l)
-                if (m >> l & 1) lane[m][n++] = static_cast<std::uint32_t>(l);
-        }
-    }
-};
-alignas(32) constexpr CompressTable compress_table;
-#endif
-
 /// Appends the candidates at c .. c + lanes - 1 that are closer than the radius and are not the particle itself.
 inline int append(std::uint32_t* out, int n, const ListChunk& chunk, int c, vf x, vf y, vf z, float radius2, std::uint32_t self) {
-    typedef vf unaligned __attribute__((aligned(4)));
-    const vf dx = *reinterpret_cast<const unaligned*>(chunk.x + c) - x;
-    const vf dy = *reinterpret_cast<const unaligned*>(chunk.y + c) - y;
-    const vf dz = *reinterpret_cast<const unaligned*>(chunk.z + c) - z;
-    const vf d2 = dx * dx + dy * dy + dz * dz;
-#if WEIR_ISA == 512
-    const __m512i o = _mm512_loadu_si512(chunk.offset + c);
-    const __mmask16 hit = _mm512_mask_cmp_ps_mask(_mm512_cmpneq_epi32_mask(o, _mm512_set1_epi32(static_cast<int>(self))), (__m512)d2,
-                                                  _mm512_set1_ps(radius2), _CMP_LT_OQ);
-    _mm512_storeu_si512(out + n, _mm512_maskz_compress_epi32(hit, o));
-    return n + __builtin_popcount(hit);
-#elif WEIR_ISA == 256
-    const __m256i o = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(chunk.offset + c));
-    const __m256i me = _mm256_cmpeq_epi32(o, _mm256_set1_epi32(static_cast<int>(self)));
-    const __m256 close = _mm256_cmp_ps((__m256)d2, _mm256_set1_ps(radius2), _CMP_LT_OQ);
-    const int hit = _mm256_movemask_ps(_mm256_andnot_ps(_mm256_castsi256_ps(me), close));
-    const __m256i first = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_table.lane[hit]));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + n), _mm256_permutevar8x32_epi32(o, first));
-    return n + __builtin_popcount(static_cast<unsigned>(hit));
-#else
-    const int hit = _mm_movemask_ps(_mm_cmplt_ps((__m128)d2, _mm_set1_ps(radius2)));
-    for (int l = 0; l < 4; ++l) {
-        const std::uint32_t o = chunk.offset[c + l];
-        out[n] = o;
-        n += (hit >> l & 1) & (o != self);
-    }
-    return n;
-#endif
+    const vf dx = load_numbers(chunk.x, c) - x, dy = load_numbers(chunk.y, c) - y, dz = load_numbers(chunk.z, c) - z;
+    const vf offsets = load_numbers(reinterpret_cast<const float*>(chunk.offset), c);
+    const unsigned hit = below(dx * dx + dy * dy + dz * dz, radius2) & ~same_bits(offsets, self);
+    return n + store_chosen(reinterpret_cast<float*>(out + n), offsets, hit);
 }
 
 /// hits (one list a lane, each padded to `rows`) into rows of `lanes` entries: 4 x 4 blocks at a time.

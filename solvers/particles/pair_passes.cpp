@@ -21,10 +21,6 @@ using single::WallParams;
 
 inline void prefetch(const std::uint32_t* row) { _mm_prefetch(reinterpret_cast<const char*>(row + 16 * lanes), _MM_HINT_T0); }
 inline int live(int first, int count) { return first + lanes <= count ? lanes : count - first; }
-inline vf load_numbers(const float* from, int first) {
-    typedef vf unaligned __attribute__((aligned(4)));
-    return *reinterpret_cast<const unaligned*>(from + first);
-}
 inline void store_numbers(float* to, int first, int count, vf value) {
     for (int l = 0; l < count; ++l) to[first + l] = value[l];
 }
