@@ -1,5 +1,5 @@
 // Milliseconds a step, and in each pass of it, of whole water simulations: two dam breaks, each after a start-up that is not measured.
-//   bench_water [--csv] [--steps N] [--threads N]
+//   bench_water [--csv] [--steps N] [--threads N] [--dim 2|3]
 #include "core/parallel.hpp"
 #include "mac/kinds.hpp"
 #include "mac/water.hpp"
@@ -19,17 +19,17 @@ namespace {
 
 struct Problem {
     std::string name;
-    int threads;
+    int dim, threads;
     std::string scene;
 };
 
 /// The two of the issue: 96 × 64 × 48 cells with 200,000 FLIP markers on one thread, and 512 × 256 cells on two.
 std::vector<Problem> problems() {
-    return {{"dam_break_3d_96x64x48", 1,
+    return {{"dam_break_3d_96x64x48", 3, 1,
              "solver = \"mac_water\"\ndim = 3\ngrid = { cells = [96, 64, 48], size = [1.5, 1.0, 0.75] }\ntime = { end = 10.0 }\n"
              "fluid = { density = 1000.0 }\nliquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.4375, 0.296875, 0.75] } ]\n"
              "effects = { gravity = { g = [0.0, -9.81, 0.0] } }\nscheme = { transfer = \"flip\", poisson = { tolerance = 1e-8 } }\n"},
-            {"dam_break_2d_512x256", 2,
+            {"dam_break_2d_512x256", 2, 2,
              "solver = \"mac_water\"\ndim = 2\ngrid = { cells = [512, 256], size = [4.0, 2.0] }\ntime = { end = 10.0 }\n"
              "fluid = { density = 1000.0 }\nliquid = [ { shape = \"box\", min = [0.0, 0.0], max = [1.0, 1.5] } ]\n"
              "effects = { gravity = { g = [0.0, -9.81] } }\nscheme = { transfer = \"flip\", poisson = { tolerance = 1e-8 } }\n"}};
@@ -81,7 +81,7 @@ void measure(const Problem& problem, int threads, int steps, bool csv) {
 
 int main(int argc, char** argv) {
     bool csv = false;
-    int steps = 20, threads = 0;
+    int steps = 20, threads = 0, dim = 0;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
         if (argument == "--csv")
@@ -90,10 +90,13 @@ int main(int argc, char** argv) {
             steps = std::max(1, std::atoi(argv[++i]));
         else if (argument == "--threads" && i + 1 < argc)
             threads = std::max(1, std::atoi(argv[++i]));
+        else if (argument == "--dim" && i + 1 < argc)
+            dim = std::atoi(argv[++i]);
         else
-            return fmt::print(stderr, "usage: bench_water [--csv] [--steps N] [--threads N]\n"), 2;
+            return fmt::print(stderr, "usage: bench_water [--csv] [--steps N] [--threads N] [--dim 2|3]\n"), 2;
     }
     if (csv) fmt::print("case,threads,markers,pass,median_ms,least_ms\n");
-    for (const auto& problem : problems()) measure(problem, threads > 0 ? threads : problem.threads, steps, csv);
+    for (const auto& problem : problems())
+        if (dim == 0 || dim == problem.dim) measure(problem, threads > 0 ? threads : problem.threads, steps, csv);
     return 0;
 }

@@ -38,6 +38,27 @@ real flux_divergence(const MacState<D>& s, const Index<D>& I) {
 }
 
 template <int D>
+void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count, real* out) {
+    std::fill_n(out, count, 0.0);
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        const real *below = &s.u[a](first), h = s.u.h[a];
+        const std::ptrdiff_t up = s.u[a].stride(a);
+        if (!s.solid.any()) {
+#pragma omp simd
+            for (int i = 0; i < count; ++i) out[i] += (below[i + up] - below[i]) / h;
+            continue;
+        }
+        const real *w = &s.solid.open[at](first), *v = &s.solid.velocity[at](first);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const real lower = w[i] * below[i] + (1 - w[i]) * v[i], upper = w[i + up] * below[i + up] + (1 - w[i + up]) * v[i + up];
+            out[i] += (upper - lower) / h;
+        }
+    }
+}
+
+template <int D>
 real max_divergence(const MacState<D>& s) {
     return max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? std::abs(flux_divergence(s, I)) : 0; });
 }
@@ -113,29 +134,19 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
     solver_->setup(matrix_);
 }
 
-/// rhs = scale ∇·u where no solid stands.
+/// rhs = scale ∇·u, everywhere: the solver looks only at fluid cells.
 template <int D>
-static void set_plain_rhs(const MacVelocity<D>& u, real scale, Grid<real, D>& rhs) {
-    for_each_row(Index<D>{}, u.cells, [&](const Index<D>& first, int count) {
+static void set_rhs(const MacState<D>& s, real scale, Grid<real, D>& rhs) {
+    for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
         real* out = &rhs(first);
-        std::fill_n(out, count, 0.0);
-        for (int a = 0; a < D; ++a) {
-            const real *below = &u[a](first), *above = below + u[a].stride(a);
-            const real h = u.h[a];
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] += (above[i] - below[i]) / h;
-        }
+        flux_divergence_row(s, first, count, out);
         for (int i = 0; i < count; ++i) out[i] *= scale;
     });
 }
 
 template <int D>
 const poisson::Report& Projection<D>::project(MacState<D>& s, real dt) {
-    const real scale = -s.u.h[0] * s.u.h[0] * s.rho / dt;
-    if (s.solid.any())
-        for_each_cell(s.extent(), [&](const Index<D>& I) { rhs_(I) = s.cells(I) == Cell::fluid ? scale * flux_divergence(s, I) : 0; });
-    else
-        set_plain_rhs(s.u, scale, rhs_);
+    set_rhs(s, -s.u.h[0] * s.u.h[0] * s.rho / dt, rhs_);
     const poisson::Report& report = solver_->solve(s.p, rhs_);
     add_gradient(s.u, s, -dt / s.rho);
     return report;
@@ -150,6 +161,8 @@ std::size_t Projection<D>::bytes() const {
 
 template real flux_divergence(const MacState<2>&, const Index<2>&);
 template real flux_divergence(const MacState<3>&, const Index<3>&);
+template void flux_divergence_row(const MacState<2>&, const Index<2>&, int, real*);
+template void flux_divergence_row(const MacState<3>&, const Index<3>&, int, real*);
 template real max_divergence(const MacState<2>&);
 template real max_divergence(const MacState<3>&);
 template void add_gradient(MacVelocity<2>&, const MacState<2>&, real);

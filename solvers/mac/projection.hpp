@@ -21,6 +21,9 @@ struct PoissonChoice {
 /// the solid.
 template <int D>
 real flux_divergence(const MacState<D>& s, const Index<D>& I);
+/// The same for the cells first, first + 1, .. of a row.
+template <int D>
+void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count, real* out);
 template <int D>
 real max_divergence(const MacState<D>& s);
 

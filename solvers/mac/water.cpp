@@ -122,25 +122,22 @@ void Water<D>::advect_faces(real dt) {
 /// Faces whose velocity the pressure decided, and those that walls and inflows prescribe.
 template <int D>
 void Water<D>::mark_liquid_faces() {
+    using poisson::Cell;
     for (int a = 0; a < D; ++a) {
-        auto& known = known_[static_cast<std::size_t>(a)];
-        const auto is_known = [&](const Index<D>& I) {
-            const bool on_side = !frame_.periodic(a) && (I[a] == 0 || I[a] == frame_.cells[a]);
-            const bool liquid =
-                state_.cells(frame_.near(I, a, -1)) == poisson::Cell::fluid || state_.cells(frame_.near(I, a, 0)) == poisson::Cell::fluid;
-            const bool open = !state_.solid.any() || state_.solid.open[static_cast<std::size_t>(a)](I) > 0;
-            return on_side ? !state_.sides.open(a, I[a] == 0 ? 0 : 1) || liquid : liquid && open;
+        std::uint8_t* known = known_[static_cast<std::size_t>(a)].data();
+        const real* open = state_.solid.any() ? state_.solid.open[static_cast<std::size_t>(a)].data() : nullptr;
+        const auto stride = state_.cells.stride(a);
+        const auto between_cells = [&](std::size_t face, std::size_t cell, int count) {
+            const Cell *above = state_.cells.data() + cell, *below = above - stride;
+            for (int i = 0; i < count; ++i) known[face + static_cast<std::size_t>(i)] = above[i] == Cell::fluid || below[i] == Cell::fluid;
+            for (std::size_t i = 0; open && i < static_cast<std::size_t>(count); ++i) known[face + i] &= open[face + i] > 0;
         };
-        for_each_line(known.extent(), [&](Index<D> I, std::size_t at) {
-            if (a > 0 && I[a] > 0 && I[a] < frame_.cells[a] && !state_.solid.any()) {  // the common line
-                const poisson::Cell* above = &state_.cells(I);
-                const poisson::Cell* below = above - state_.cells.stride(a);
-                for (int i = 0; i < frame_.cells[0]; ++i)
-                    known[at + static_cast<std::size_t>(i)] = below[i] == poisson::Cell::fluid || above[i] == poisson::Cell::fluid;
-                return;
-            }
-            for (; I[0] < known.extent()[0]; ++I[0], ++at) known[at] = is_known(I);
-        });
+        const auto on_side = [&](const Index<D>& I, std::size_t face) {
+            const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
+            const bool periodic = frame_.periodic(a), closed = open && open[face] == 0;
+            known[face] = periodic ? liquid && !closed : liquid || !state_.sides.open(a, I[a] == 0 ? 0 : 1);
+        };
+        for_each_face_run(frame_.cells, a, between_cells, on_side);
     }
 }
 

@@ -112,6 +112,25 @@ void for_each_line(const Index<D>& extent, F&& f) {
     });
 }
 
+/// inner(face, cell, count) on runs along x of faces along a with a cell on both sides: places in memory of the first face and of the cell
+/// above it; outer(I, face) on each of the others, which are on a side of the domain or join the ends of a periodic axis.
+template <int D, class F, class G>
+void for_each_face_run(const Index<D>& cells, int a, F&& inner, G&& outer) {
+    const auto n = static_cast<std::size_t>(cells[0]);
+    for_each_line(cells + e<D>(a), [&](Index<D> I, std::size_t face) {
+        if (a > 0 && (I[a] == 0 || I[a] == cells[a])) {
+            for (; I[0] < cells[0]; ++I[0], ++face) outer(I, face);
+            return;
+        }
+        std::size_t row = 0;
+        for (int d = D - 1; d > 0; --d) row = row * static_cast<std::size_t>(cells[d]) + static_cast<std::size_t>(I[d]);
+        const std::size_t cell = row * n, first = a == 0 ? 1 : 0;
+        if (a == 0) outer(I, face);
+        inner(face + first, cell + first, static_cast<int>(n - first));
+        if (a == 0) I[0] = cells[0], outer(I, face + n);
+    });
+}
+
 /// Linear samples of faces and centres around one point: the interval along each axis for both kinds of sample.
 template <int D>
 struct Stencil {

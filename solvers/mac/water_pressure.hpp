@@ -28,21 +28,33 @@ public:
     /// Largest |∇·u| over liquid cells [1/s], open fractions counted.
     real max_divergence(const MacState<D>& state) const;
     std::size_t bytes() const;
-    bool has_liquid() const { return liquid_cells_ > 0; }
 
 private:
-    real face_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;
-    real surface_pressure(const LevelSet<D>& surface, const Index<D>& liquid, const Index<D>& air, real sigma,
+    /// Cells [begin, end) of a line; begin lies behind end where there are none.
+    struct Extent {
+        int begin, end;
+    };
+    void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
+    void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
+    real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;
+    real cut_weight(const LevelSet<D>& surface, std::size_t lower, std::size_t upper) const;
+    real surface_pressure(const LevelSet<D>& surface, std::size_t liquid, std::size_t air, real sigma,
                           const Grid<real, D>& curvature) const;
-    void subtract_gradient(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature) const;
+    void set_rhs(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
+    real surface_tension(const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature, const Index<D>& I) const;
+    void subtract_gradient(MacState<D>& state, real dt) const;
+    void subtract_surface_gradient(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                   const Grid<real, D>& curvature) const;
+    template <class F, class G>
+    void for_faces_of_liquid(int a, F&& inner, G&& outer) const;
 
     Frame<D> frame_;
-    poisson::Operator<D> A_;
-    Grid<real, D> b_, r_;
+    poisson::Operator<D> A_;      // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere
+    Grid<real, D> b_;             // likewise
+    std::vector<Extent> liquid_;  // of every line of cells along x
+    bool has_liquid_ = false;
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;
-    std::size_t liquid_cells_ = 0;
-    void choose_guess(Grid<real, D>& p);
     real h2_ = 0;  // h of axis 0, squared: what the matrix is scaled by
 };
 

@@ -244,6 +244,11 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
         gather(problem, p);
     real norm = std::sqrt(replace_residual(problem, p, b));
     const real b_norm = from_zero ? norm : problem.norm(b);
+    if (norm > b_norm) {
+        p.fill(0);
+        clear_guess();
+        norm = std::sqrt(replace_residual(problem, p, b));
+    }
     Progress progress(options, report);
     report.iterations = 0;
     report.history.clear();

@@ -50,7 +50,7 @@ const Report& ListSolver<D>::continue_solve(const Report& attempt, Grid<real, D>
     }
     system_.components.remove_means(b_);
     b_norm_ = std::sqrt(dot(b_, b_));
-    if (b_norm_ == 0) std::fill(x_.begin(), x_.end(), 0.0);
+    if (b_norm_ == 0 || true_residual() > 1) std::fill(x_.begin(), x_.end(), 0.0);
     report_.iterations = attempt.iterations;
     report_.history = attempt.history;
     report_.residual_before = report_.residual_after = true_residual();

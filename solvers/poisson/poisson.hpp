@@ -38,7 +38,7 @@ struct Operator {
 struct Report {
     int iterations = 0;
     bool converged = false;
-    real residual_before = 0;   // ‖b − A p₀‖₂ / ‖b‖₂ with the compatible b
+    real residual_before = 0;   // ‖b − A p₀‖₂ / ‖b‖₂ with the compatible b; p₀ is the guess, or zero where that is nearer
     real residual_after = 0;    // the same for the answer, recomputed in double precision
     real residual_max = 0;      // ‖b − A p‖_∞, absolute
     std::vector<real> history;  // relative residual after each iteration, as the iteration sees it; empty unless asked for
@@ -61,7 +61,8 @@ class Solver {
 public:
     virtual ~Solver() = default;
     virtual void setup(const Operator<D>& A) = 0;
-    /// Solves A p = b. p holds the first guess on entry; cells that are not fluid are set to 0. Throws NumericalFailure("pressure", ...)
+    /// Solves A p = b. p holds the first guess on entry, which is dropped if its residual is larger than that of zero; cells that are not
+    /// fluid are set to 0, whatever they held, and b is not read there. Throws NumericalFailure("pressure", ...)
     /// when the tolerance is missed after max_iterations (unless fixed_iterations) or when the residual is not finite.
     /// The reference stays valid until the next call; after the first, a solve with an unchanged structure allocates nothing.
     virtual const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) = 0;
