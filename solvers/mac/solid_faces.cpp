@@ -1,5 +1,7 @@
 #include "mac/solid_faces.hpp"
 
+#include "core/parallel.hpp"
+
 #include <algorithm>
 
 namespace weir::mac {
@@ -20,6 +22,26 @@ real fraction(const Grid<real, D>& corner, int a, const Index<D>& I) {
         open = geometry::fraction_positive(std::array<real, 4>{corner(I), corner(I + eb), corner(I + eb + ec), corner(I + ec)});
     }
     return open < least_open_fraction ? 0 : open;
+}
+
+/// The index of the entry at this place in memory.
+template <int D>
+Index<D> index_of(const Index<D>& extent, std::size_t at) {
+    Index<D> I;
+    for (int d = 0; d < D; ++d) {
+        const auto n = static_cast<std::size_t>(extent[d]);
+        I[d] = static_cast<int>(at % n);
+        at /= n;
+    }
+    return I;
+}
+
+/// Component b at a face along a: itself, or the mean of the four faces around it.
+template <int D>
+real component_at(const PaddedVelocity<D>& u, int b, int a, const Index<D>& I) {
+    if (b == a) return u[a](I);
+    const Index<D> below = I - e<D>(a);
+    return 0.25 * ((u[b](I) + u[b](below)) + (u[b](I + e<D>(b)) + u[b](below + e<D>(b))));
 }
 
 }  // namespace
@@ -56,6 +78,7 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
         }
         s.cells(I) = open > 0 ? Cell::fluid : Cell::solid;
     });
+    find_extended(s);
 }
 
 template <int D>
@@ -69,24 +92,58 @@ void SolidPlacement<D>::set_faces(MacState<D>& s) const {
     }
 }
 
+/// Closed faces of free-slip solids that have an open neighbour along the grid, with the solid's normal there.
 template <int D>
-void SolidPlacement<D>::extend_velocity(MacState<D>& s) const {
-    if (!any()) return;
+void SolidPlacement<D>::find_extended(const MacState<D>& s) {
+    extended_.clear();
     for (int a = 0; a < D; ++a) {
         const auto& open = s.solid.open[static_cast<std::size_t>(a)];
-        for_each_inner_face(s.u, a, [&](const Index<D>& I) {
-            if (s.cells(I) != Cell::solid || s.cells(I - e<D>(a)) != Cell::solid) return;
-            real sum = 0;
-            int count = 0;
-            for (int b = 0; b < D; ++b) {
-                real pair = 0;  // the two neighbours along an axis are added first, so that a mirror changes nothing
-                for (const Index<D>& N : {I - e<D>(b), I + e<D>(b)})
-                    if (open.contains(N) && open(N) > 0) pair += s.u[a](N), ++count;
-                sum += pair;
-            }
-            if (count > 0 && !solids_[solids_.nearest(s.u.face_centre(a, I))].no_slip) s.before[a](I) = sum / count;
-        });
+        const auto is_open = [&](const Index<D>& N) { return open.contains(N) && open(N) > 0; };
+        const auto beside_open = [&](const Index<D>& I) {
+            for (int b = 0; b < D; ++b)
+                if (is_open(I - e<D>(b)) || is_open(I + e<D>(b))) return true;
+            return false;
+        };
+        for (std::size_t at = 0; at < open.size(); ++at) {
+            if (open[at] > 0) continue;
+            const Index<D> I = index_of<D>(open.extent(), at);
+            if (I[a] == 0 || I[a] == s.u.cells[a] || !beside_open(I)) continue;
+            const Vec<D> x = s.u.face_centre(a, I);
+            if (solids_[solids_.nearest(x)].no_slip) continue;
+            extended_.push_back({a, I, solids_.normal(x, 1e-3 * s.u.h[a]), solids_.velocity(x), 0});
+        }
     }
+}
+
+/// The mean of the open neighbours, then without what would pass through the solid: u ← u − ((u − u_solid)·n) n. Left in, it feeds the
+/// flow beside the solid and grows.
+template <int D>
+void SolidPlacement<D>::extend_velocity(MacState<D>& s) const {
+    if (extended_.empty()) return;
+    const int count = static_cast<int>(extended_.size());
+    parallel_for(0, count, [&](int i) {
+        const Extended& f = extended_[static_cast<std::size_t>(i)];
+        const auto& open = s.solid.open[static_cast<std::size_t>(f.axis)];
+        real sum = 0;
+        int known = 0;
+        for (int b = 0; b < D; ++b) {
+            real pair = 0;  // the two neighbours along an axis are added first, so that a mirror changes nothing
+            for (const Index<D>& N : {f.face - e<D>(b), f.face + e<D>(b)})
+                if (open.contains(N) && open(N) > 0) pair += s.u[f.axis](N), ++known;
+            sum += pair;
+        }
+        s.before[f.axis](f.face) = sum / known;
+    });
+    parallel_for(0, count, [&](int i) {
+        Extended& f = extended_[static_cast<std::size_t>(i)];
+        real through = 0;
+        for (int b = 0; b < D; ++b) through += (component_at(s.before, b, f.axis, f.face) - f.velocity[b]) * f.normal[b];
+        f.value = s.before[f.axis](f.face) - through * f.normal[f.axis];
+    });
+    parallel_for(0, count, [&](int i) {
+        const Extended& f = extended_[static_cast<std::size_t>(i)];
+        s.before[f.axis](f.face) = f.value;
+    });
 }
 
 template <int D>

@@ -4,6 +4,8 @@
 #include "geometry/solids.hpp"
 #include "mac/state.hpp"
 
+#include <vector>
+
 namespace weir::mac {
 
 /// Faces open by less than this count as closed: fractions near zero make the pressure matrix arbitrarily badly conditioned and move
@@ -22,17 +24,26 @@ public:
     void place(MacState<D>& s, real t);
     /// u·n = u_solid·n on closed faces.
     void set_faces(MacState<D>& s) const;
-    /// Continues s.before into solids with free slip: faces between two solid cells take the mean of their open neighbours.
+    /// Continues s.before one face into solids with free slip: tangentially as the flow beside, through the surface as the solid moves.
     void extend_velocity(MacState<D>& s) const;
     /// Continues a field's `before` one cell into solids: the mean of the neighbours that are not solid.
     void extend_field(const MacState<D>& s, Padded<D>& before) const;
     /// Largest |velocity| / h of a solid's face now [1/s].
     real max_rate(const MacState<D>& s) const;
-    std::size_t bytes() const { return corner_.size() * sizeof(real); }
+    std::size_t bytes() const { return corner_.size() * sizeof(real) + extended_.capacity() * sizeof(Extended); }
 
 private:
+    struct Extended {
+        int axis;
+        Index<D> face;
+        Vec<D> normal, velocity;  // of the solid there
+        real value;
+    };
+    void find_extended(const MacState<D>& s);
+
     geometry::Solids<D> solids_;
     Grid<real, D> corner_;  // signed distance at the corners of cells
+    mutable std::vector<Extended> extended_;
 };
 
 /// Force of the pressure on all solids [N; per metre of depth in 2D]: Σ p S, S the area of solid surface in each fluid cell, whose
