@@ -29,6 +29,7 @@ private:
         for (real rz = dot(r_, z_); rz > 0;) {
             multiply(system_.A, p_, Ap_);
             const real pAp = dot(p_, Ap_);
+            if (!(pAp > 0)) break;  // round-off is all that is left of the direction
             const real alpha = rz / pAp;
             const real relative = std::sqrt(advance(alpha)) / b_norm_;
             progress.count(relative);

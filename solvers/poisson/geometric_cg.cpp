@@ -269,7 +269,12 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
         const real beta = gamma > 0 ? gamma_ / gamma : 0;
         alpha = gamma_ / (gamma > 0 ? delta_ - beta * gamma_ / alpha : delta_);
         gamma = gamma_;
-        if (!(alpha > 0)) return false;
+        if (!(alpha > 0)) {
+            if (!options.fixed_iterations) return false;
+            scatter(problem, p);  // converged to round-off before the iterations were spent
+            norm = std::sqrt(replace_residual(problem, p, b)) / b_norm;
+            break;
+        }
         norm = std::sqrt(iterate_down(alpha, beta)) / b_norm;
         progress.count(norm);
         const bool gives_up = !options.fixed_iterations && is_slow(report, norm, options.tolerance);

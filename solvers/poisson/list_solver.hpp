@@ -13,7 +13,7 @@ public:
     /// Is another iteration wanted, given the relative residual as the iteration sees it?
     bool wants_more(real relative_residual) const {
         if (report_.iterations >= options_.max_iterations || !std::isfinite(relative_residual)) return false;
-        return options_.fixed_iterations || relative_residual > options_.tolerance;
+        return relative_residual > (options_.fixed_iterations ? nothing_left : options_.tolerance);
     }
     void count(real relative_residual) {
         ++report_.iterations;
@@ -21,6 +21,9 @@ public:
     }
 
 private:
+    /// A recursive residual this small changes no bit of the solution any more; further down it is round-off divided by round-off.
+    static constexpr real nothing_left = 1e-20;
+
     const Options& options_;
     Report& report_;
 };
