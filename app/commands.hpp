@@ -8,7 +8,7 @@ void add_run(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);
 void add_describe(CLI::App& app, int& exit_code);
 void add_list(CLI::App& app, int& exit_code);
-
 void add_validate(CLI::App& app, int& exit_code);
+void add_cost(CLI::App& app, int& exit_code);
 
 }  // namespace weir::app

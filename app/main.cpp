@@ -23,6 +23,7 @@ int run(int argc, char** argv) {
     app.failure_message(CLI::FailureMessage::help);
     weir::app::add_run(app, exit_code);
     weir::app::add_validate(app, exit_code);
+    weir::app::add_cost(app, exit_code);
     weir::app::add_picture(app, exit_code);
     weir::app::add_list(app, exit_code);
     weir::app::add_describe(app, exit_code);

@@ -1,5 +1,6 @@
 // Schema of case.toml.
 #include "validation/harness/case.hpp"
+#include "validation/harness/variants.hpp"
 
 namespace weir::validation {
 namespace {
@@ -65,16 +66,21 @@ std::vector<Key> of_one_size() { return {changes(), positive("time_limit", "A ru
 
 /// What a variant may say, and the case for all its variants.
 std::vector<Key> shared_keys() {
-    return {text("scene", "The scene's file beside case.toml; absent: scene.toml."),
+    std::vector<Key> keys = variant_keys();
+    keys.push_back(accept());
+    return keys;
+}
+
+}  // namespace
+
+std::vector<Key> variant_keys() {
+    return {text("scene", "The scene's file, from the folder of this one; absent: scene.toml."),
             text("reference", "What the runs are compared with, by name."),
             changes(),
             sweep(),
             table("ci", "Only at ci size.", of_one_size()),
-            table("full", "Only at full size.", of_one_size()),
-            accept()};
+            table("full", "Only at full size.", of_one_size())};
 }
-
-}  // namespace
 
 const std::vector<Key>& case_keys() {
     static const std::vector<Key> keys = [] {

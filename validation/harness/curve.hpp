@@ -13,6 +13,7 @@ struct Curve {
     std::vector<real> x{}, y{};
     bool points = false;
     bool dashed = false;
+    std::vector<std::string> names{};  // of its points, written beside them; empty: none
     std::size_t size() const { return x.size(); }
 };
 

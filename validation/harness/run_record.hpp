@@ -21,7 +21,8 @@ namespace weir::validation {
 /// The run at one time: index 0 is the initial state (its report is empty), then one entry a step.
 struct Moment {
     std::int64_t step = 0;
-    real time = 0;  // [s]
+    real time = 0;       // [s]
+    double seconds = 0;  // wall clock of this step
     StepReport report{};
     std::vector<real> integrals{};  // in the order of RunRecord::integrals
     std::vector<real> observed{};   // in the order of RunRecord::observers

@@ -17,8 +17,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void remember(RunRecord& record, const Simulation& simulation, const StepReport& report, const std::vector<const Metric*>& observers) {
-    Moment moment{.step = simulation.steps(), .time = simulation.time(), .report = report};
+void remember(RunRecord& record, const Simulation& simulation, const StepReport& report, double seconds,
+              const std::vector<const Metric*>& observers) {
+    Moment moment{.step = simulation.steps(), .time = simulation.time(), .seconds = seconds, .report = report};
     record.integrals = simulation.solver().integrals();
     for (const Integral& i : record.integrals) moment.integrals.push_back(i.value);
     if (!observers.empty()) {
@@ -101,7 +102,7 @@ RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers
     Simulation& simulation = *record.simulation;
     record.scene = {record.simulation, &simulation.scene()};
     for (const Metric* m : options.observers) record.observers.push_back(m->name);
-    remember(record, simulation, {}, options.observers);
+    remember(record, simulation, {}, 0, options.observers);
     record.fields = simulation.fields();
     if (options.at_start) options.at_start(record);
     FrameWriter frames(options.frames, simulation.scene());
@@ -110,8 +111,9 @@ RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers
         while (!simulation.finished()) {
             const auto start = Clock::now();
             const StepReport report = simulation.step();
-            record.seconds += std::chrono::duration<double>(Clock::now() - start).count();
-            remember(record, simulation, report, options.observers);
+            const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+            record.seconds += seconds;
+            remember(record, simulation, report, seconds, options.observers);
             frames.write(simulation);
             if (record.seconds > options.time_limit)
                 throw NumericalFailure("time limit", fmt::format("not finished after {:g} s of computing", options.time_limit));

@@ -20,14 +20,6 @@
 namespace weir::validation {
 namespace {
 
-std::filesystem::path find_case(const std::string& name) {
-    if (std::filesystem::exists(std::filesystem::path(name) / "case.toml")) return std::filesystem::path(name).lexically_normal();
-    if (std::filesystem::exists(case_root() / name / "case.toml")) return case_root() / name;
-    std::vector<std::string> known;
-    for (const auto& path : find_cases(case_root())) known.push_back(path.filename().string());
-    throw BadInput(fmt::format("unknown case {}{}\n    {}", scene::quote(name), scene::did_you_mean(name, known), scene::known(known)));
-}
-
 /// A folder named with a slash at its end has an empty last part.
 std::filesystem::path without_slash(const std::filesystem::path& p) { return p.has_filename() ? p : p.parent_path(); }
 
@@ -40,7 +32,7 @@ std::vector<std::filesystem::path> chosen(const ValidateOptions& options) {
     }
     if (options.names.empty()) throw BadInput("weir validate needs the name of a case, or --all; --list shows them");
     std::vector<std::filesystem::path> list;
-    for (const std::string& name : options.names) list.push_back(without_slash(find_case(name)));
+    for (const std::string& name : options.names) list.push_back(find_case(name));
     return list;
 }
 
@@ -78,6 +70,15 @@ int list_cases(const std::vector<Case>& cases) {
 std::filesystem::path case_root() {
     if (std::filesystem::is_directory("cases")) return "cases";
     return WEIR_CASES_DIR;
+}
+
+std::filesystem::path find_case(const std::string& name) {
+    if (std::filesystem::exists(std::filesystem::path(name) / "case.toml"))
+        return without_slash(std::filesystem::path(name).lexically_normal());
+    if (std::filesystem::exists(case_root() / name / "case.toml")) return case_root() / name;
+    std::vector<std::string> known;
+    for (const auto& path : find_cases(case_root())) known.push_back(path.filename().string());
+    throw BadInput(fmt::format("unknown case {}{}\n    {}", scene::quote(name), scene::did_you_mean(name, known), scene::known(known)));
 }
 
 int validate_command(const ValidateOptions& options, const Solvers& solvers) {

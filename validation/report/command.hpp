@@ -21,6 +21,8 @@ struct ValidateOptions {
 
 /// Where cases lie: ./cases if there is one, else those of the source tree that this program was built from.
 std::filesystem::path case_root();
+/// The folder of a case by its name, or a folder that holds a case.toml. Throws BadInput with the nearest known name.
+std::filesystem::path find_case(const std::string& name);
 
 /// Runs the command and returns its exit code: 0, 1 (a claim failed), 2 (a case asks for what is not there). Throws BadInput before
 /// anything is run or written when a name is unknown or a case file or its scene is wrong.

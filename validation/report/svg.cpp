@@ -83,10 +83,13 @@ std::string panel_program(const Panel& p, std::size_t number) {
         const std::string block = fmt::format("$p{}c{}", number, drawn);
         data += block + " << EOD\n";
         for (std::size_t i = 0; i < c.size(); ++i)
-            if (drawable(p, c.x[i], c.y[i])) data += fmt::format("{:.9g} {:.9g}\n", c.x[i], c.y[i]);
+            if (drawable(p, c.x[i], c.y[i]))
+                data += fmt::format("{:.9g} {:.9g} {}\n", c.x[i], c.y[i], quoted(i < c.names.size() ? c.names[i] : ""));
         data += "EOD\n";
         plots += fmt::format("{}{} using 1:2 {} title {} noenhanced", drawn ? ", \\\n     " : "plot ", block, style_of(c, drawn),
                              quoted(c.label));
+        if (!c.names.empty())
+            plots += fmt::format(", \\\n     {} using 1:2:3 with labels left offset 0.6,0.5 font ',10' notitle noenhanced", block);
         ++drawn;
     }
     if (drawn == 0) return "set multiplot next\n";

@@ -1,0 +1,78 @@
+// What a diagram says to somebody with a budget.
+#include "validation/cost/tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace weir::validation {
+namespace {
+
+using Points = std::vector<const CostPoint*>;
+
+std::string priced(const CostPoint& p, Price by) {
+    return by == Price::second ? fmt::format("{:.3g} s of computing a simulated second", p.seconds_per_second)
+                               : fmt::format("{:.3g} ms a step", p.ms_per_step);
+}
+
+std::string plain(const CostPoint& p) { return p.name().empty() ? "the only setting" : p.name(); }
+
+/// The cheapest setting of each method that is good enough, and the cheapest of all.
+std::string at_good_enough(const Study& study, const Points& by_price) {
+    Points good;
+    std::set<std::string> methods;
+    for (const CostPoint* p : by_price)
+        if (p->error <= study.good_enough && methods.insert(p->method).second) good.push_back(p);
+    if (good.empty()) {
+        const auto nearest = *std::min_element(by_price.begin(), by_price.end(), [](auto* a, auto* b) { return a->error < b->error; });
+        return fmt::format("No setting reaches {} = {:g}; {} comes nearest with {:.3g}, for {}.", study.error, study.good_enough,
+                           plain(*nearest), nearest->error, priced(*nearest, study.price));
+    }
+    std::string s =
+        fmt::format("For {} <= {:g} take {}: {}", study.error, study.good_enough, plain(*good[0]), priced(*good[0], study.price));
+    if (good.size() > 1)
+        s += fmt::format("; the next method, {}, costs {:.3g} times as much", plain(*good[1]),
+                         good[1]->price(study.price) / good[0]->price(study.price));
+    return s + ".";
+}
+
+std::string in_real_time(const Study& study, const Points& by_price) {
+    Points fast;
+    std::copy_if(by_price.begin(), by_price.end(), std::back_inserter(fast), [](auto* p) { return p->seconds_per_second <= 1; });
+    if (fast.empty())
+        return fmt::format("Nothing here runs in real time; {} comes nearest with {:.3g} s of computing a simulated second.",
+                           plain(*by_price.front()), by_price.front()->seconds_per_second);
+    const auto best = *std::min_element(fast.begin(), fast.end(), [](auto* a, auto* b) { return a->error < b->error; });
+    return fmt::format("{} of {} settings run in real time; the most accurate of them is {}: {} = {:.3g} at {:.3g} times real time.",
+                       fast.size(), by_price.size(), plain(*best), study.error, best->error, 1 / best->seconds_per_second);
+}
+
+std::string along_the_front(const Study& study, const Points& by_price) {
+    Points front;
+    std::copy_if(by_price.begin(), by_price.end(), std::back_inserter(front), [](auto* p) { return p->on_front; });
+    if (front.size() < 2) return fmt::format("{} is both the cheapest and the most accurate.", plain(*front.front()));
+    const CostPoint &from = *front.front(), &to = *front.back();
+    return fmt::format("From {}, the cheapest, to {}, the most accurate, the error falls {:.3g} times for {:.3g} times the time.",
+                       plain(from), plain(to), from.error / to.error, to.price(study.price) / from.price(study.price));
+}
+
+}  // namespace
+
+std::vector<std::string> advice(const StudyResult& result) {
+    const Study& study = result.study;
+    Points by_price;
+    for (const CostPoint& p : result.points)
+        if (!p.failure) by_price.push_back(&p);
+    if (by_price.empty()) return {"Every setting failed."};
+    std::sort(by_price.begin(), by_price.end(), [&](auto* a, auto* b) { return a->price(study.price) < b->price(study.price); });
+    std::vector<std::string> sentences;
+    if (study.good_enough > 0) sentences.push_back(at_good_enough(study, by_price));
+    if (study.price == Price::second) sentences.push_back(in_real_time(study, by_price));
+    sentences.push_back(along_the_front(study, by_price));
+    if (const auto failed = result.points.size() - by_price.size(); failed > 0)
+        sentences.push_back(fmt::format("{} of {} settings failed: see the table.", failed, result.points.size()));
+    return sentences;
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,128 @@
+#include "validation/cost/command.hpp"
+
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/machine.hpp"
+#include "scene/names.hpp"
+#include "validation/cost/tables.hpp"
+#include "validation/report/command.hpp"
+#include "validation/report/svg.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include <unistd.h>
+
+namespace weir::validation {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::filesystem::path> chosen(const CostOptions& options) {
+    if (options.all && !options.names.empty()) throw BadInput("weir cost takes names or --all, not both");
+    if (options.all || (options.list && options.names.empty())) return find_studies(case_root());
+    if (options.names.empty()) throw BadInput("weir cost needs the name of a case, or --all; --list shows the ready studies");
+    std::vector<std::filesystem::path> list;
+    for (const std::string& name : options.names) list.push_back(find_case(name));
+    return list;
+}
+
+std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers) {
+    std::vector<scene::SolverSchema> list;
+    for (const auto& kind : solvers) list.push_back(kind.schema);
+    return list;
+}
+
+/// The study with the command's changes; every scene in it reads.
+Study prepared(const std::filesystem::path& folder, const CostOptions& options, const Solvers& solvers) {
+    Study study = read_study(folder, options.size);
+    if (!options.error.empty()) study.error = options.error;
+    const auto schemas = schemas_of(solvers);
+    if (!options.solver.empty())
+        std::erase_if(study.methods, [&](const Variant& v) { return scene_of(v, 0, schemas).solver() != options.solver; });
+    if (study.methods.empty()) throw BadInput(fmt::format("{}: no method uses solver {}", study.name, scene::quote(options.solver)));
+    if (!options.vary.empty()) vary(study, options.vary, solvers);
+    for (const Variant& v : study.methods)
+        for (std::size_t i = 0; i < v.runs(); ++i) make_reference(v.reference, scene_of(v, i, schemas), study.folder);
+    return study;
+}
+
+void write_outputs(const StudyResult& result, const json& study, const std::filesystem::path& out) {
+    const std::string& name = result.study.name;
+    output::write_file(out / (name + ".csv"), cost_csv(result));
+    output::write_file(out / (name + ".json"), study.dump(1) + "\n");
+    try {
+        draw(fmt::format("{} ({})", name, study["size"].get<std::string>()), cost_panels(result), out / (name + ".svg"));
+    } catch (const OutputError& failed) {
+        std::fprintf(stderr, "%s\n", failed.what());  // the numbers stand without their picture
+    }
+}
+
+json read_json(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return json::parse(stream, nullptr, false);
+}
+
+/// Copies what was written into the published folder and writes its page anew, with the studies that were there before.
+void publish_studies(const std::vector<json>& studies, const std::filesystem::path& out, const std::filesystem::path& folder) {
+    for (const auto* kind : {"csv", "svg", "json"}) std::filesystem::create_directories(folder / kind);
+    for (const json& study : studies)
+        for (const auto* kind : {"csv", "svg", "json"}) {
+            const std::string name = study["study"].get<std::string>() + "." + kind;
+            if (std::filesystem::exists(out / name))
+                std::filesystem::copy_file(out / name, folder / kind / name, std::filesystem::copy_options::overwrite_existing);
+        }
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "json")) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    std::string page =
+        "# What accuracy costs\n\nThis page is written by `weir cost --publish`; nothing in it is typed by hand. "
+        "Computing time is wall-clock time of all steps but the first, the median of the repeats.\n\n";
+    for (const auto& file : files)
+        if (const json study = read_json(file); study.is_object()) page += cost_markdown(study);
+    output::write_file(folder / "index.md", page);
+}
+
+}  // namespace
+
+int cost_command(const CostOptions& options, const Solvers& solvers) {
+    std::vector<Study> studies;
+    std::string problems;
+    for (const auto& folder : chosen(options)) try {
+            studies.push_back(prepared(folder, options, solvers));
+        } catch (const BadInput& wrong) {
+            problems += (problems.empty() ? "" : "\n") + std::string(wrong.what());
+        }
+    if (!problems.empty()) throw BadInput(problems);
+    if (options.list) {
+        for (const Study& s : studies) fmt::print("{:28} {}\n", s.name, s.question);
+        return exit_success;
+    }
+    output::require_writable(options.out);
+    const bool talk = !options.quiet && isatty(STDERR_FILENO);
+    const output::Machine machine = output::this_machine();
+    std::vector<json> done;
+    bool all_failed = false;
+    for (const Study& study : studies) {
+        const StudyResult result = measure_study(study, options.measure, solvers, [&](const std::string& what) {
+            if (talk) std::fprintf(stderr, "\r\033[K%s", what.c_str());
+        });
+        if (talk) std::fprintf(stderr, "\r\033[K");
+        fmt::print("{}\n", cost_table(result));
+        std::fflush(stdout);
+        done.push_back(cost_json(result));
+        done.back()["commit"] = machine.commit;
+        done.back()["machine"] =
+            fmt::format("{} ({} threads), {}, {}", machine.processor, result.threads, machine.system, machine.compiler);
+        write_outputs(result, done.back(), options.out);
+        all_failed |= std::all_of(result.points.begin(), result.points.end(), [](const CostPoint& p) { return p.failure.has_value(); });
+    }
+    if (!options.publish.empty()) publish_studies(done, options.out, options.publish);
+    return all_failed ? exit_claim_failed : exit_success;
+}
+
+}  // namespace weir::validation

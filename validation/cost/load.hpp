@@ -1,0 +1,17 @@
+// How busy others keep the machine while we measure: a time taken beside them is not the method's price.
+#pragma once
+
+namespace weir::validation {
+
+/// Core-seconds that the whole machine and this process have worked so far; zero where /proc/stat cannot be read.
+struct Work {
+    double machine = 0;
+    double ours = 0;
+    double wall = 0;
+};
+Work work_so_far();
+
+/// Cores that others used between two readings, on average; never negative.
+double others_between(const Work& from, const Work& to);
+
+}  // namespace weir::validation

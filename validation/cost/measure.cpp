@@ -1,0 +1,112 @@
+#include "validation/cost/measure.hpp"
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "sim/simulation.hpp"
+#include "validation/cost/load.hpp"
+#include "validation/harness/generic_metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::validation {
+namespace {
+
+std::vector<std::string> metrics_of(const Study& study) {
+    std::vector<std::string> names = {study.error};
+    names.insert(names.end(), study.also.begin(), study.also.end());
+    return names;
+}
+
+RunOptions run_options(const Study& study, const Variant& method, const MeasureOptions& options) {
+    RunOptions run{.time_limit = std::min(options.time_limit, method.time_limit)};
+    for (const std::string& name : metrics_of(study))
+        if (const Metric* m = find_metric(name); m && m->observe) run.observers.push_back(m);
+    return run;
+}
+
+/// Computing seconds and simulated seconds of a run, without its first step (first touches of memory) where there are others.
+struct Timing {
+    double computing = 0, simulated = 0;
+    std::int64_t steps = 0;
+};
+Timing timing_of(const RunRecord& record) {
+    Timing t;
+    const std::size_t from = record.history.size() > 2 ? 2 : 1;  // entry 0 is the initial state
+    for (std::size_t i = from; i < record.history.size(); ++i)
+        t.computing += record.history[i].seconds, t.simulated += record.history[i].report.dt, ++t.steps;
+    return t;
+}
+
+void take_errors(CostPoint& point, const Study& study, const RunRecord& record, const Reference& reference) {
+    point.error = std::abs(measure(study.error, record, reference));
+    for (const std::string& name : study.also) point.also[name] = measure(name, record, reference);
+    if (!std::isfinite(point.error)) point.failure = fmt::format("{} is not a number", study.error);
+}
+
+/// Medians, so that one disturbed run says nothing.
+void take_times(CostPoint& point, std::vector<Timing> runs) {
+    std::sort(runs.begin(), runs.end(), [](const Timing& a, const Timing& b) { return a.computing < b.computing; });
+    const Timing& median = runs[(runs.size() - 1) / 2];
+    point.repeats = static_cast<int>(runs.size());
+    if (median.simulated > 0) point.seconds_per_second = median.computing / median.simulated;
+    if (median.steps > 0) point.ms_per_step = 1e3 * median.computing / static_cast<double>(median.steps);
+    if (median.computing > 0) point.spread = (runs.back().computing - runs.front().computing) / median.computing;
+}
+
+CostPoint measure_point(const Study& study, const Variant& method, std::size_t i, const MeasureOptions& options, const Solvers& solvers,
+                        std::string& source) {
+    CostPoint point{.method = method.name};
+    if (method.sweep) point.setting = fmt::format("{:g}", method.sweep->values[i]);
+    std::vector<scene::SolverSchema> schemas;
+    for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    try {
+        const Work before = work_so_far();
+        std::vector<Timing> timings;
+        double spent = 0;
+        while (static_cast<int>(timings.size()) < options.repeats && (timings.empty() || spent < options.enough_seconds)) {
+            scene::Scene scene = scene_of(method, i, schemas);
+            const Reference reference = make_reference(method.reference, scene, study.folder);
+            source = reference.source;
+            const RunRecord record = run_scene(std::move(scene), run_options(study, method, options), solvers);
+            point.steps = record.steps(), point.bytes = record.simulation->solver().bytes(), point.failure = record.failure;
+            if (point.failure) break;
+            timings.push_back(timing_of(record)), spent += record.seconds;
+            if (timings.size() == 1) take_errors(point, study, record, reference);  // repeats give the same numbers bit for bit
+        }
+        point.others = others_between(before, work_so_far());
+        if (!timings.empty()) take_times(point, std::move(timings));
+    } catch (const NumericalFailure& failure) {  // of the initial state
+        point.failure = failure.what();
+    } catch (const BadInput& wrong) {
+        point.failure = wrong.what();
+    }
+    return point;
+}
+
+}  // namespace
+
+StudyResult measure_study(const Study& study, const MeasureOptions& options, const Solvers& solvers,
+                          const std::function<void(const std::string&)>& progress) {
+    StudyResult result{.study = study, .source = {}, .threads = threads(), .points = {}};
+    for (const Variant& method : study.methods)
+        for (std::size_t i = 0; i < method.runs(); ++i) {
+            if (progress) progress(fmt::format("{} {} {}", study.name, method.name, i + 1));
+            result.points.push_back(measure_point(study, method, i, options, solvers, result.source));
+        }
+    mark_front(result.points, study.price);
+    return result;
+}
+
+void mark_front(std::vector<CostPoint>& points, Price price) {
+    const auto beats = [&](const CostPoint& a, const CostPoint& b) {
+        const double pa = a.price(price), pb = b.price(price);
+        return !a.failure && pa <= pb && a.error <= b.error && (pa < pb || a.error < b.error);
+    };
+    for (CostPoint& p : points)
+        p.on_front = !p.failure && std::none_of(points.begin(), points.end(), [&](const CostPoint& q) { return beats(q, p); });
+}
+
+}  // namespace weir::validation

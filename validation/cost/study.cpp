@@ -1,0 +1,94 @@
+#include "validation/cost/study.hpp"
+
+#include "validation/harness/variants.hpp"
+
+#include <algorithm>
+
+namespace weir::validation {
+namespace {
+
+using scene::Key;
+using scene::Type;
+
+std::vector<Key> make_keys() {
+    std::vector<Key> method = variant_keys();
+    method.insert(method.begin(), {.name = "name", .type = Type::text, .doc = "Its name in tables and figures.", .required = true});
+    method.insert(method.begin() + 1,
+                  {.name = "size", .type = Type::choice, .doc = "Run only at this size; absent: at both.", .choices = {"ci", "full"}});
+    std::vector<Key> keys = {
+        {.name = "question", .type = Type::text, .doc = "What the study asks.", .required = true},
+        {.name = "error", .type = Type::text, .doc = "The metric that is the error.", .required = true},
+        {.name = "also", .type = Type::texts, .doc = "Further metrics for the table."},
+        {.name = "good_enough", .type = Type::number, .doc = "The error at which methods are compared.", .min = 0, .min_open = true},
+        {.name = "why", .type = Type::text, .doc = "Where that error comes from."},
+        {.name = "price",
+         .type = Type::choice,
+         .doc = "Time is counted for a simulated second, or for a step.",
+         .fallback = "second",
+         .choices = {"second", "step"}},
+        {.name = "methods", .type = Type::tables, .doc = "What is compared; what the study says holds for all.", .keys = method},
+        {.name = "over",
+         .type = Type::table,
+         .doc = "One method for each value of a key of the scene, named by the value.",
+         .keys = {{.name = "key", .type = Type::text, .doc = "The key.", .required = true},
+                  {.name = "values", .type = Type::texts, .doc = "Its values at full size.", .required = true},
+                  {.name = "ci", .type = Type::texts, .doc = "Its values at ci size; absent: the same."}}}};
+    for (const Key& k : variant_keys()) keys.push_back(k);
+    return keys;
+}
+
+/// A case as a study: its variants, each with the error that it claims most about.
+Study study_of(const Case& c) {
+    Study study{.name = c.name, .folder = c.folder, .question = c.question, .error = {}, .size = c.size, .methods = c.variants};
+    for (const Variant& v : c.variants)
+        for (const Criterion& claim : v.accept) {
+            if (claim.is_monotone()) continue;
+            if (study.error.empty()) study.error = claim.metric;
+            const bool known = claim.metric == study.error || std::count(study.also.begin(), study.also.end(), claim.metric) > 0;
+            if (!known) study.also.push_back(claim.metric);
+        }
+    if (study.error.empty()) throw BadInput(c.name + ": the case measures nothing that could be weighed against time");
+    return study;
+}
+
+}  // namespace
+
+const std::vector<Key>& study_keys() {
+    static const std::vector<Key> keys = make_keys();
+    return keys;
+}
+
+Study parse_study(std::string_view text, const std::string& file, const std::filesystem::path& folder, Size size) {
+    const scene::Table root = scene::parse_table(text, file, study_keys());
+    VariantReader reader(file, folder, size);
+    Study study{.name = folder.filename().string(),
+                .folder = folder,
+                .question = reader.said(root, "question"),
+                .error = reader.said(root, "error"),
+                .good_enough = root.number_or("good_enough", 0),
+                .why = root.text_or("why", ""),
+                .price = root.text("price") == "step" ? Price::step : Price::second,
+                .size = size};
+    if (root.has("also")) study.also = root.texts("also");
+    if (study.good_enough > 0 && study.why.empty()) reader.problem(root.place("good_enough"), "\"good_enough\" needs a \"why\"");
+    study.methods = reader.read(root, "methods", nullptr);
+    if (!reader.problems().empty()) throw scene::BadScene(reader.problems(), text);
+    return study;
+}
+
+Study read_study(const std::filesystem::path& folder, Size size) {
+    const auto file = folder / "cost.toml";
+    if (!std::filesystem::exists(file)) return study_of(read_case(folder, size));
+    return parse_study(scene::read_text(file), file.string(), folder, size);
+}
+
+std::vector<std::filesystem::path> find_studies(const std::filesystem::path& root) {
+    std::vector<std::filesystem::path> found;
+    std::error_code unreadable;
+    for (const auto& entry : std::filesystem::directory_iterator(root, unreadable))
+        if (std::filesystem::exists(entry.path() / "cost.toml")) found.push_back(entry.path());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+}  // namespace weir::validation

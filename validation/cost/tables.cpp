@@ -1,0 +1,148 @@
+#include "validation/cost/tables.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace weir::validation {
+namespace {
+
+using nlohmann::json;
+
+constexpr double busy = 0.2;  // cores of others beyond which a time is marked
+
+std::vector<const CostPoint*> by_price(const StudyResult& result) {
+    std::vector<const CostPoint*> list;
+    for (const CostPoint& p : result.points) list.push_back(&p);
+    std::stable_sort(list.begin(), list.end(), [&](const CostPoint* a, const CostPoint* b) {
+        if (a->failure.has_value() != b->failure.has_value()) return b->failure.has_value();
+        return a->price(result.study.price) < b->price(result.study.price);
+    });
+    return list;
+}
+
+std::string quoted(std::string s) {
+    std::replace(s.begin(), s.end(), '\n', ' ');
+    std::replace(s.begin(), s.end(), '"', '\'');
+    return s.find(',') == std::string::npos ? s : "\"" + s + "\"";
+}
+
+std::string megabytes(std::size_t bytes) { return fmt::format("{:.3g}", static_cast<double>(bytes) / 1e6); }
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+std::string cost_table(const StudyResult& result) {
+    std::size_t width = 12;
+    for (const CostPoint& p : result.points) width = std::max(width, p.name().size());
+    std::string s = fmt::format("{} ({}, {} thread{}): {}\n", result.study.name, name(result.study.size), result.threads,
+                                result.threads == 1 ? "" : "s", result.study.question);
+    s += fmt::format("    {:{}}  {:>11} {:>12} {:>10} {:>9} {:>7} {:>8}\n", "setting", width, result.study.error.substr(0, 11),
+                     "s per sim. s", "ms/step", "MB", "steps", "spread");
+    for (const CostPoint* p : by_price(result)) {
+        s += fmt::format("  {} {:{}}  ", p->on_front ? "*" : " ", p->name(), width);
+        s += p->failure ? first_line(*p->failure) + "\n"
+                        : fmt::format("{:>11.4g} {:>12.4g} {:>10.4g} {:>9} {:>7} {:>7.0f}%{}\n", p->error, p->seconds_per_second,
+                                      p->ms_per_step, megabytes(p->bytes), p->steps, 100 * p->spread,
+                                      p->others > busy ? fmt::format("  others used {:.1f} cores", p->others) : "");
+    }
+    s += "    * nothing else is both cheaper and more accurate\n";
+    for (const std::string& sentence : advice(result)) s += "  " + sentence + "\n";
+    return s;
+}
+
+std::string cost_csv(const StudyResult& result) {
+    std::string s =
+        fmt::format("# {} at {} size, error: {}. {}\n", result.study.name, name(result.study.size), result.study.error, result.source);
+    s += "method,setting,error,seconds_per_second,ms_per_step,real_time_factor,spread,others,repeats,steps,bytes,front,failure";
+    for (const std::string& metric : result.study.also) s += "," + metric;
+    s += "\n";
+    for (const CostPoint* p : by_price(result)) {
+        s += p->failure ? fmt::format("{},{},,,,,,{:.2f},{},{},{},no,{}", p->method, p->setting, p->others, p->repeats, p->steps, p->bytes,
+                                      quoted(*p->failure))
+                        : fmt::format("{},{},{:.9g},{:.6g},{:.6g},{:.6g},{:.3f},{:.2f},{},{},{},{},", p->method, p->setting, p->error,
+                                      p->seconds_per_second, p->ms_per_step, p->seconds_per_second > 0 ? 1 / p->seconds_per_second : 0,
+                                      p->spread, p->others, p->repeats, p->steps, p->bytes, p->on_front ? "yes" : "no");
+        for (const std::string& metric : result.study.also) {
+            const auto at = p->also.find(metric);
+            s += at == p->also.end() ? std::string(",") : fmt::format(",{:.9g}", at->second);
+        }
+        s += "\n";
+    }
+    return s;
+}
+
+json cost_json(const StudyResult& result) {
+    const Study& study = result.study;
+    json points = json::array();
+    for (const CostPoint* p : by_price(result)) {
+        json entry = {{"method", p->method}, {"setting", p->setting}, {"name", p->name()},     {"steps", p->steps},   {"bytes", p->bytes},
+                      {"others", p->others}, {"spread", p->spread},   {"repeats", p->repeats}, {"front", p->on_front}};
+        if (p->failure) {
+            entry["failure"] = *p->failure;
+        } else {
+            entry["error"] = p->error, entry["seconds_per_second"] = p->seconds_per_second, entry["ms_per_step"] = p->ms_per_step;
+            entry["also"] = p->also;
+        }
+        points.push_back(entry);
+    }
+    return {{"study", study.name},
+            {"size", name(study.size)},
+            {"question", study.question},
+            {"error", study.error},
+            {"good_enough", study.good_enough},
+            {"why", study.why},
+            {"price", study.price == Price::second ? "second" : "step"},
+            {"source", result.source},
+            {"threads", result.threads},
+            {"advice", advice(result)},
+            {"points", points}};
+}
+
+std::string cost_markdown(const json& study) {
+    const std::string name = study["study"];
+    std::string s = fmt::format("## {}\n\n{}\n\n![{} against time](svg/{}.svg)\n\n", name, study["question"].get<std::string>(),
+                                study["error"].get<std::string>(), name);
+    for (const auto& sentence : study["advice"]) s += "- " + sentence.get<std::string>() + "\n";
+    s += fmt::format("\n| setting | {} | s per simulated s | ms a step | MB | steps | |\n|---|---|---|---|---|---|---|\n",
+                     study["error"].get<std::string>());
+    for (const auto& p : study["points"]) {
+        if (p.contains("failure")) {
+            s += fmt::format("| {} | failed: {} | | | {} | {} | |\n", p["name"].get<std::string>(),
+                             first_line(p["failure"].get<std::string>()), megabytes(p["bytes"].get<std::size_t>()),
+                             p["steps"].get<std::int64_t>());
+            continue;
+        }
+        const double others = p["others"];
+        s += fmt::format("| {} | {:.4g} | {:.4g} | {:.4g} | {} | {} | {}{} |\n", p["name"].get<std::string>(), p["error"].get<double>(),
+                         p["seconds_per_second"].get<double>(), p["ms_per_step"].get<double>(), megabytes(p["bytes"].get<std::size_t>()),
+                         p["steps"].get<std::int64_t>(), p["front"].get<bool>() ? "front" : "",
+                         others > busy ? fmt::format(" ({:.1f} cores busy with other work)", others) : "");
+    }
+    s += fmt::format("\nCompared with: {}. Every number: [csv/{}.csv](csv/{}.csv). {} thread(s), {} size, commit {}, on {}.\n\n",
+                     study["source"].get<std::string>(), name, name, study["threads"].get<int>(), study["size"].get<std::string>(),
+                     study.value("commit", "unknown"), study.value("machine", "unknown"));
+    return s;
+}
+
+std::vector<Panel> cost_panels(const StudyResult& result) {
+    const Study& study = result.study;
+    Panel panel{.title = study.question,
+                .x = {study.price == Price::second ? "computing time a simulated second [s]" : "computing time a step [ms]", true},
+                .y = {study.error, true}};
+    for (const Variant& method : study.methods) {
+        Curve c{.label = method.name.empty() ? study.name : method.name};
+        for (const CostPoint& p : result.points)
+            if (p.method == method.name && !p.failure) c.x.push_back(p.price(study.price)), c.y.push_back(p.error);
+        if (c.size() > 0) panel.curves.push_back(std::move(c));
+    }
+    Curve front{.label = "Pareto front", .dashed = true};
+    for (const CostPoint* p : by_price(result))
+        if (p->on_front) front.x.push_back(p->price(study.price)), front.y.push_back(p->error), front.names.push_back(p->name());
+    panel.curves.push_back(std::move(front));
+    return {panel};
+}
+
+}  // namespace weir::validation

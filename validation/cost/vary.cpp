@@ -1,0 +1,96 @@
+// --vary: settings of the user's own in place of a study's.
+#include "validation/cost/study.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace weir::validation {
+namespace {
+
+struct Settings {
+    std::string key;
+    std::vector<std::string> values;
+};
+
+/// "key=a,b,[c, d]" with commas inside brackets and quotes left alone.
+Settings split(const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+        throw BadInput(fmt::format("--vary {}: expected key=value,value,...", text));
+    Settings s{.key = text.substr(0, equals), .values = {""}};
+    int depth = 0;
+    bool quoted = false;
+    for (const char c : text.substr(equals + 1)) {
+        if (c == '"') quoted = !quoted;
+        if (!quoted) depth += (c == '[') - (c == ']');
+        if (c == ',' && depth == 0 && !quoted)
+            s.values.emplace_back();
+        else
+            s.values.back() += c;
+    }
+    return s;
+}
+
+bool reads(const Variant& method, const std::string& key, const std::string& value, const std::vector<scene::SolverSchema>& schemas) {
+    Variant tried = method;
+    tried.sweep.reset();
+    tried.overrides.push_back({key, value});
+    try {
+        scene_of(tried, 0, schemas);
+        return true;
+    } catch (const BadInput&) {
+        return false;
+    }
+}
+
+/// The whole name of a key: itself, or where a method's scene takes it.
+std::string whole_key(const Settings& s, const Variant& method, const std::vector<scene::SolverSchema>& schemas) {
+    if (s.key.find('.') != std::string::npos) return s.key;
+    for (const char* prefix : {"scheme.", "scheme.poisson.", "time."})
+        if (reads(method, prefix + s.key, s.values.front(), schemas)) return prefix + s.key;
+    throw BadInput(
+        fmt::format("--vary {}: {} takes no such value in scheme, scheme.poisson or time; give the whole key, as `weir describe` shows it",
+                    s.key, method.scene.string()));
+}
+
+std::vector<real> numbers(const Settings& s) {
+    std::vector<real> list;
+    for (const std::string& text : s.values) {
+        real value = 0;
+        const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (wrong != std::errc() || end != text.data() + text.size()) return {};
+        list.push_back(value);
+    }
+    return list;
+}
+
+}  // namespace
+
+void vary(Study& study, const std::vector<std::string>& changes, const Solvers& solvers) {
+    std::vector<scene::SolverSchema> schemas;
+    for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    bool swept = false;
+    for (const std::string& change : changes) {
+        const Settings s = split(change);
+        const std::vector<real> values = numbers(s);
+        std::vector<Variant> methods;
+        for (const Variant& method : study.methods) {
+            const std::string key = whole_key(s, method, schemas);
+            if (!swept && !values.empty()) {
+                methods.push_back(method);
+                methods.back().sweep = Sweep{.key = key, .values = values};
+                continue;
+            }
+            for (const std::string& value : s.values) {
+                methods.push_back(method);
+                methods.back().overrides.push_back({key, value});
+                methods.back().name += fmt::format("{}{}={}", method.name.empty() ? "" : " ", s.key, value);
+            }
+        }
+        study.methods = std::move(methods);
+        swept = swept || !values.empty();
+    }
+}
+
+}  // namespace weir::validation
