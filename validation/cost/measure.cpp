@@ -70,7 +70,11 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
             scene::Scene scene = scene_of(method, i, schemas);
             const Reference reference = make_reference(method.reference, scene, study.folder);
             source = reference.source;
-            const RunRecord record = run_scene(std::move(scene), run_options(study, method, options), solvers);
+            RunOptions run = run_options(study, method, options);
+            run.at_start = [&](const RunRecord& start) {
+                for (const std::string& name : metrics_of(study)) check_metric(name, start, reference);
+            };
+            const RunRecord record = run_scene(std::move(scene), run, solvers);
             point.steps = record.steps(), point.bytes = record.simulation->solver().bytes(), point.failure = record.failure;
             if (point.failure) break;
             timings.push_back(timing_of(record)), spent += record.seconds;

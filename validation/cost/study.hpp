@@ -16,10 +16,10 @@ namespace weir::validation {
 enum class Price { second, step };
 
 struct Study {
-    std::string name;
-    std::filesystem::path folder;
-    std::string question;
-    std::string error;                // the metric on the vertical axis
+    std::string name{};
+    std::filesystem::path folder{};
+    std::string question{};
+    std::string error{};              // the metric on the vertical axis
     std::vector<std::string> also{};  // further metrics, for the table
     real good_enough = 0;             // the error at which the sentences compare methods; 0: none is given
     std::string why{};                // where that error comes from

@@ -43,11 +43,12 @@ std::string axis(const char* name, bool log, real low, real high) {
     if (low == high) return plain + fmt::format("set logscale {0}\nset {0}range [{1}:{2}]\n", name, low / 10, low * 10);
     std::string s = plain + fmt::format("set logscale {0}\nset {0}range [{1}:{2}]\n", name, low / 1.3, high * 1.3);
     if (high / low > 100) return s + fmt::format("set format {} '10^{{%T}}'\n", name);
-    // Less than two decades: ticks at 1, 2, 5 of each, or the axis would have one label or none.
+    // Less than two decades: ticks at some digits of each, or the axis would have one label or none.
+    const std::vector<real> digits = high / low < 8 ? std::vector<real>{1, 1.5, 2, 3, 4, 5, 7} : std::vector<real>{1, 2, 5};
     s += fmt::format("set {}tics (", name);
     const char* comma = "";
     for (real decade = std::pow(10.0, std::floor(std::log10(low)) - 1); decade <= high * 10; decade *= 10)
-        for (const int digit : {1, 2, 5}) {
+        for (const real digit : digits) {
             if (digit * decade < low / 1.3 || digit * decade > high * 1.3) continue;
             s += fmt::format("{0}'{1:.4g}' {1:.4g}", comma, digit * decade), comma = ", ";
         }
