@@ -35,8 +35,7 @@ void add_cost(CLI::App& app, int& exit_code) {
     command->add_flag("--list", options.list, "Show the ready studies; run nothing");
     command->add_option("--solver", options.solver, "Only methods that use this solver");
     command->add_option("--error", options.error, "Another metric as the error");
-    command->add_option("--vary", options.vary, "key=value,value,...: settings to go through
-        ->allow_extra_args(false); may be given again");
+    command->add_option("--vary", options.vary, "key=value,value,...: settings to go through; may be given again")->allow_extra_args(false);
     command->add_option("--repeat", options.measure.repeats, "Runs of a setting that is quick; the median counts")
         ->check(CLI::Range(1, 99));
     command->add_option("--time-limit", options.measure.time_limit, "Seconds after which a run counts as failed")
@@ -47,8 +46,7 @@ void add_cost(CLI::App& app, int& exit_code) {
     command->add_flag("--publish", arguments->publish, "Write the page of results as well");
     command->add_option("--publish-to", arguments->publish_to, "Its folder (default: results/cost)");
     command->add_flag("--quiet", options.quiet, "No progress line");
-    command->callback([arguments, &exit_code] {
-        exit_code = cost(*arguments); });
+    command->callback([arguments, &exit_code] { exit_code = cost(*arguments); });
 }
 
 }  // namespace weir::app
