@@ -1,6 +1,7 @@
 #include "mac/marker_motion.hpp"
 
 #include "core/parallel.hpp"
+#include "mac/marker_lanes.hpp"
 
 namespace weir::mac {
 
@@ -11,15 +12,42 @@ void mark_near_solids(const geometry::Solids<D>& solids, const Frame<D>& frame, 
 
 namespace {
 
-/// The nearest point inside the walls; ends that are open or periodic do not stop anything.
+/// The box of walls, less a margin; ends that are open or periodic do not stop anything.
 template <int D>
-Vec<D> inside_walls(const Frame<D>& frame, const geometry::Sides<D>& sides, Vec<D> x) {
-    for (int d = 0; d < D; ++d) {
-        const real margin = wall_margin * frame.h[d], lo = frame.origin[d], hi = lo + frame.h[d] * frame.cells[d];
-        if (!sides.open(d, 0) && !frame.periodic(d)) x[d] = std::max(x[d], lo + margin);
-        if (!sides.open(d, 1) && !frame.periodic(d)) x[d] = std::min(x[d], hi - margin);
+struct Walls {
+    Vec<D> lo = Vec<D>::constant(-infinity), hi = Vec<D>::constant(infinity);
+    bool wraps = false;
+    Walls(const Frame<D>& frame, const geometry::Sides<D>& sides) {
+        for (int d = 0; d < D; ++d) {
+            const real margin = wall_margin * frame.h[d], first = frame.origin[d];
+            wraps = wraps || frame.periodic(d);
+            if (!sides.open(d, 0) && !frame.periodic(d)) lo[d] = first + margin;
+            if (!sides.open(d, 1) && !frame.periodic(d)) hi[d] = first + frame.h[d] * frame.cells[d] - margin;
+        }
     }
-    return frame.wrap(x);
+    Vec<D> keep_inside(const Frame<D>& frame, Vec<D> x) const {
+        for (int d = 0; d < D; ++d) x[d] = std::clamp(x[d], lo[d], hi[d]);
+        return wraps ? frame.wrap(x) : x;
+    }
+};
+
+/// Where the points are after dt by RK2, if their midpoints lie within half a cell of them, which the stencil of their cell covers.
+template <int D>
+WEIR_LANES bool trace_midpoint(const CellFaces<D>& faces, const Frame<D>& frame, const Index<D>& I, real dt, LaneVec<D>& x) {
+    auto d = from_centre(frame, I, x);
+    const auto k1 = faces.template velocity<false>(d);
+    auto too_far = k1[0] != k1[0];  // no lane, or a lane that is not a number
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        const Lanes half = k1[at] * (0.5 * dt * frame.inv_h[a]);
+        too_far |= (half > 0.5) | (half < -0.5);
+        d[at] += half;
+    }
+    for (int l = 0; l < marker_lanes; ++l)
+        if (too_far[l]) return false;
+    const auto k2 = faces.template velocity<true>(d);
+    for (std::size_t a = 0; a < D; ++a) x[a] += dt * k2[a];
+    return true;
 }
 
 }  // namespace
@@ -27,13 +55,27 @@ Vec<D> inside_walls(const Frame<D>& frame, const geometry::Sides<D>& sides, Vec<
 template <int D>
 void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& frame, real dt, Trace order,
                   const geometry::Sides<D>& sides, const geometry::Solids<D>& solids, const Grid<std::uint8_t, D>& near_solid) {
+    const Walls<D> walls(frame, sides);
     const real eps = 1e-3 * frame.h_min();  // of the finite differences that give a solid's normal
-    parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
-        const auto p = static_cast<std::size_t>(i);
-        Vec<D> x = inside_walls(frame, sides, trace(u, frame, markers.position(p), dt, order));
+    const auto place = [&](std::size_t p, const Vec<D>& reached) {
+        Vec<D> x = walls.keep_inside(frame, reached);
         if (!near_solid.empty() && near_solid(frame.cell_of(x)))
-            x = inside_walls(frame, sides, solids.push_out(x, wall_margin * frame.h_min(), eps));
+            x = walls.keep_inside(frame, solids.push_out(x, wall_margin * frame.h_min(), eps));
         markers.set_position(p, x);
+    };
+    markers.for_each_occupied_cell(frame, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+        const CellFaces<D> faces(u, frame, I);
+        for (std::size_t p = begin; p < end; p += marker_lanes) {
+            const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
+            auto x = load_positions(markers, p, count);
+            const bool together = order == Trace::rk2 && trace_midpoint(faces, frame, I, dt, x);
+            for (int l = 0; l < count; ++l) {
+                const std::size_t marker = p + static_cast<std::size_t>(l);
+                Vec<D> reached;
+                for (std::size_t a = 0; a < D; ++a) reached[a] = x[a][l];
+                place(marker, together ? reached : trace(u, frame, markers.position(marker), dt, order));
+            }
+        }
     });
 }
 

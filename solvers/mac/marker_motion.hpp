@@ -30,7 +30,7 @@ template <int D>
 void mark_near_solids(const geometry::Solids<D>& solids, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid);
 
 /// Moves all markers by dt. Beyond open sides they leave the domain (see left_domain), at walls and solids they stop.
-/// near_solid is empty where there are no solids.
+/// near_solid is empty where there are no solids. Markers must be sorted; afterwards they are not.
 template <int D>
 void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& frame, real dt, Trace order,
                   const geometry::Sides<D>& sides, const geometry::Solids<D>& solids, const Grid<std::uint8_t, D>& near_solid);

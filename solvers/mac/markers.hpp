@@ -1,9 +1,11 @@
 // Marker particles: which fluid is where (Harlow & Welch 1965), and, for PIC, FLIP and APIC, the carriers of its momentum.
 // Arrays by component, sorted by cell after every motion: all that happens between markers and grid runs in this fixed order.
 #pragma once
+#include "core/parallel.hpp"
 #include "core/types.hpp"
 #include "mac/water_frame.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -48,6 +50,9 @@ public:
     void sort(const Frame<D>& frame);
     std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell]); }
     std::size_t end(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell + 1]); }
+    /// f(I, begin, end) for each cell that holds markers, after sort(); threaded by equal numbers of markers.
+    template <class F>
+    void for_each_occupied_cell(const Frame<D>& frame, F&& f) const;
     int in_cell(std::size_t cell) const { return cell_start_[cell + 1] - cell_start_[cell]; }
 
     /// f(array) for every array of one value a marker.
@@ -74,6 +79,24 @@ void Markers<D>::for_each_array(F&& f) {
         for (auto& array : v) f(array);
     if (carries_gradient_)
         for (auto& array : c) f(array);
+}
+
+template <int D>
+template <class F>
+void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
+    constexpr int blocks = 64;
+    const auto first_cell = [&](int block) {  // the first whose markers begin in this block
+        const auto least = static_cast<int>(count() * static_cast<std::size_t>(block) / blocks);
+        return std::lower_bound(cell_start_.begin(), cell_start_.end() - 1, least) - cell_start_.begin();
+    };
+    parallel_for(0, blocks, [&](int block) {
+        const auto from = static_cast<std::size_t>(first_cell(block)), to = static_cast<std::size_t>(first_cell(block + 1));
+        Index<D> I = frame.index_of(from);
+        for (std::size_t cell = from; cell < to; ++cell) {
+            if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
+            for (int d = 0; d < D && ++I[d] == frame.cells[d] && d < D - 1; ++d) I[d] = 0;
+        }
+    });
 }
 
 template <int D>

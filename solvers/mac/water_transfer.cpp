@@ -1,6 +1,7 @@
 #include "mac/water_transfer.hpp"
 
 #include "core/parallel.hpp"
+#include "mac/marker_lanes.hpp"
 
 namespace weir::mac {
 
@@ -130,13 +131,25 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
     }
 }
 
+/// v = β v + Σ_i w_ip u_i for every marker; they must be sorted.
+template <int D>
+static void gather(const MacVelocity<D>& u, const Frame<D>& frame, real beta, Markers<D>& markers) {
+    markers.for_each_occupied_cell(frame, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+        const CellFaces<D> faces(u, frame, I);
+        for (std::size_t p = begin; p < end; p += marker_lanes) {
+            const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
+            const auto v = faces.template velocity<false>(from_centre(frame, I, load_positions(markers, p, count)));
+            for (std::size_t a = 0; a < D; ++a) {
+                real* carried = markers.v[a].data() + p;
+                store_lanes(carried, beta * load_lanes(carried, count) + v[a], count);
+            }
+        }
+    });
+}
+
 template <int D>
 void pic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& markers) {
-    parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
-        const auto p = static_cast<std::size_t>(i);
-        const Vec<D> v = sample(u, Stencil<D>(frame, markers.position(p)));
-        for (int a = 0; a < D; ++a) markers.v[static_cast<std::size_t>(a)][p] = v[a];
-    });
+    gather(u, frame, 0, markers);
 }
 
 template <int D>
@@ -148,14 +161,7 @@ void flip_to_markers(const MacVelocity<D>& u, MacVelocity<D>& before, real beta,
                 for (std::size_t i = at; i < at + count; ++i) before[a][i] = u[a][i] - beta * before[a][i];
             },
             [](std::size_t, std::size_t) {});
-    parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
-        const auto p = static_cast<std::size_t>(i);
-        const Vec<D> v = sample(before, Stencil<D>(frame, markers.position(p)));
-        for (int a = 0; a < D; ++a) {
-            real& vp = markers.v[static_cast<std::size_t>(a)][p];
-            vp = beta * vp + v[a];
-        }
-    });
+    gather(before, frame, beta, markers);
 }
 
 template <int D>

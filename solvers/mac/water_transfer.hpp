@@ -36,6 +36,7 @@ template <int D>
 void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums<D>& sums, MacVelocity<D>& u,
                       std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known);
 
+/// These three want markers that are sorted.
 template <int D>
 void pic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& markers);
 

@@ -94,10 +94,12 @@ TEST_IN_2D_AND_3D("no marker leaves through a wall, and those that leave through
     u[0].fill(3);
     geometry::Sides<D> sides;
     const Frame<D> frame(u, sides);
+    markers.sort(frame);
     move_markers(markers, u, frame, 1.0, Trace::rk2, sides, geometry::Solids<D>(), Grid<std::uint8_t, D>());
     EXPECT_EQ(remove_departed(markers, frame, sides), 0u);
     EXPECT_LT(*std::max_element(markers.x[0].begin(), markers.x[0].end()), 1.0);
     sides.side(0, 1).kind = geometry::SideKind::outflow;
+    markers.sort(frame);
     move_markers(markers, u, frame, 1.0, Trace::rk2, sides, geometry::Solids<D>(), Grid<std::uint8_t, D>());
     EXPECT_EQ(remove_departed(markers, frame, sides), 500u);
     EXPECT_EQ(markers.count(), 0u);
