@@ -7,32 +7,35 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace weir::mac {
 
 template <int D>
 using FaceMarks = std::array<Grid<std::uint8_t, D>, D>;
+template <int D>
+using FaceLists = std::array<std::vector<Index<D>>, D>;
 
 template <int D>
 class Extrapolation {
 public:
     Extrapolation() = default;
-    explicit Extrapolation(const Frame<D>& frame) : frame_(frame) {}
+    /// `steepest`: what linear continuation may claim of acceleration along the flow [m/s²], see slope().
+    Extrapolation(const Frame<D>& frame, real steepest) : frame_(frame), steepest_(steepest) {}
     /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer. It starts at the faces
-    /// of cells near the surface and of the skin of solids; anywhere else no one asks.
-    void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, int layers);
+    /// of cells near the surface and at `in_solids`; anywhere else no one asks.
+    void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, const FaceLists<D>& in_solids, int layers);
     std::size_t bytes() const { return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real); }
 
 private:
-    void find_front(Grid<std::uint8_t, D>& mark, int a, std::span<const Index<D>> cells);
+    void join_front(Grid<std::uint8_t, D>& mark, int a, const Index<D>& face);
     real value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
                int layer) const;
     real slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by, int layer) const;
     bool step(Index<D>& I, int a, int axis, int by) const;
 
     Frame<D> frame_;
+    real steepest_ = 0;
     std::vector<Index<D>> front_, next_;
     std::vector<real> value_;
 };

@@ -12,6 +12,10 @@ namespace weir::mac {
 /// the surface by at most this part of a cell (Ng, Min & Gibou 2009 leave the cure open; Batty et al. 2007 clamp likewise).
 inline constexpr real least_open_fraction = 0.01;
 
+/// Faces open by less than this take part in the flux, but what the pressure leaves on them says little about the liquid's velocity: it is
+/// the rest of what larger faces do, over this fraction, and squeezes out at any speed. They get the continued velocity instead.
+inline constexpr real least_trusted_fraction = 0.1;
+
 template <int D>
 class SolidPlacement {
 public:

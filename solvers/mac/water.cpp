@@ -56,10 +56,11 @@ void Water<D>::momentum_to_faces(real dt) {
         markers_to_faces(markers_, frame_, sums_, state_.u, known_);
     impose_emitters();
     set_fixed_faces();
-    forget_closed_faces();
-    extrapolate_(state_.u, known_, surface_, 2);  // liquid cells without a marker, faces at the edge
+    forget_faces_in_solids();
+    extrapolate_(state_.u, known_, surface_, in_solids_, 2);  // liquid cells without a marker, faces at the edge
     if (options_.transfer == Transfer::flip) {
-        set_velocity_in_solids();
+        constrain_velocity_in_solids();
+        sync_periodic(state_.u, state_.sides);
         for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
     }
 }
@@ -82,8 +83,8 @@ template <int D>
 void Water<D>::extend_velocity() {
     const auto timed = passes_.time("extrapolate");
     mark_liquid_faces();
-    extrapolate_(state_.u, known_, surface_, surface_.layers() - 1);
-    set_velocity_in_solids();
+    extrapolate_(state_.u, known_, surface_, in_solids_, surface_.layers() - 1);
+    constrain_velocity_in_solids();
     sync_periodic(state_.u, state_.sides);
     rate_ = max_speed_rate();
 }
@@ -119,26 +120,24 @@ void Water<D>::advect_faces(real dt) {
         });
 }
 
-/// Faces whose velocity the pressure decided, and those that walls and inflows prescribe.
+/// Faces whose velocity the pressure decided, as far as solids leave them open, and those that walls and inflows prescribe.
 template <int D>
 void Water<D>::mark_liquid_faces() {
     using poisson::Cell;
     for (int a = 0; a < D; ++a) {
         std::uint8_t* known = known_[static_cast<std::size_t>(a)].data();
-        const real* open = state_.solid.any() ? state_.solid.open[static_cast<std::size_t>(a)].data() : nullptr;
         const auto stride = state_.cells.stride(a);
         const auto between_cells = [&](std::size_t face, std::size_t cell, int count) {
             const Cell *above = state_.cells.data() + cell, *below = above - stride;
             for (int i = 0; i < count; ++i) known[face + static_cast<std::size_t>(i)] = above[i] == Cell::fluid || below[i] == Cell::fluid;
-            for (std::size_t i = 0; open && i < static_cast<std::size_t>(count); ++i) known[face + i] &= open[face + i] > 0;
         };
         const auto on_side = [&](const Index<D>& I, std::size_t face) {
             const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
-            const bool periodic = frame_.periodic(a), closed = open && open[face] == 0;
-            known[face] = periodic ? liquid && !closed : liquid || !state_.sides.open(a, I[a] == 0 ? 0 : 1);
+            known[face] = liquid || (!frame_.periodic(a) && !state_.sides.open(a, I[a] == 0 ? 0 : 1));
         };
         for_each_face_run(frame_.cells, a, between_cells, on_side);
     }
+    forget_faces_in_solids();
 }
 
 /// The walls' and inflows' own faces, and those that solids close.

@@ -51,6 +51,14 @@ struct Emitter {
     bool works(real t) const { return t >= start && t < end; }
 };
 
+/// What a solid does to the liquid's velocity on a face inside it.
+template <int D>
+struct SolidFace {
+    Vec<D> normal, velocity;  // of the solid
+    bool no_slip = false;
+    real value = 0;  // what is to stand there
+};
+
 template <int D>
 class Water final : public Solver {
 public:
@@ -78,7 +86,7 @@ private:
     void fill_with_liquid(const scene::Scene& scene);
     void seed_markers();
 
-    // The passes of a step, in order (water.cpp, water_sources.cpp)
+    // The passes of a step, in order (water.cpp, water_sources.cpp, water_solids.cpp)
     void place_solids(real t);
     void move_surface(real dt);
     void pour_and_drain(real dt);
@@ -99,8 +107,10 @@ private:
     void control_volume();
     void set_fixed_faces();
     void mark_liquid_faces();
-    void forget_closed_faces();
-    void set_velocity_in_solids();
+    void list_faces_in_solids();
+    void forget_faces_in_solids();
+    void constrain_velocity_in_solids();
+    Vec<D> velocity_at_face(int a, const Index<D>& I) const;
     real max_speed_rate() const;
     real kinetic_energy() const;
     real potential_energy() const;
@@ -115,6 +125,8 @@ private:
     Vec<D> gravity_{};
     std::vector<Emitter<D>> emitters_;
     Grid<std::uint8_t, D> closed_, near_solid_;
+    FaceLists<D> in_solids_;
+    std::array<std::vector<SolidFace<D>>, D> solid_faces_;  // in the order of in_solids_
 
     Markers<D> markers_;
     LevelSet<D> surface_;

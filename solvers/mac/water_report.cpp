@@ -142,6 +142,7 @@ template <int D>
 std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
                         (viscosity_ ? viscosity_->bytes() : 0) + closed_.size() + near_solid_.size() + curvature_.size() * sizeof(real);
+    for (const auto& faces : solid_faces_) total += faces.size() * (sizeof(SolidFace<D>) + sizeof(Index<D>));
     for (const auto& sum : sums_.sum) total += sum.size() * (sizeof(FaceSum) + 1);  // with its mark
     return total;
 }

@@ -1,4 +1,4 @@
-// What enters and leaves: emitters, open sides, solids that move; and the repair of the markers' distribution.
+// What enters and leaves: emitters, open sides; and the repair of the markers' distribution.
 #include "mac/water.hpp"
 
 namespace weir::mac {
@@ -21,45 +21,6 @@ void for_each_serial(const Index<D>& lo, const Index<D>& hi, F&& f) {
 }
 
 }  // namespace
-
-template <int D>
-void Water<D>::place_solids(real t) {
-    if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    solids_.place(state_, t);
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
-    surface_.set_closed(closed_);
-    mark_near_solids(solids_.solids(), frame_, near_solid_);
-}
-
-/// Markers reach over a solid's surface with their hats, but what they leave on closed faces is not the liquid's velocity.
-template <int D>
-void Water<D>::forget_closed_faces() {
-    if (!solids_.any()) return;
-    for (int a = 0; a < D; ++a) {
-        auto& known = known_[static_cast<std::size_t>(a)];
-        const auto& open = state_.solid.open[static_cast<std::size_t>(a)];
-        for_each_free_face(state_.u, state_.sides, a, [&](const Index<D>& I) {
-            if (open(I) == 0) known(I) = 0;
-        });
-    }
-}
-
-/// Where a solid closes a face between liquid's side and its own, its velocity stands; between two closed cells the continued velocity
-/// of the liquid stands (free slip), or the solid's (no slip).
-template <int D>
-void Water<D>::set_velocity_in_solids() {
-    if (!solids_.any()) return;
-    for (int a = 0; a < D; ++a) {
-        const auto at = static_cast<std::size_t>(a);
-        for_each_cell(known_[at].extent(), [&](const Index<D>& I) {
-            if (state_.solid.open[at](I) > 0) return;
-            const bool inside = closed_(frame_.near(I, a, -1)) && closed_(frame_.near(I, a, 0));
-            if (inside && known_[at](I) == 0) return;  // too deep to matter
-            if (!inside || solids_.solids()[solids_.solids().nearest(state_.u.face_centre(a, I))].no_slip)
-                state_.u[a](I) = state_.solid.velocity[at](I);
-        });
-    }
-}
 
 /// Adds markers to half cells of I that have none, up to `wanted` in the cell, with the velocity of the liquid there.
 template <int D>
@@ -171,12 +132,9 @@ void Water<D>::redistribute_markers() {
     markers_.sort(frame_);
 }
 
-#define WEIR_INSTANTIATE(D)                           \
-    template void Water<D>::place_solids(real);       \
-    template void Water<D>::forget_closed_faces();    \
-    template void Water<D>::set_velocity_in_solids(); \
-    template void Water<D>::pour_and_drain(real);     \
-    template void Water<D>::impose_emitters();        \
+#define WEIR_INSTANTIATE(D)                       \
+    template void Water<D>::pour_and_drain(real); \
+    template void Water<D>::impose_emitters();    \
     template void Water<D>::redistribute_markers();
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

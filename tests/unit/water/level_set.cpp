@@ -113,8 +113,8 @@ TEST_IN_2D_AND_3D("extrapolation continues a velocity without change along the n
             s.u[a](I) = mark(I) ? std::sin(3.0 * I[0] + a) : 1e30;
         });
     }
-    Extrapolation<D> extrapolate(s.frame);
-    extrapolate(s.u, known, s.level_set, 4);
+    Extrapolation<D> extrapolate(s.frame, 9.81);
+    extrapolate(s.u, known, s.level_set, {}, 4);
     for (int a = 0; a < D; ++a)
         for_each_cell(s.u[a].extent(), [&](const Index<D>& I) {
             const bool reached = I[1] < 14;
