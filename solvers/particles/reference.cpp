@@ -58,12 +58,11 @@ struct Functions {
     double (*sph_push)(double, double, double, double, const SphParams*);
     double (*sph_drag)(double, double, const SphParams*);
     double (*sph_colour)(double, double, const SphParams*);
-    double (*sph_tension)(double, double, const SphParams*);
 };
 #define WEIR_FUNCTIONS(k)                                                                                                          \
     {                                                                                                                              \
         k::pbf_density, k::pbf_slope, k::pbf_correction_with_pressure, k::sph_density, k::sph_rate, k::sph_diffusion, k::sph_push, \
-            k::sph_drag, k::sph_colour, k::sph_tension                                                                             \
+            k::sph_drag, k::sph_colour                                                                                             \
     }
 constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(spline), WEIR_FUNCTIONS(c2)};
 
@@ -201,7 +200,7 @@ std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std
         for (std::size_t j = 0; j < x.size(); ++j) {
             const Point d = difference(x[i], x[j]);
             if (j == i || square(d) >= p.h2) continue;
-            const double f = functions[kernel].sph_tension(square(d), 1 / (rho[i] * rho[j]), &p), both = square(q[i]) + square(q[j]);
+            const double f = muller::sph_tension(square(d), 1 / (rho[i] * rho[j]), &p), both = square(q[i]) + square(q[j]);
             const double own = q[i][0] * d[0] + q[i][1] * d[1] + q[i][2] * d[2], other = q[j][0] * d[0] + q[j][1] * d[1] + q[j][2] * d[2];
             for (std::size_t b = 0; b < 3; ++b) a[i][b] += f * (both * d[b] - own * q[i][b] - other * q[j][b]);
         }

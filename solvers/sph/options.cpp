@@ -36,6 +36,8 @@ Options::Options(const scene::Scene& scene) {
     if (const auto* t = scene.effect("surface_tension")) sigma = t->number("sigma");
     if (diffusion > 0 && !continuity)
         scene.refuse("effects.density_diffusion", "a density that is summed does not diffuse", "set scheme.density = \"continuity\"");
+    if (sigma > 0 && !tension)
+        scene.refuse("effects.surface_tension", "the surface pulls on a liquid that cannot be pulled", "set scheme.tension = true");
     if (const auto* g = scene.effect("gravity")) {
         const auto list = g->numbers("g");
         for (std::size_t a = 0; a < list.size(); ++a) gravity[a] = list[a];
@@ -89,6 +91,33 @@ void add_surroundings(Params& p, const Options& o, real spacing, real rho0) {
     std::transform(o.slide.begin(), o.slide.end(), p.slide, to_number);
 }
 
+/// Factor of the slope h^4 - r^4 of the surface's stress: its second moment along an axis is 1.
+template <int D>
+real stress_scale(real h) {
+    return (D == 2 ? 8 / pi : 135 / (16 * pi)) / (std::pow(h, D + 2) * std::pow(h, 4));
+}
+
+/// What particles below a flat surface see of a unit stress whose layer is the gradient of the colour: the integral over the depth z of
+/// that gradient, the kernel's integral over a plane at z, times the second moment along the surface of the stress's slope where there
+/// is liquid. Without the cut of the slope it would be 1/2.
+template <int D>
+real seen_stress(const Kernel<D>& kernel) {
+    constexpr int pieces = 200;
+    const real h = kernel.support();
+    real seen = 0;
+    for (int i = 0; i < pieces; ++i) {
+        const real z = h * (i + 0.5) / pieces;
+        real cut = 0;  // of the moment, over shells of radius r > z: the cap beyond the surface has half angle acos(z / r)
+        for (int k = 0; k < pieces; ++k) {
+            const real r = z + (h - z) * (k + 0.5) / pieces, c = z / r, angle = std::acos(c);
+            const real cap = D == 2 ? angle - c * std::sqrt(1 - c * c) : pi * (2.0 / 3 - c + c * c * c / 3);
+            cut += (h - z) / pieces * (std::pow(h, 4) - std::pow(r, 4)) * std::pow(r, D + 1) * cap;
+        }
+        seen += h / pieces * kernel.plane(z) * (1 - stress_scale<D>(h) * cut);
+    }
+    return seen;
+}
+
 /// The colour's gradient is some 1.5 / h at a surface; inside a liquid in disorder it is less than this over h.
 constexpr real colour_noise = 0.05;
 
@@ -123,7 +152,7 @@ Params sph_params(const Options& o, real spacing, real rho0) {
     p.artificial = static_cast<Number>(o.artificial * o.sound * h / 2);
     p.soften = static_cast<Number>(0.01 * h * h / 4);
     p.diffusion = static_cast<Number>(o.diffusion * o.sound * h);
-    p.tension = static_cast<Number>(2 * o.sigma);
+    p.tension = static_cast<Number>(o.sigma * mass * stress_scale<D>(h) / seen_stress(g));
     p.noise = static_cast<Number>(colour_noise / h);
     add_surroundings(p, o, spacing, rho0);
     return p;

@@ -50,21 +50,32 @@ struct Component {
     NormSum error, scale;
 };
 
+/// f(x, weight, i) for each sample of one component where it lives: cell centres, faces, or particles, which weigh all the same.
+template <class F>
+void for_each_sample_of(const RunRecord& run, const FieldView& view, int c, F&& f) {
+    if (view.where != Where::particle) return for_each_sample(run.fields.grid, view.where == Where::face ? c : -1, f);
+    const FieldView& position = *run.fields.find(view.set, "position");
+    for (std::size_t i = 0; i < position.data[0].size(); ++i) {
+        Vec<3> x{};
+        for (int a = 0; a < position.components(); ++a) x[a] = position.data[static_cast<std::size_t>(a)][i];
+        f(x, 1.0, i);
+    }
+}
+
 /// Sums over one component. Where the reference holds up to a constant, both means are taken out first.
 template <class Exact>
 Component component_error(const RunRecord& run, const Reference& reference, const FieldView& view, int c, Norm norm, Exact&& exact) {
     const auto& data = view.data[static_cast<std::size_t>(c)];
-    const int axis = view.where == Where::face ? c : -1;
     const auto covered = [&](const Vec<3>& x) { return !reference.covers || reference.covers(x, run.time); };
     real value_mean = 0, exact_mean = 0, weight = 0;
-    for_each_sample(run.fields.grid, axis, [&](const Vec<3>& x, real w, std::size_t i) {
+    for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
         if (covered(x)) value_mean += w * data[i], exact_mean += w * exact(x), weight += w;
     });
     if (weight == 0) throw BadInput(fmt::format("the reference of \"{}\" covers no sample of the run", view.name));
     const bool keep = reference.up_to_a_constant.count(view.name) == 0;
     value_mean = keep ? 0 : value_mean / weight, exact_mean = keep ? 0 : exact_mean / weight;
     Component sums{{norm}, {norm}};
-    for_each_sample(run.fields.grid, axis, [&](const Vec<3>& x, real w, std::size_t i) {
+    for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
         if (!covered(x)) return;
         const real truth = exact(x) - exact_mean;
         sums.error.add(data[i] - value_mean - truth, w);
@@ -131,8 +142,7 @@ std::optional<real> cost(std::string_view name, const RunRecord& run) {
 FieldError field_error(const RunRecord& run, const Reference& reference, std::string_view field, Norm norm) {
     const FieldView& view = run.field(field);
     const std::string name(field);
-    if (view.where == Where::particle) throw BadInput(fmt::format("field \"{}\" lives on particles: no norm against a reference", name));
-    const bool scalar = view.components() == 1 && view.where == Where::cell;
+    const bool scalar = view.components() == 1 && view.where != Where::face;
     const ScalarField* one = scalar ? &reference.scalar(name) : nullptr;
     const VectorField* many = scalar ? nullptr : &reference.vector(name);
     NormSum error{norm}, scale{norm};

@@ -1,5 +1,5 @@
 // Metrics: one number out of a finished run, by name. The generic ones (harness/generic_metrics.cpp) need no registration:
-//   <field>.l1 .l2 .linf         mean, root mean square and largest |field - reference| at the end; faces at faces, cells at centres
+//   <field>.l1 .l2 .linf         mean, root mean square and largest |field - reference| at the end; at faces, cell centres or particles
 //   <field>.l1_relative ...      the same over that norm of the reference
 //   <field>.max                  largest |field| at the end; needs no reference
 //   divergence.max               largest max_divergence of any step

@@ -12,5 +12,6 @@ std::vector<Metric> growth_metrics();
 std::vector<Metric> shape_metrics();
 std::vector<Metric> exactness_metrics();
 std::vector<Metric> obstacle_metrics();
+std::vector<Metric> particle_metrics();
 
 }  // namespace weir::validation

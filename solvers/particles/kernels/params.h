@@ -36,7 +36,7 @@ typedef struct {
     SCALAR soften;     /* keeps the artificial viscosity finite: 0.01 (h / 2)^2 [m^2] */
     SCALAR diffusion;  /* of density: 2 delta c h / 2 [m^2/s] */
     SCALAR layers[3];  /* gradient of the density of the liquid at rest, rho0 g / c^2 [kg/m^4] */
-    SCALAR tension;    /* of the surface: 2 sigma [N/m] */
+    SCALAR tension;    /* of the surface: sigma k times the factor of the stress's slope times m */
     SCALAR noise;      /* a gradient of the colour below this is disorder, not a surface [1/m] */
     SCALAR gravity[3]; /* by which the pressure goes on behind walls [m/s^2] */
     SCALAR per_depth;  /* 1 / (rho0 |g| d): the pressure of one spacing of depth [1/Pa]; 0: no gravity */

@@ -34,16 +34,18 @@ WEIR_FN REAL sph_drag(REAL r2, REAL volumes, WEIR_PARAM SphParams* p) {
 /* Gradient of the colour, which is 1 in liquid and 0 outside: m / rho_j grad W = factor (x_i - x_j)          Mueller et al. 2003, eq. 15 */
 WEIR_FN REAL sph_colour(REAL r2, REAL volume, WEIR_PARAM SphParams* p) { return p->gradient * WEIR_SLOPE(r2, p) * volume; }
 
-/* Surface tension as the stress 2 sigma (|n| 1 - n n / |n|) of the colour's gradient n (Lafaurie et al. 1994, in SPH Hu & Adams 2006).
-   The factor 2: particles fill only the inner half of the layer in which n lives. Unlike sigma kappa n it is a force between pairs,
-   equal and opposite. The normal is kept as q = n / sqrt |n|, so the stress on x is 2 sigma (q.q x - q q.x). Returns the scale of q. */
+/* Surface tension as the stress sigma k (|n| 1 - n n / |n|) of the colour's gradient n (Lafaurie et al. 1994, in SPH Hu & Adams 2006):
+   unlike sigma kappa n a force between pairs, equal and opposite. Stress that pulls makes particles clump where the pull between two falls
+   with their distance (Swegle, Hicks & Attaway 1995), so it is taken to the pairs by a slope of its own, 1 - (r/h)^4, whose pull grows up
+   to r = 0.67 h. k (sph/options.cpp) makes up for what a surface cuts off n and off that slope. The normal is kept as q = n / sqrt |n|, so
+   the stress on x is sigma k (q.q x - q q.x). */
 WEIR_FN REAL sph_normal(REAL length2, WEIR_PARAM SphParams* p) {
     REAL per_length = RSQRT(length2 + p->noise * p->noise * (SCALAR)1e-6);
     REAL length = length2 * per_length;
     REAL seen = MAX0(length - p->noise * p->noise * per_length);
     return seen * RSQRT(length * seen * length + p->noise * p->noise * p->noise * (SCALAR)1e-9);
 }
-WEIR_FN REAL sph_tension(REAL r2, REAL volumes, WEIR_PARAM SphParams* p) { return p->tension * volumes * p->gradient * WEIR_SLOPE(r2, p); }
+WEIR_FN REAL sph_tension(REAL r2, REAL volumes, WEIR_PARAM SphParams* p) { return -p->tension * volumes * MAX0(p->h2 - r2) * (p->h2 + r2); }
 
 /* What walls add to the acceleration beside the particle's own pressure (which has no gradient through them):
    - the pressure goes on behind a wall as p_i + rho0 g.(x - x_i) (Adami, Hu & Adams 2012, eq. 27); the first moment of grad W over what
