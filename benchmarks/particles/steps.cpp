@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
     bool csv = false, passes = false;
     int steps = 20;
     double start = 0.25;
-    std::string kernel = "muller";
+    std::string kernel = "cubic";
     std::vector<std::string> overrides;
     app.add_option("--set", overrides, "KEY=VALUE, as in a scene");
     app.add_option("--kernel", kernel, "muller, cubic, wendland");

@@ -19,6 +19,7 @@ Options::Options(const scene::Scene& scene) {
     cfm = scene.number("scheme.cfm");
     relaxation = scene.number("scheme.relaxation");
     warm_start = scene.number("scheme.warm_start");
+    settle = static_cast<int>(scene.integer("scheme.settle"));
     isa = scene.text("scheme.isa");
     if (const auto* p = scene.effect("artificial_pressure")) {
         pressure_k = p->number("k");

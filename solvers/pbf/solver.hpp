@@ -40,6 +40,7 @@ private:
     struct Compression {
         real mean = 0, worst = 0;
     };
+    void settle();
     void predict(real dt);
     void find_neighbours();
     void warm_start(real dt);
@@ -47,7 +48,7 @@ private:
     void find_lambdas();
     void correct();
     void collide();
-    void update_velocities(real dt);
+    void update(real dt);
     Compression compression() const;
     particles::PbfPass pass(const float* from, float* to);
 
