@@ -24,6 +24,9 @@ public:
     /// belongs to another size stays out.
     std::vector<Variant> read(const scene::Table& root, std::string_view list, const More& more);
 
+    /// Changes, sweep, scene and reference that one more table says, over `v`.
+    void lay_over(Variant& v, const scene::Table& t) { merge(v, t, nullptr); }
+
     /// A text that must say something.
     std::string said(const scene::Table& t, const std::string& key);
     void problem(scene::Place at, std::string message, std::string hint = "");

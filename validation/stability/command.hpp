@@ -1,0 +1,37 @@
+// `weir stability`: where each solver breaks.
+#pragma once
+#include "sim/registry.hpp"
+#include "validation/stability/limit.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace weir::validation {
+
+struct StabilityOptions {
+    std::vector<std::string> names{};  // cases by name, or folders
+    bool all = false;                  // every case with a stability.toml
+    bool list = false;                 // axes of each, nothing is run
+    std::string axis{};                // only this one
+    bool floors = false;               // only whether each floor still holds: one run an axis
+    Size size = Size::ci;
+    std::filesystem::path out = "out/stability";  // <case>.json and limits.csv
+    std::filesystem::path publish{};              // folder of the published page; empty: not published
+    bool quiet = false;
+};
+
+/// How near the bisection comes: stable and unstable differ by less than this factor.
+inline real bisection_factor(Size size) { return size == Size::ci ? 1.5 : 1.1; }
+
+/// One line an axis and method: the last stable value, theory, what broke first, where and when, the floor.
+std::string limits_table(const StressStudy& study, const std::vector<Limit>& limits);
+nlohmann::json limits_json(const StressStudy& study, const std::vector<Limit>& limits);
+std::string limits_markdown(const nlohmann::json& study);
+
+/// Runs the command and returns its exit code: 1 where a floor is not reached. Throws BadInput before anything is run.
+int stability_command(const StabilityOptions& options, const Solvers& solvers = sim::registry());
+
+}  // namespace weir::validation

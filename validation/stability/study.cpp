@@ -1,0 +1,136 @@
+// Schema and reader of stability.toml.
+#include "validation/harness/variants.hpp"
+#include "validation/stability/limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace weir::validation {
+namespace {
+
+using scene::Key;
+using scene::Table;
+using scene::Type;
+
+constexpr std::array<std::string_view, 4> tests = {"at_most", "at_least", "drift", "never_rises"};
+
+Key text(std::string name, std::string doc, bool required = false) {
+    return {.name = std::move(name), .type = Type::text, .doc = std::move(doc), .required = required};
+}
+Key positive(std::string name, std::string doc, bool required = false) {
+    return {.name = std::move(name), .type = Type::number, .doc = std::move(doc), .required = required, .min = 0, .min_open = true};
+}
+Key tables(std::string name, std::string doc, std::vector<Key> keys, bool required = false) {
+    return {.name = std::move(name), .type = Type::tables, .doc = std::move(doc), .required = required, .keys = std::move(keys)};
+}
+
+Key watch_key() {
+    return tables("watch", "What must hold after every step.",
+                  {text("series", "An integral, or divergence, density_error, iterations, dt; or a sum of two, a+b.", true),
+                   text("why", "Why it must hold.", true),
+                   {.name = "at_most", .type = Type::number, .doc = "value <= this"},
+                   {.name = "at_least", .type = Type::number, .doc = "value >= this"},
+                   {.name = "times_value",
+                    .type = Type::flag,
+                    .doc = "at_most and at_least are for a key of 1, and grow with it.",
+                    .fallback = false},
+                   positive("drift", "|value - first| / |first| <= this"),
+                   positive("never_rises", "No step raises the value by more than this part of the largest.")});
+}
+
+std::vector<Key> make_keys() {
+    std::vector<Key> axis = variant_keys();
+    for (Key k : {text("name", "Its name.", true), text("key", "The key of the scene that is raised.", true),
+                  positive("low", "Where it begins.", true), positive("high", "How far it is tried.", true),
+                  text("hard_because", "Why this is hard.", true), positive("theory", "The limit that theory gives."),
+                  text("theory_source", "Where that limit comes from."), positive("floor", "The least that must be stable."),
+                  text("floor_why", "Why so much is asked."), watch_key()})
+        axis.push_back(std::move(k));
+    std::vector<Key> method = variant_keys();
+    method.insert(method.begin(), text("name", "Its name.", true));
+    std::vector<Key> keys = {text("question", "What the study asks.", true),
+                             {.name = "steps", .type = Type::integer, .doc = "Longest run.", .fallback = std::int64_t{2000}, .min = 1},
+                             watch_key(),
+                             tables("methods", "Each axis is tried with each of these.", method),
+                             tables("axes", "What is raised.", axis, true)};
+    for (const Key& k : variant_keys()) keys.push_back(k);
+    return keys;
+}
+
+std::vector<Invariant> invariants(const Table& t, VariantReader& reader) {
+    std::vector<Invariant> list;
+    for (const Table& w : t.tables("watch")) {
+        Invariant invariant{.series = reader.said(w, "series"), .times_value = w.flag("times_value"), .why = reader.said(w, "why")};
+        int given = 0;
+        for (std::size_t i = 0; i < tests.size(); ++i)
+            if (w.has(tests[i])) invariant.test = static_cast<Invariant::Test>(i), invariant.bound = w.number(tests[i]), ++given;
+        if (given != 1) reader.problem(w.place("series"), fmt::format("\"{}\" needs one of: {}", invariant.series, fmt::join(tests, ", ")));
+        list.push_back(std::move(invariant));
+    }
+    return list;
+}
+
+std::optional<real> optional_number(const Table& t, std::string_view key) {
+    return t.has(key) ? std::optional<real>(t.number(key)) : std::nullopt;
+}
+
+Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader) {
+    Stress s{.name = reader.said(axis, "name"),
+             .method = method.name,
+             .key = axis.text("key"),
+             .low = axis.number("low"),
+             .high = axis.number("high"),
+             .hard_because = reader.said(axis, "hard_because"),
+             .theory = optional_number(axis, "theory"),
+             .theory_source = axis.text_or("theory_source", ""),
+             .floor = optional_number(axis, "floor"),
+             .floor_why = axis.text_or("floor_why", ""),
+             .base = method};
+    if (s.low >= s.high) reader.problem(axis.place("low"), "\"low\" must be less than \"high\"");
+    if (s.floor && s.floor_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
+    if (s.theory && s.theory_source.empty()) reader.problem(axis.place("theory"), "\"theory\" needs a \"theory_source\"");
+    reader.lay_over(s.base, axis);
+    return s;
+}
+
+}  // namespace
+
+const std::vector<Key>& stability_keys() {
+    static const std::vector<Key> keys = make_keys();
+    return keys;
+}
+
+StressStudy parse_stability(std::string_view text, const std::string& file, const std::filesystem::path& folder, Size size) {
+    const Table root = scene::parse_table(text, file, stability_keys());
+    VariantReader reader(file, folder, size);
+    StressStudy study{.name = folder.filename().string(), .folder = folder, .question = reader.said(root, "question")};
+    const auto common = invariants(root, reader);
+    const auto methods = reader.read(root, "methods", nullptr);
+    for (const Table& axis : root.tables("axes"))
+        for (const Variant& method : methods) {
+            Stress s = stress_of(axis, method, reader);
+            s.steps = root.integer("steps");
+            s.watch = axis.tables("watch").empty() ? common : invariants(axis, reader);
+            study.stresses.push_back(std::move(s));
+        }
+    if (!reader.problems().empty()) throw scene::BadScene(reader.problems(), text);
+    return study;
+}
+
+StressStudy read_stability(const std::filesystem::path& folder, Size size) {
+    const auto file = folder / "stability.toml";
+    return parse_stability(scene::read_text(file), file.string(), folder, size);
+}
+
+std::vector<std::filesystem::path> find_stability(const std::filesystem::path& root) {
+    std::vector<std::filesystem::path> found;
+    std::error_code unreadable;
+    for (const auto& entry : std::filesystem::directory_iterator(root, unreadable))
+        if (std::filesystem::exists(entry.path() / "stability.toml")) found.push_back(entry.path());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+}  // namespace weir::validation
