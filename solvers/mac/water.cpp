@@ -54,7 +54,7 @@ void Water<D>::momentum_to_faces(real dt) {
         advect_faces(dt);
     else
         markers_to_faces(markers_, frame_, sums_, state_.u, known_);
-    impose_emitters();
+    impose_emitters(dt);
     set_fixed_faces();
     forget_faces_in_solids();
     extrapolate_(state_.u, known_, surface_, in_solids_, 2);  // liquid cells without a marker, faces at the edge

@@ -48,7 +48,8 @@ struct Emitter {
     Vec<D> velocity{};
     real start = 0, end = infinity;
     Index<D> lo{}, hi{};  // the cells that it can reach
-    bool works(real t) const { return t >= start && t < end; }
+    /// Whether it pours at some time of a step from `from` to `to`.
+    bool works(real from, real to) const { return from < end && to > start; }
 };
 
 /// What a solid does to the liquid's velocity on a face inside it.
@@ -94,7 +95,7 @@ private:
     bool fill_cell(const Index<D>& I, int wanted);
     void pour(const Emitter<D>& emitter, real dt);
     bool holds(const Emitter<D>& emitter, const Vec<D>& x) const;
-    void impose_emitters();
+    void impose_emitters(real dt);
     void curvature();
     void correct_surface();
     void momentum_to_faces(real dt);

@@ -52,11 +52,13 @@ bool Water<D>::holds(const Emitter<D>& emitter, const Vec<D>& x) const {
 }
 
 /// A jittered lattice of half cells moves with the emitter's velocity; its points become markers as they enter the emitter, all of them
-/// when it starts. So what is poured is area × speed × time, neither more where markers crowd nor less where they are slow.
+/// when it starts. So what is poured is area × speed × time, neither more where markers crowd nor less where they are slow. Markers have
+/// already moved: the lattice is where it is at the end of the step, and in the first one those count that have come out again.
 template <int D>
 void Water<D>::pour(const Emitter<D>& emitter, real dt) {
-    const real running = state_.time - emitter.start;
-    const bool starts = running < dt;  // this step is the first in which it works
+    const real from = std::max(state_.time, emitter.start), to = std::min(state_.time + dt, emitter.end);
+    const real running = to - emitter.start;
+    const bool starts = state_.time <= emitter.start;  // this step is the first in which it works
     for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
         if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
             surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
@@ -74,28 +76,31 @@ void Water<D>::pour(const Emitter<D>& emitter, real dt) {
                 x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
                        emitter.velocity[d] * running;
             }
-            if (holds(emitter, x) && (starts || !holds(emitter, x - dt * emitter.velocity))) markers_.add(x, emitter.velocity);
+            const bool now = holds(emitter, x), before = holds(emitter, x - (to - from) * emitter.velocity);
+            if (starts ? now || before : now && !before) markers_.add(x, emitter.velocity);
         }
     });
 }
 
-/// Markers beyond open sides go; emitters pour. The ledger of volume follows the markers.
+/// Markers beyond open sides go, and take their share of the ledger's volume with them: it is redistribute_markers() that says how many
+/// there are, so no marker stands for one volume for ever. Emitters pour a lattice of half cells.
 template <int D>
 void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
-    volume_target_ -= markers_.volume * static_cast<real>(remove_departed(markers_, frame_, state_.sides));
-    const std::size_t before = markers_.count();
+    const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
+    if (departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
     for (const auto& emitter : emitters_)
-        if (emitter.works(state_.time)) pour(emitter, dt);
-    volume_target_ += markers_.volume * static_cast<real>(markers_.count() - before);
+        if (emitter.works(state_.time, state_.time + dt)) pour(emitter, dt);
+    const std::size_t poured = markers_.count() - (all - departed);
+    volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(poured);
     markers_.sort(frame_);
 }
 
 /// Faces inside an emitter move with it.
 template <int D>
-void Water<D>::impose_emitters() {
+void Water<D>::impose_emitters(real dt) {
     for (const auto& emitter : emitters_) {
-        if (!emitter.works(state_.time)) continue;
+        if (!emitter.works(state_.time, state_.time + dt)) continue;
         for (int a = 0; a < D; ++a)
             for_each_cell(state_.u[a].extent(), [&](const Index<D>& I) {
                 if (!emitter.shape->contains(state_.u.face_centre(a, I))) return;
@@ -132,9 +137,9 @@ void Water<D>::redistribute_markers() {
     markers_.sort(frame_);
 }
 
-#define WEIR_INSTANTIATE(D)                       \
-    template void Water<D>::pour_and_drain(real); \
-    template void Water<D>::impose_emitters();    \
+#define WEIR_INSTANTIATE(D)                        \
+    template void Water<D>::pour_and_drain(real);  \
+    template void Water<D>::impose_emitters(real); \
     template void Water<D>::redistribute_markers();
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
