@@ -26,6 +26,16 @@ particles::single::PbfParams smoothing_params(const particles::single::SphParams
     return s;
 }
 
+/// Far beyond what any equation of state here means; where particles are thrown faster than sound, densities must not run away.
+constexpr real most_compression = 8;
+
+/// exp(x) to second order, always positive: growth(x) growth(-x) = 1, so that what expands and shrinks again is what it was.
+/// A step in which density would change by more than a factor e is not resolved: it is held back, and stays finite.
+real growth(real x) {
+    const real u = std::min<real>(std::abs(x), 1), grown = 1 + u + 0.5 * u * u;
+    return x >= 0 ? grown : 1 / grown;
+}
+
 /// Linear between the given times, constant outside.
 real interpolate(const std::vector<double>& t, const std::vector<double>& value, real at) {
     if (at <= t.front()) return value.front();
@@ -82,14 +92,13 @@ template <int D>
 StepReport SphSolver<D>::step(real dt) {
     emitters_.apply(fluid_, dt);
     find_neighbours();
-    if (options_.continuity)
-        advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
-    else
-        find_densities();  // eq. 3
-    find_pressures();
-    find_forces();                            // eq. 10, 12 and 14
-    effects_.apply(Stage::force, flow_, dt);  // gravity and other fields
-    integrate(dt);
+    if (!options_.continuity) find_densities();  // eq. 3
+    find_pressures();                            // eq. 12
+    find_forces();                               // eq. 10 and 14
+    effects_.apply(Stage::force, flow_, dt);     // gravity and other fields
+    kick(dt);
+    if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
+    drift(dt);
     effects_.apply(Stage::finish, flow_, dt);  // XSPH, vorticity
     const real speed = fluid_.max_speed();
     const real rest = rho_rest_;
@@ -140,7 +149,8 @@ void SphSolver<D>::find_densities() {
     });
 }
 
-/// rho += dt d rho / dt, in double precision: the old velocities' rate before the new pressures' forces keeps sound waves neutral.
+/// d rho / dt = rate, in double precision. Like a position, density moves with the new velocities from the old places: symplectic Euler,
+/// under which sound is neutral, and what bounces off a wall loses energy to the error and gains none.
 template <int D>
 void SphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");
@@ -158,8 +168,10 @@ void SphSolver<D>::advance_densities(real dt) {
                 static_cast<float>(2 * fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] * into);
         });
     pairs_.each([&](int k) {
-        if (!pairs_.is_image(k))
-            fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] += dt * static_cast<real>(density_[static_cast<std::size_t>(k)]);
+        if (pairs_.is_image(k)) return;
+        real& rho = fluid_.density[static_cast<std::size_t>(pairs_.owner(k))];
+        rho *= growth(dt * static_cast<real>(density_[static_cast<std::size_t>(k)]) / rho);
+        rho = std::clamp(rho, fluid_.rho0 / most_compression, fluid_.rho0 * most_compression);
     });
 }
 
@@ -197,13 +209,10 @@ void SphSolver<D>::find_forces() {
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.force(job, chunk); });
 }
 
-/// Symplectic: the new velocity moves the particle. What would enter a wall or a solid is put back and loses its speed into it.
+/// v += dt a.
 template <int D>
-void SphSolver<D>::integrate(real dt) {
+void SphSolver<D>::kick(real dt) {
     const auto timed = passes_.time("integrate");
-    fluid_.time += dt;
-    const auto& domain = fluid_.domain;
-    if (!domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
     max_acceleration_ = std::sqrt(particles::block_max(pairs_.size(), [&](int k) {
         real sum = 0;
         for (std::size_t a = 0; a < D; ++a) {
@@ -217,10 +226,23 @@ void SphSolver<D>::integrate(real dt) {
         const int i = pairs_.owner(k);
         Vec<D> u = fluid_.velocity(i);
         for (int a = 0; a < D; ++a) u[a] += dt * static_cast<real>(acceleration_[static_cast<std::size_t>(4 * k + a)]);
-        const Vec<D> free = fluid_.position(i) + dt * u, x = domain.kept(free);
-        for (int a = 0; a < D; ++a)
-            if (x[a] != free[a]) u[a] = (x[a] - fluid_.position(i)[a]) / dt;
         Fluid<D>::put(fluid_.v, i, u);
+    });
+}
+
+/// x += dt v. What would enter a wall or a solid is put back and loses its speed into it.
+template <int D>
+void SphSolver<D>::drift(real dt) {
+    const auto timed = passes_.time("integrate");
+    fluid_.time += dt;
+    const auto& domain = fluid_.domain;
+    if (!domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
+    parallel_for(0, fluid_.count(), [&](int i) {
+        const Vec<D> u = fluid_.velocity(i), free = fluid_.position(i) + dt * u, x = domain.kept(free);
+        Vec<D> kept = u;
+        for (int a = 0; a < D; ++a)
+            if (x[a] != free[a]) kept[a] = (x[a] - fluid_.position(i)[a]) / dt;
+        Fluid<D>::put(fluid_.v, i, kept);
         Fluid<D>::put(fluid_.x, i, x);
     });
 }

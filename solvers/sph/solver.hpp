@@ -45,7 +45,8 @@ private:
     template <class F>
     void load(F&& more);
     void find_forces();
-    void integrate(real dt);
+    void kick(real dt);
+    void drift(real dt);
     particles::SphPass pass();
 
     Options options_;

@@ -66,18 +66,21 @@ std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Sp
     reference.kernel = static_cast<int>(o.smoothing);
     const auto [x, v] = points_of(before);
     std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
-    if (o.continuity) {
-        const auto rate = reference.rates(x, v, before.density, before.rho0);
-        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] += dt * rate[i];
-    }
     for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
     const auto acceleration = reference.accelerations(x, v, rho, pressure);
     const auto tension = reference.tensions(x, rho);
+    std::vector<Point> moved = v;
     std::vector<Vec<D>> after;
     for (std::size_t i = 0; i < x.size(); ++i) {
         after.push_back(before.position(static_cast<int>(i)));
-        for (std::size_t a = 0; a < D; ++a)
-            after.back()[static_cast<int>(a)] += dt * (v[i][a] + dt * (acceleration[i][a] + tension[i][a] + o.gravity[a]));
+        for (std::size_t a = 0; a < D; ++a) {
+            moved[i][a] += dt * (acceleration[i][a] + tension[i][a] + o.gravity[a]);
+            after.back()[static_cast<int>(a)] += dt * moved[i][a];
+        }
+    }
+    if (o.continuity) {
+        const auto rate = reference.rates(x, moved, before.density, before.rho0);
+        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] += dt * rate[i];
     }
     return {rho, after};
 }
