@@ -1,5 +1,6 @@
 // weir run SCENE: simulates a scene and writes frames, probes and run.json.
 #include "app/commands.hpp"
+#include "app/explain.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "core/parallel.hpp"
@@ -24,7 +25,7 @@ struct RunArguments {
     std::vector<std::string> set;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
-    bool quiet = false;
+    bool quiet = false, explain = false;
 };
 
 output::FrameOptions frame_options(const scene::Scene& scene) {
@@ -132,6 +133,10 @@ int simulate(const RunArguments& arguments) {
     Simulation simulation(arguments.scene.empty() ? scene_of(*checkpoint, overrides)
                                                   : scene::read(arguments.scene, sim::schemas(), overrides));
     if (checkpoint) simulation.restore(*checkpoint);
+    if (arguments.explain) {
+        std::fputs(explain(simulation).c_str(), stdout);
+        return exit_success;
+    }
     output::check(frame_options(simulation.scene()), simulation.fields());
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     output::require_writable(folder);
@@ -173,6 +178,7 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--threads", arguments->threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
+    run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");
     run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files");
     run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }

@@ -48,6 +48,17 @@ TEST("a bad --set is refused with the key that was meant, and nothing is written
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
+TEST("--explain tells what was called for, what was built and what was left out, and writes nothing") {
+    TemporaryFolder folder;
+    const auto answer = weir_says({"run", smoke, "--explain", "--out", folder.path() / "out"});
+    EXPECT_EQ(answer.code, 0) << answer.text;
+    const auto at = [&](const char* what) { return answer.text.find(what); };
+    EXPECT_NE(at("effects     buoyancy"), std::string::npos) << answer.text;
+    EXPECT_LT(at("temperature [K]"), at("project")) << "fields, then passes";
+    EXPECT_LT(at("not called for"), at("cooling")) << answer.text;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
 TEST("an output folder that cannot be written is refused before the run") {
     TemporaryFolder folder;
     std::ofstream(folder.path() / "file") << "x";

@@ -1,0 +1,78 @@
+#include "app/explain.hpp"
+
+#include "core/parallel.hpp"
+#include "sim/registry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace weir::app {
+
+namespace {
+
+constexpr int warm_up_steps = 3, measured_steps = 20;
+
+std::string megabytes(std::size_t bytes) { return fmt::format("{:.3g} MB", static_cast<double>(bytes) / 1e6); }
+
+std::string called_for(const scene::Scene& scene, const scene::SolverSchema& schema) {
+    std::string text = fmt::format("called for\n  solver      {}, {}D", schema.name, scene.dim());
+    if (scene.has("grid.cells")) text += fmt::format(", {} cells", fmt::join(scene.root().numbers("grid.cells"), " x "));
+    std::vector<std::string> effects;
+    for (const auto& effect : schema.effects)
+        if (scene.effect(effect.name)) effects.push_back(effect.name);
+    text += fmt::format("\n  effects     {}\n", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
+    for (const char* list : {"liquid", "solids", "emitters", "sinks", "probes"})
+        if (scene.has(list) && !scene.root().tables(list).empty())
+            text += fmt::format("  {:10}  {}\n", list, scene.root().tables(list).size());
+    return text;
+}
+
+std::string fields_text(const Simulation& simulation) {
+    static constexpr const char* places[] = {"cells", "faces", "particles"};
+    std::string text = "built\n";
+    for (const FieldView& field : simulation.fields().fields) {
+        std::size_t values = 0;
+        for (const auto& component : field.data) values += component.size();
+        text += fmt::format("  {:22} {:9} {:>12} values  {:>10}\n", field.unit.empty() ? field.name : field.name + " [" + field.unit + "]",
+                            places[static_cast<std::size_t>(field.where)], values, megabytes(values * sizeof(real)));
+    }
+    return text +
+           fmt::format("  {:22} {:9} {:>12}         {:>10}\n", "all state and scratch", "", "", megabytes(simulation.solver().bytes()));
+}
+
+/// Milliseconds a step of each pass, and its share.
+std::string passes_text(Simulation& simulation) {
+    for (int i = 0; i < warm_up_steps && !simulation.finished(); ++i) simulation.step();
+    simulation.solver().passes().reset();
+    int steps = 0;
+    while (steps < measured_steps && !simulation.finished()) simulation.step(), ++steps;
+    auto passes = simulation.solver().passes().list();
+    double total = 0;
+    for (const Pass& pass : passes) total += pass.seconds;
+    std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.seconds > b.seconds; });
+    std::string text = fmt::format("a step, mean of {} after the first {}, {} thread(s)\n", steps, warm_up_steps, threads());
+    if (steps == 0) return "the scene ends before a step can be measured\n";
+    for (const Pass& pass : passes)
+        text += fmt::format("  {:22} {:9.3f} ms {:5.1f}%\n", pass.name, 1e3 * pass.seconds / steps, 100 * pass.seconds / total);
+    return text + fmt::format("  {:22} {:9.3f} ms\n", "all passes", 1e3 * total / steps);
+}
+
+std::string left_out(const scene::Scene& scene, const scene::SolverSchema& schema) {
+    std::string text = "not called for, so no field, no pass\n";
+    bool any = false;
+    for (const auto& effect : schema.effects)
+        if (!scene.effect(effect.name)) text += fmt::format("  {:22} {}\n", effect.name, effect.doc), any = true;
+    return any ? text : "";
+}
+
+}  // namespace
+
+std::string explain(Simulation& simulation) {
+    const scene::Scene& scene = simulation.scene();
+    const scene::SolverSchema& schema = sim::kind_named(scene.solver()).schema;
+    const std::string before = called_for(scene, schema) + fields_text(simulation);  // as the scene starts
+    return before + passes_text(simulation) + left_out(scene, schema);
+}
+
+}  // namespace weir::app
