@@ -69,12 +69,13 @@ real axis_error(const RunRecord& run, const Reference& ref, const char* name, st
 }
 
 /// Mean over the particles closer than `radius` to x.
-real mean_near(const FieldSet& fields, const char* name, const Vec<2>& at, real radius) {
+real mean_near(const FieldSet& fields, const char* name, const std::vector<real>& at, real radius) {
     const auto &x = particles(fields, "position").data, &value = particles(fields, name).data;
     real sum = 0, seen = 0;
     for (std::size_t i = 0; i < x[0].size(); ++i) {
-        if (std::hypot(x[0][i] - at[0], x[1][i] - at[1]) > radius) continue;
-        sum += value[0][i], seen += 1;
+        real square = 0;
+        for (std::size_t a = 0; a < x.size(); ++a) square += (x[a][i] - at[a]) * (x[a][i] - at[a]);
+        if (square <= radius * radius) sum += value[0][i], seen += 1;
     }
     return sum / seen;
 }
@@ -86,7 +87,7 @@ real patch_pressure(const FieldSet& fields, const scene::Scene& scene, real t, c
     const real L = hi[0] - lo[0], angle = scene.number("initial.velocity.omega") * t;
     const Vec<2> at = 0.5 * (lo + hi) + L * Vec<2>{std::cos(angle) * place[0] - std::sin(angle) * place[1],
                                                    std::sin(angle) * place[0] + std::cos(angle) * place[1]};
-    return mean_near(fields, "pressure", at, 0.05 * L);
+    return mean_near(fields, "pressure", {at[0], at[1]}, 0.05 * L);
 }
 
 /// Mean with the window 1 - cos: sound that rings around the value it starts from drops out with the cube of its number of periods.
@@ -187,7 +188,7 @@ std::vector<Metric> of_drops() {
          .observe =
              [](const FieldSet& fields, const scene::Scene& scene, real) {
                  const scene::Table& drop = scene.root().tables("liquid").at(0);
-                 return mean_near(fields, "pressure", drop.vec<2>("centre"), 0.5 * drop.number("radius"));
+                 return mean_near(fields, "pressure", drop.numbers("centre"), 0.5 * drop.number("radius"));
              }},
     };
 }
