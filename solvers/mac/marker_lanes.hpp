@@ -100,13 +100,47 @@ struct Hats {
     }
 };
 
+/// Whether the nodes −1 .. 1 about a cell's own are there along an axis, and 2 where they are faces.
+template <int D>
+bool is_inner(const Frame<D>& frame, const Index<D>& I, int axis) {
+    return I[axis] > 0 && I[axis] < frame.cells[axis] - 1;
+}
+
+/// Places in memory of the nodes −1 .. 2 along each axis about a cell's own; at the ends of an axis the last one repeats, or it wraps.
+template <int D>
+class NodeOffsets {
+public:
+    static constexpr int width = 4;
+    template <class T>
+    NodeOffsets(const Grid<T, D>& nodes, const Frame<D>& frame, const Index<D>& I) : straight_(is_inner(frame, I, 0)) {
+        for (int d = 0; d < D; ++d) {
+            const std::ptrdiff_t stride = nodes.stride(d);
+            const bool ring = frame.periodic(d) && !is_inner(frame, I, d);
+            const int end = ring ? frame.cells[d] : nodes.extent()[d];
+            for (int k = 0; k < width; ++k) {
+                const int i = I[d] + k - 1;
+                along_[static_cast<std::size_t>(d)][static_cast<std::size_t>(k)] =
+                    (ring ? (i + end) % end : std::clamp(i, 0, end - 1)) * stride;
+            }
+        }
+    }
+    std::ptrdiff_t operator()(int i, int j, int k) const { return along(0, i) + along(1, j) + (D == 2 ? 0 : along(2, k)); }
+    /// Whether the nodes along x follow one another.
+    bool straight() const { return straight_; }
+
+private:
+    std::ptrdiff_t along(std::size_t d, int k) const { return along_[d][static_cast<std::size_t>(k + 1)]; }
+    std::array<std::array<std::ptrdiff_t, width>, 3> along_;
+    bool straight_;
+};
+
 /// The faces around one cell, where they lie in memory; beside a side of the domain a copy, continued beyond it.
 template <int D>
 class CellFaces {
 public:
     CellFaces(const MacVelocity<D>& u, const Frame<D>& frame, const Index<D>& I) {
         bool inner = true;
-        for (int d = 0; d < D; ++d) inner = inner && I[d] > 0 && I[d] < frame.cells[d] - 1;
+        for (int d = 0; d < D; ++d) inner = inner && is_inner(frame, I, d);
         for (int a = 0; a < D; ++a) {
             const auto at = static_cast<std::size_t>(a);
             if (!inner) {
@@ -129,25 +163,17 @@ public:
     }
 
 private:
-    static constexpr int width = 4;  // nodes −1 .. 2
+    static constexpr int width = NodeOffsets<D>::width;
 
     void copy(const Grid<real, D>& u, int a, const Frame<D>& frame, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
-        std::array<std::array<std::ptrdiff_t, width>, 3> offset{};
+        const NodeOffsets<D> offset(u, frame, I);
         std::ptrdiff_t own = 0;
-        for (int d = 0, step = 1; d < D; ++d, step *= width) {
-            stride_[at][static_cast<std::size_t>(d)] = step;
-            own += step;
-            for (int k = 0; k < width; ++k) {
-                const int i = I[d] + k - 1, n = frame.cells[d];
-                const int inside = frame.periodic(d) ? (i + n) % n : std::clamp(i, 0, u.extent()[d] - 1);
-                offset[static_cast<std::size_t>(d)][static_cast<std::size_t>(k)] = inside * u.stride(d);
-            }
-        }
+        for (int d = 0, step = 1; d < D; ++d, step *= width) own += stride_[at][static_cast<std::size_t>(d)] = step;
         real* to = copy_[at].data();
-        for (std::size_t k = 0; k < (D == 2 ? 1 : width); ++k)
-            for (std::size_t j = 0; j < width; ++j)
-                for (std::size_t i = 0; i < width; ++i) *to++ = u.data()[offset[0][i] + offset[1][j] + offset[2][k]];
+        for (int k = D == 2 ? 0 : -1; k < (D == 2 ? 1 : width - 1); ++k)
+            for (int j = -1; j < width - 1; ++j)
+                for (int i = -1; i < width - 1; ++i) *to++ = u.data()[offset(i, j, k)];
         node_[at] = copy_[at].data() + own;
     }
 

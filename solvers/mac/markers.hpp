@@ -53,6 +53,9 @@ public:
     /// f(I, begin, end) for each cell that holds markers, after sort(); threaded by equal numbers of markers.
     template <class F>
     void for_each_occupied_cell(const Frame<D>& frame, F&& f) const;
+    /// The same for the cells [from, to) in memory, one after the other.
+    template <class F>
+    void for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const;
     int in_cell(std::size_t cell) const { return cell_start_[cell + 1] - cell_start_[cell]; }
 
     /// f(array) for every array of one value a marker.
@@ -90,13 +93,18 @@ void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
         return std::lower_bound(cell_start_.begin(), cell_start_.end() - 1, least) - cell_start_.begin();
     };
     parallel_for(0, blocks, [&](int block) {
-        const auto from = static_cast<std::size_t>(first_cell(block)), to = static_cast<std::size_t>(first_cell(block + 1));
-        Index<D> I = frame.index_of(from);
-        for (std::size_t cell = from; cell < to; ++cell) {
-            if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
-            for (int d = 0; d < D && ++I[d] == frame.cells[d] && d < D - 1; ++d) I[d] = 0;
-        }
+        for_occupied_cells(frame, static_cast<std::size_t>(first_cell(block)), static_cast<std::size_t>(first_cell(block + 1)), f);
     });
+}
+
+template <int D>
+template <class F>
+void Markers<D>::for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const {
+    Index<D> I = frame.index_of(from);
+    for (std::size_t cell = from; cell < to; ++cell) {
+        if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
+        for (int d = 0; d < D && ++I[d] == frame.cells[d] && d < D - 1; ++d) I[d] = 0;
+    }
 }
 
 template <int D>

@@ -17,23 +17,16 @@ Vec<D> lower_arm(const Frame<D>& frame, const Stencil<D>& stencil, int a) {
     return arm;
 }
 
+/// One marker with the gradient that APIC gives it.
 template <int D>
-void scatter(const Markers<D>& m, std::size_t p, const Frame<D>& frame, FaceSums<D>& sums) {
+void scatter_affine(const Markers<D>& m, std::size_t p, const Frame<D>& frame, FaceSums<D>& sums) {
     const Stencil<D> stencil(frame, m.position(p));
     for (int a = 0; a < D; ++a) {
         auto& sum = sums.sum[static_cast<std::size_t>(a)];
         FaceSum* to = sum.data();
-        const real v = m.v[static_cast<std::size_t>(a)][p];
-        if (!m.carries_gradient()) {
-            for_each_sample(stencil, a, sum.extent(), [&](std::ptrdiff_t at, real w) {
-                to[at].momentum += w * v;
-                to[at].weight += w;
-            });
-            continue;
-        }
         const Vec<D> arm = lower_arm(frame, stencil, a);
         Vec<D> gradient;
-        real value = v;
+        real value = m.v[static_cast<std::size_t>(a)][p];
         for (int d = 0; d < D; ++d) {
             gradient[d] = m.c[static_cast<std::size_t>(a * D + d)][p];
             value += gradient[d] * arm[d];
@@ -48,6 +41,84 @@ void scatter(const Markers<D>& m, std::size_t p, const Frame<D>& frame, FaceSums
             ++corner;
         });
     }
+}
+
+/// What the markers of one cell give to the faces along A around it, row by row along x; (Σ w v, Σ w) of a face lie side by side as in
+/// FaceSum, so one vector holds the faces of a row, and the rows stay in registers until the cell is done.
+template <int D, int A>
+class CellSums {
+public:
+    WEIR_LANES void add(const Hats<D, false>& hats, const Lanes& x, const real* v, int count) {
+        alignas(Lanes) std::array<std::array<real, marker_lanes>, rows> weight;  // of a row, for each marker
+        for (int r = 0; r < rows; ++r) {
+            Lanes w = along<1>(hats, r % rows_along_y);
+            if constexpr (D == 3) w *= along<2>(hats, r / rows_along_y);
+            store_lanes(weight[static_cast<std::size_t>(r)].data(), w, marker_lanes);
+        }
+        const Row momentum = pattern({1, 0, 1, 0, 1, 0, 1, 0}), one = pattern({0, 1, 0, 1, 0, 1, 0, 1});
+        for (int l = 0; l < count; ++l) {
+            const Row across = hat_of_faces(x[l]) * (v[l] * momentum + one);
+            for (int r = 0; r < rows; ++r) sum_[r] += across * weight[static_cast<std::size_t>(r)][static_cast<std::size_t>(l)];
+        }
+    }
+    WEIR_LANES void add_to(Grid<FaceSum, D>& sums, const Frame<D>& frame, const Index<D>& I) const {
+        const NodeOffsets<D> offset(sums, frame, I);
+        for (int r = 0; r < rows; ++r) {
+            alignas(Row) std::array<real, sizeof(Row) / sizeof(real)> row;
+            std::memcpy(row.data(), &sum_[r], sizeof(Row));
+            const int j = r % rows_along_y - (A == 1 ? 0 : 1), k = r / rows_along_y - (A == 2 ? 0 : 1);
+            FaceSum* first = sums.data() + offset(first_face, j, k);
+            for (int i = 0; i < faces_along_x; ++i) {
+                FaceSum& face = offset.straight() ? first[i] : sums.data()[offset(first_face + i, j, k)];
+                face.momentum += row[2 * static_cast<std::size_t>(i)];
+                face.weight += row[2 * static_cast<std::size_t>(i) + 1];
+            }
+        }
+    }
+
+private:
+    static constexpr int first_face = A == 0 ? 0 : -1, faces_along_x = A == 0 ? 2 : 3, rows_along_y = A == 1 ? 2 : 3;
+    static constexpr int rows = rows_along_y * (D == 2 ? 1 : A == 2 ? 2 : 3);
+    using Narrow = double __attribute__((vector_size(32)));
+    using Row = std::conditional_t<A == 0, Narrow, Lanes>;
+
+    template <int Axis>
+    WEIR_LANES static const Lanes& along(const Hats<D, false>& hats, int k) {
+        if constexpr (Axis == A)
+            return hats.face[Axis][static_cast<std::size_t>(k)];
+        else
+            return hats.centre[Axis][static_cast<std::size_t>(k)];
+    }
+    WEIR_LANES static Row hat_of_faces(real x) {
+        const Row zero{}, places = A == 0 ? pattern({-0.5, -0.5, 0.5, 0.5}) : pattern({-1, -1, 0, 0, 1, 1, 2, 2});
+        const Row apart = x - places, w = 1 - (apart < zero ? -apart : apart);
+        return w > zero ? w : zero;
+    }
+    WEIR_LANES static Row pattern(const std::array<real, marker_lanes>& values) {
+        Row row;
+        std::memcpy(&row, values.data(), sizeof row);
+        return row;
+    }
+    Row sum_[rows]{};
+};
+
+/// The markers of one cell to all faces around it.
+template <int D>
+void scatter_cell(const Markers<D>& m, const Index<D>& I, std::size_t begin, std::size_t end, const Frame<D>& frame, FaceSums<D>& sums) {
+    CellSums<D, 0> x;
+    CellSums<D, 1> y;
+    CellSums<D, 2> z;  // not used in 2D
+    for (std::size_t p = begin; p < end; p += marker_lanes) {
+        const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
+        const auto d = from_centre(frame, I, load_positions(m, p, count));
+        const Hats<D, false> hats(d);
+        x.add(hats, d[0], m.v[0].data() + p, count);
+        y.add(hats, d[0], m.v[1].data() + p, count);
+        if constexpr (D == 3) z.add(hats, d[0], m.v[2].data() + p, count);
+    }
+    x.add_to(sums.sum[0], frame, I);
+    y.add_to(sums.sum[1], frame, I);
+    if constexpr (D == 3) z.add_to(sums.sum[2], frame, I);
 }
 
 /// A periodic axis has its first face twice: both copies get the sum.
@@ -109,8 +180,11 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
     const std::size_t plane_cells = product(frame.cells) / static_cast<std::size_t>(planes);
     const auto scatter_slab = [&](int slab) {
         const std::size_t from = static_cast<std::size_t>(slab * slab_planes) * plane_cells;
-        const std::size_t to = static_cast<std::size_t>(std::min((slab + 1) * slab_planes, planes)) * plane_cells - 1;
-        for (std::size_t p = markers.begin(from); p < markers.end(to); ++p) scatter(markers, p, frame, sums);
+        const std::size_t to = static_cast<std::size_t>(std::min((slab + 1) * slab_planes, planes)) * plane_cells;
+        markers.for_occupied_cells(frame, from, to, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+            if (!markers.carries_gradient()) return scatter_cell(markers, I, begin, end, frame, sums);
+            for (std::size_t p = begin; p < end; ++p) scatter_affine(markers, p, frame, sums);
+        });
     };
     const int paired = slabs - slabs % 2;  // an odd last slab touches the first one around a periodic axis: it goes alone
     for (int colour = 0; colour < 2; ++colour) parallel_for(0, paired / 2, [&](int i) { scatter_slab(2 * i + colour); });

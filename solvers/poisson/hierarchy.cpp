@@ -35,6 +35,7 @@ void coarsen_row(const Level<D>& fine, Level<D>& coarse, int Q, int J, const Row
     const int j_first = D == 2 ? 0 : in_plane.first, j_last = D == 2 ? 1 : in_plane.last;
     for (int q = planes.first; q < planes.last; ++q)
         for (int j = j_first; j < j_last; ++j) {
+            if (fine.is_dry(fine.at.row(q, j))) continue;
             const FaceRow<D> row = rows(q, j, buffers);
             const int step = fine.coarsened[0] ? 2 : 1, pairs = fine.coarsened[0] ? n / 2 : 0;
             for (int I = 0; I < N; ++I) face[0][I] += half[0] * row.face[0][step * I];

@@ -100,6 +100,8 @@ struct Level {
     std::uint8_t* fluid = nullptr;
 
     std::size_t cells() const { return product(at.n); }
+    /// Whether no cell of the row is fluid; known once the spans are.
+    bool is_dry(int row) const { return span_start[static_cast<std::size_t>(row)] == span_start[static_cast<std::size_t>(row) + 1]; }
 };
 
 }  // namespace weir::poisson

@@ -42,12 +42,14 @@ void Natural<D>::copy_cells(const Operator<D>& A) {
     const std::uint8_t outside = weighted_ ? air : solid;
     cells_.resize(static_cast<std::size_t>(rows + 1) * static_cast<std::size_t>(nx + 2));
     std::fill(cells_.begin(), cells_.begin() + nx + 2, outside);
+    wet_.resize(static_cast<std::size_t>(rows));
     const Cell* from = A.cells.data();
     parallel_for(0, rows, [&](int r) {
         auto* to = cells_.data() + 1 + static_cast<std::ptrdiff_t>(r + 1) * (nx + 2);
         std::memcpy(to, from + static_cast<std::ptrdiff_t>(r) * nx, static_cast<std::size_t>(nx));
         to[-1] = periodic_[0] ? to[nx - 1] : outside;
         to[nx] = periodic_[0] ? to[0] : outside;
+        wet_[static_cast<std::size_t>(r)] = std::memchr(to, fluid, static_cast<std::size_t>(nx)) != nullptr;
     });
 }
 
@@ -92,6 +94,7 @@ void Natural<D>::clean_faces(const Operator<D>& A) {
                 const int q_low = q - (a == D - 1), j_low = j - (a > 0 && a != D - 1);
                 const int up_row = !last ? row(q, j) : neighbour(q_low, j_low, a, 1);
                 const int low_row = t > 0 ? row(q_low, j_low) : neighbour(q, j, a, 0);
+                if (!is_wet(up_row) && !is_wet(a == 0 ? up_row : low_row)) continue;  // no one looks at these faces
                 const std::uint8_t *up = cells(up_row), *low = a == 0 ? up - 1 : cells(low_row);
                 const bool wraps = last && ring;
                 const real* w =
@@ -134,7 +137,8 @@ void Natural<D>::find_runs() {
 /// Union-find over runs of neighbouring rows that share an open face; components that no face joins to p = 0 are closed.
 template <int D>
 void Natural<D>::find_closed() {
-    std::vector<int> parent(runs_.size());
+    std::vector<int>& parent = root_;
+    parent.resize(runs_.size());
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int i) {
         while (parent[static_cast<std::size_t>(i)] != i)
@@ -168,27 +172,27 @@ void Natural<D>::find_closed() {
             }
         }
     for (std::size_t k = 0; k < parent.size(); ++k) parent[k] = root(static_cast<int>(k));
-    std::vector<char> open(runs_.size(), 0);
-    mark_open(open, parent);
-    std::vector<int> number(runs_.size(), -1);
+    mark_open();
+    number_.assign(runs_.size(), -1);
     closed_ = 0;
     for (std::size_t k = 0; k < runs_.size(); ++k)
-        if (parent[k] == static_cast<int>(k) && !open[k]) number[k] = closed_++;
+        if (parent[k] == static_cast<int>(k) && !open_[k]) number_[k] = closed_++;
     size_.assign(static_cast<std::size_t>(closed_), 0);
     mean_.assign(static_cast<std::size_t>(closed_), 0);
     for (std::size_t k = 0; k < runs_.size(); ++k) {
-        runs_[k].component = number[static_cast<std::size_t>(parent[k])];
+        runs_[k].component = number_[static_cast<std::size_t>(parent[k])];
         if (runs_[k].component >= 0) size_[static_cast<std::size_t>(runs_[k].component)] += runs_[k].end - runs_[k].begin;
     }
 }
 
 /// A run is open if any of its cells has an open face to a cell that is not fluid.
 template <int D>
-void Natural<D>::mark_open(std::vector<char>& open, const std::vector<int>& root) const {
+void Natural<D>::mark_open() {
+    open_.assign(runs_.size(), 0);
     for (int q = 0; q < planes(); ++q)
         for (int j = 0; j < rows_in_plane(); ++j)
             for (const Run* run = runs_begin(row(q, j)); run != runs_end(row(q, j)); ++run) {
-                auto& is_open = open[static_cast<std::size_t>(root[static_cast<std::size_t>(run - runs_.data())])];
+                auto& is_open = open_[static_cast<std::size_t>(root_[static_cast<std::size_t>(run - runs_.data())])];
                 if (is_open) continue;
                 const auto* c = cells(row(q, j));
                 for (int side = 0; side < 2; ++side) {
@@ -223,6 +227,7 @@ template <int D>
 std::size_t Natural<D>::bytes() const {
     std::size_t sum = cells_.capacity() + count_.capacity() + run_start_.capacity() * sizeof(int) + runs_.capacity() * sizeof(Run);
     for (const auto& f : faces_) sum += f.capacity() * sizeof(real);
+    sum += wet_.capacity() + (root_.capacity() + number_.capacity()) * sizeof(int) + open_.capacity();
     return sum + (size_.capacity() + mean_.capacity() + sum_.capacity()) * sizeof(real);
 }
 

@@ -67,13 +67,15 @@ private:
     void clean_faces(const Operator<D>& A);
     void find_runs();
     void find_closed();
-    void mark_open(std::vector<char>& open, const std::vector<int>& root) const;
+    void mark_open();
+    bool is_wet(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)]; }
 
     Index<D> n_{};
     bool weighted_ = false;
     Vec<D> axis_weight_{};
     std::array<bool, D> periodic_{};
     std::vector<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
+    std::vector<std::uint8_t> wet_;            // rows that hold fluid
     std::array<std::vector<real>, D> faces_;
     std::vector<int> run_start_;
     std::vector<Run> runs_;
@@ -81,6 +83,8 @@ private:
     std::int64_t fluid_cells_ = 0;
     std::vector<real> size_;                // cells of each closed component
     mutable std::vector<real> mean_, sum_;  // of components, of runs
+    std::vector<int> root_, number_;        // scratch of find_closed: of each run its root, of each root its component
+    std::vector<char> open_;
 };
 
 }  // namespace weir::poisson

@@ -130,6 +130,43 @@ void pack_row(Level<D>& level, int q, int j, const RowView<D, T>& v, Buffers& bu
     level.plain[static_cast<std::size_t>(row)] = is_plain(level, v);
 }
 
+template <int D, class F>
+void for_each_row(const Layout<D>& at, bool threaded, F&& f) {
+    const auto plane = [&](int q) {
+        thread_local Buffers buffers;
+        buffers.resize(at.n[0]);
+        for (int j = 0; j < at.rows_in_plane(); ++j) f(q, j, buffers);
+    };
+    if (threaded)
+        parallel_for(0, at.planes(), plane);
+    else
+        for (int q = 0; q < at.planes(); ++q) plane(q);
+}
+
+/// Whether neither a row nor any row beside it holds fluid: then no sweep reads its weights.
+template <int D>
+bool is_far_from_fluid(const Level<D>& level, int q, int j) {
+    bool far = level.is_dry(level.at.row(q, j));
+    for (int a = 1; a < D; ++a)
+        for (int side = 0; side < 2 && far; ++side) {
+            const int beside = level.at.neighbour(q, j, a, side);
+            far = beside < 0 || level.is_dry(beside);
+        }
+    return far;
+}
+
+/// Weights and diagonals of all rows that matter; view(q, j, buffers) looks at a natural row.
+template <int D, class View>
+void pack_rows(Level<D>& level, bool threaded, const View& view_of) {
+    level.plain.resize(static_cast<std::size_t>(level.at.rows()));
+    for_each_row(level.at, threaded, [&](int q, int j, Buffers& buffers) {
+        if (is_far_from_fluid(level, q, j))
+            level.plain[static_cast<std::size_t>(level.at.row(q, j))] = 1;
+        else
+            pack_row(level, q, j, view_of(q, j, buffers), buffers);
+    });
+}
+
 /// Open faces of each cell of a row, packed: all faces that do not lead to a solid.
 template <int D>
 void count_row(Level<D>& level, const Natural<D>& problem, int q, int j, Buffers& buffers) {
@@ -180,19 +217,6 @@ void find_spans(Level<D>& level, const Flags& flags) {
     for (float* u : level.u) clear_gaps(level, u);
 }
 
-template <int D, class F>
-void for_each_row(const Layout<D>& at, bool threaded, F&& f) {
-    const auto plane = [&](int q) {
-        thread_local Buffers buffers;
-        buffers.resize(at.n[0]);
-        for (int j = 0; j < at.rows_in_plane(); ++j) f(q, j, buffers);
-    };
-    if (threaded)
-        parallel_for(0, at.planes(), plane);
-    else
-        for (int q = 0; q < at.planes(); ++q) plane(q);
-}
-
 }  // namespace
 
 template <int D>
@@ -219,15 +243,13 @@ void pack_finest(Level<D>& level, const Natural<D>& problem) {
         for_each_row(level.at, true, [&](int q, int j, Buffers& buffers) { count_row(level, problem, q, j, buffers); });
         return;
     }
-    level.plain.resize(static_cast<std::size_t>(level.at.rows()));
-    for_each_row(level.at, true, [&](int q, int j, Buffers& buffers) { pack_row(level, q, j, view(problem, q, j), buffers); });
+    pack_rows(level, true, [&](int q, int j, Buffers&) { return view(problem, q, j); });
 }
 
 template <int D>
 void pack_coarse(Level<D>& level, bool threaded) {
     find_spans(level, [&](int row) { return level.fluid + static_cast<std::ptrdiff_t>(row) * level.at.n[0]; });
-    level.plain.resize(static_cast<std::size_t>(level.at.rows()));
-    for_each_row(level.at, threaded, [&](int q, int j, Buffers& buffers) { pack_row(level, q, j, view(level, q, j, buffers), buffers); });
+    pack_rows(level, threaded, [&](int q, int j, Buffers& buffers) { return view(level, q, j, buffers); });
 }
 
 template void clear_gaps<2>(const Level<2>&, float*);

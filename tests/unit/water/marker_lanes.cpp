@@ -1,4 +1,6 @@
-// The markers of a cell are moved and given their velocity together; here each is held against interpolation at its own place.
+// The markers of a cell are moved, and exchange momentum with the faces, together; here each is held against interpolation at its own
+// place.
+#include "mac/extrapolate.hpp"
 #include "mac/marker_motion.hpp"
 #include "mac/water_transfer.hpp"
 #include "support.hpp"
@@ -83,6 +85,36 @@ TEST_IN_2D_AND_3D("markers take their velocity from the faces as interpolation a
                 EXPECT_NEAR(pic.v[at][p], now[a], 1e-14);
                 EXPECT_NEAR(flip.v[at][p], 0.9 * (swarm.markers.v[at][p] + now[a] - then[a]) + 0.1 * now[a], 1e-14);
             }
+        }
+    }
+}
+
+TEST_IN_2D_AND_3D("faces get the mean of the markers around them that interpolation weights marker by marker say") {
+    for (const std::string periodic : {"[]", "[\"x\", \"y\"]"}) {
+        Swarm<D> swarm(periodic, 1.0);
+        const Frame<D>& frame = swarm.frame;
+        auto u = swarm.u;
+        FaceSums<D> sums(frame.cells);
+        FaceMarks<D> known;
+        for (int a = 0; a < D; ++a) known[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(u[a].extent());
+        markers_to_faces(swarm.markers, frame, sums, u, known);
+        for (int a = 0; a < D; ++a) {
+            const auto at = static_cast<std::size_t>(a);
+            Grid<real, D> momentum(u[a].extent()), weight(u[a].extent());
+            for (std::size_t p = 0; p < swarm.markers.count(); ++p)
+                for_each_sample(Stencil<D>(frame, swarm.markers.position(p)), a, u[a].extent(), [&](std::ptrdiff_t face, real w) {
+                    momentum.data()[face] += w * swarm.markers.v[at][p];
+                    weight.data()[face] += w;
+                });
+            for_each_cell(u[a].extent(), [&](Index<D> I) {
+                Index<D> twin = I;  // a periodic axis has its first face twice, and both have the sum
+                if (frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) twin[a] = frame.cells[a] - I[a];
+                const real w = weight(I) + (twin == I ? 0 : weight(twin)), m = momentum(I) + (twin == I ? 0 : momentum(twin));
+                EXPECT_EQ(known[at](I), w > 1e-12);
+                if (w > 1e-6) {
+                    EXPECT_NEAR(u[a](I), m / w, 1e-14 * std::max(1.0, 1 / w));
+                }
+            });
         }
     }
 }
