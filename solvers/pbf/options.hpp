@@ -19,7 +19,7 @@ struct Options {
     real cfm = 1e-4;         // epsilon of eq. 11, in units of 1 / support^2
     real relaxation = 0.7;   // Jacobi over all pairs overshoots: its iteration matrix has eigenvalues up to 2.8 for a support of 2 spacings
     real warm_start = 0.55;  // part of the last step's multipliers that the iterations start from; at 0.8 a liquid at rest boils (ADR 10)
-    int settle = 20;         // iterations that take the initial density error out of the positions
+    int settle = 300;        // at most so many iterations that take the initial density error out of the positions
     real pressure_k = 0;     // artificial pressure (eq. 13): k in units of support^2, 0: none
     real pressure_dq = 0.2;  // delta q over the support
     std::string isa = "auto";

@@ -30,12 +30,12 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene)
       max_dt_(scene.root().number_or("time.max_dt", infinity)) {
     particles::set_initial_velocity(scene, fluid_);
     particles::add_effects(scene, effects_);
+    settle();
 }
 
 /// Numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport PbfSolver<D>::step(real dt) {
-    if (fluid_.steps == 0) settle();
     emitters_.apply(fluid_, dt);
     effects_.apply(Stage::force, flow_, dt);
     predict(dt);        //  1-4
@@ -67,9 +67,13 @@ StepReport PbfSolver<D>::step(real dt) {
 /// it would become speed, error / dt, the more the better that step is solved. Stabilisation of Macklin et al. 2014, section 4.4.
 template <int D>
 void PbfSolver<D>::settle() {
-    constexpr int between_lists = 5;  // by then a particle may have got new neighbours
+    constexpr int between_lists = 5;    // by then a particle may have got new neighbours
+    constexpr real good_enough = 1e-3;  // of the densest particle: a tenth of what a step leaves
     for (int i = 0; i < options_.settle; ++i) {
-        if (i % between_lists == 0) predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
+        if (i % between_lists == 0) {
+            if (i > 0 && compression().worst <= good_enough) break;
+            predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
+        }
         std::fill(multiplier_.begin(), multiplier_.end(), 0.0f);
         find_lambdas();
         correct();

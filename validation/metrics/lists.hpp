@@ -13,5 +13,6 @@ std::vector<Metric> shape_metrics();
 std::vector<Metric> exactness_metrics();
 std::vector<Metric> obstacle_metrics();
 std::vector<Metric> particle_metrics();
+std::vector<Metric> phase_metrics();
 
 }  // namespace weir::validation
