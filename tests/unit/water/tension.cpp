@@ -1,0 +1,121 @@
+// Surface tension and viscosity at the free surface, against Laplace, Rayleigh and the film that runs down a plate.
+#include "support.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using namespace weir;
+using namespace weir::test;
+
+namespace {
+
+constexpr real radius = 0.25;
+
+/// A drop of radius 1/4 in the middle of a box of side 1, ρ = σ = 1, without gravity, 8 cells a radius. `strain` [1/s] sets
+/// it swinging: near its stagnation point the vortex of Taylor and Green is the strain (x, −y).
+template <int D>
+std::string drop(const std::string& transfer, real strain) {
+    return fmt::format(R"(solver = "mac_water"
+dim = {}
+grid = {{ cells = {}, size = {}, origin = {} }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1.0 }}
+liquid = [ {{ shape = "sphere", centre = {}, radius = {} }} ]
+initial = {{ velocity = {{ name = "taylor_green", speed = {}, wavenumber = 0.1 }} }}
+effects = {{ surface_tension = {{ sigma = 1.0 }} }}
+scheme = {{ transfer = "{}" }}
+)",
+                       D, list({"32", "32", "32"}, D), list({"1.0", "1.0", "1.0"}, D), list({"-0.5", "-0.5", "-0.5"}, D),
+                       list({"0.0", "0.0", "0.0"}, D), radius, strain / 0.1, transfer);
+}
+
+/// Width of the liquid along an axis through the middle [m].
+template <int D>
+real width(const mac::Water<D>& water, int axis) {
+    const auto& phi = water.surface().phi;
+    const real h = water.state().u.h[axis];
+    real sum = 0;
+    Index<D> lo = phi.extent();
+    for (int d = 0; d < D; ++d) lo[d] = phi.extent()[d] / 2 - 1;
+    Index<D> hi = lo + Index<D>::constant(2);
+    lo[axis] = 0, hi[axis] = phi.extent()[axis] - 1;
+    int lines = 1;
+    for (int d = 1; d < D; ++d) lines *= 2;
+    for (Index<D> I = lo; I[D - 1] < hi[D - 1];) {  // the lines beside the middle, one after the other
+        const real here = phi(I), next = phi(I + e<D>(axis));
+        if ((here < 0) != (next < 0)) sum += (here < 0 ? 1 : -1) * h * (I[axis] + here / (here - next));
+        for (int d = 0; d < D; ++d) {
+            if (++I[d] < hi[d] || d == D - 1) break;
+            I[d] = lo[d];
+        }
+    }
+    return sum / lines;
+}
+
+}  // namespace
+
+TEST_IN_2D_AND_3D("a drop at rest has the pressure of Laplace, and stays at rest") {
+    // κ is made of second differences of a distance that is of first order beyond the cells beside the surface: its error does not fall
+    // with h. 5% is asked for (1.0% in 2D, 1.8% in 3D), and of the surface's energy at most a thousandth may turn into spurious currents.
+    mac::Water<D> water(water_scene(drop<D>("flip", 0)));
+    const real surface_energy = D == 2 ? 2 * pi * radius : 4 * pi * radius * radius;
+    for (int step = 0; step < (D == 2 ? 100 : 25); ++step) water.step(water.advised_dt());
+    real sum = 0;
+    int count = 0;
+    const auto& phi = water.surface().phi;
+    for (std::size_t i = 0; i < phi.size(); ++i)
+        if (phi[i] < -2 * water.state().u.h[0]) sum += water.state().p[i], ++count;
+    ASSERT_GT(count, 0);
+    EXPECT_NEAR(sum / count / ((D - 1) / radius), 1, 0.05);
+    EXPECT_LT(integral(water, "kinetic_energy"), 1e-3 * surface_energy);
+}
+
+TEST_IN_2D_AND_3D("a drop swings with the period of Rayleigh") {
+    // ω² = n (n² − 1) σ/(ρ R³) in 2D, n (n − 1)(n + 2) σ/(ρ R³) in 3D, n = 2. 25 cells a wavelength: second order in k h allows 0.3%, the
+    // amplitude ε = 0.05 as much; κ's error of 5% at most (see above) half of that in ω.
+    const real omega = std::sqrt((D == 2 ? 6 : 8) / (radius * radius * radius)), period = 2 * pi / omega;
+    for (const std::string transfer : {"flip", "apic"}) {
+        if (D == 3 && transfer == "apic") continue;  // time
+        mac::Water<D> water(water_scene(drop<D>(transfer, 0.05 * omega)));
+        real largest = 0, before = 0, t_before = 0, full = 0;
+        while (full == 0 && water.time() < 1.5 * period) {
+            water.step(water.advised_dt());
+            const real now = width(water, 0) - width(water, 1);
+            largest = std::max(largest, now);
+            if (water.time() > 0.75 * period && before < 0 && now >= 0)
+                full = t_before + (water.time() - t_before) * before / (before - now);
+            before = now, t_before = water.time();
+        }
+        EXPECT_NEAR(full / period, 1, 0.035) << transfer;
+        EXPECT_GT(largest, 0.5 * 4 * 0.05 * radius) << transfer << ": r = R (1 + ε cos 2θ sin ω t), damped by less than half";
+    }
+}
+
+TEST("a film that runs down a plate reaches the parabola of Nusselt") {
+    // u = g (H y − y²/2)/ν. The wall's mirrored face is wrong by h² u″/8 = g h²/(8 ν). Gravity acts before the Crank–Nicolson step, which
+    // sees g Δt/2 of it slip at the wall. FLIP's part of PIC, 1 − β, spreads momentum by a hat of variance h²/6 a step at least: a
+    // viscosity of (1 − β) h²/(6 Δt) beside ν, and the film is slower by their ratio.
+    const real h = 1.0 / 16, height = 0.5, nu = 0.1, dt = 0.02, top = height * height / (2 * nu);
+    for (const std::string transfer : {"apic", "flip"}) {
+        const std::string text = R"(solver = "mac_water"
+dim = 2
+grid = { cells = [4, 16], size = [0.25, 1.0], periodic = ["x"] }
+time = { end = 8.0, dt = 0.02 }
+fluid = { density = 1000.0, viscosity = 0.1 }
+sides = { y_min = { kind = "wall", slip = "no" } }
+liquid = [ { shape = "box", min = [-1.0, 0.0], max = [2.0, 0.5] } ]
+effects = { gravity = { g = [1.0, -9.81] }, viscosity = {} }
+)";
+        mac::Water<2> water(water_scene(text + "scheme = { transfer = \"" + transfer + "\" }\n"));
+        while (water.time() < 6) water.step(dt);  // e^(−ν (π/2H)² t) = 0.003 of it is missing
+        real worst = 0;
+        for (int j = 0; j < 8; ++j) {
+            const real y = (j + 0.5) * h;
+            worst = std::max(worst, std::abs(water.state().u[0](Index<2>{1, j}) - (height * y - y * y / 2) / nu));
+        }
+        const real wall = h * h / (8 * nu), blend = transfer == "flip" ? 0.03 * h * h / (6 * dt) / nu : 0;
+        EXPECT_LT(worst, wall + 0.5 * dt + (blend + 0.003) * top) << transfer;
+        EXPECT_NEAR(integral(water, "volume"), 0.125, 1e-6) << transfer;
+    }
+}
