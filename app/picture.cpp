@@ -65,7 +65,8 @@ int draw(const PictureArguments& arguments) {
     const scene::Scene scene = scene_of_run(folder);
     std::vector<picture::Canvas> pictures;
     for (const std::size_t number : frames_of(output::frame_times(folder), arguments)) {
-        const auto frame = output::read_frame(folder, number, scene.dim());
+        auto frame = output::read_frame(folder, number, scene.dim());
+        picture::particles_as_markers(frame, scene);
         const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
         if (field == "water" && !frame.particles.count("markers")) throw BadInput("this run has no markers to draw as water");
         const picture::View view{scene, frame, field, arguments.size, arguments.range};

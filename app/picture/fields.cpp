@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "sim/sampling.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace weir::picture {
@@ -34,6 +35,20 @@ std::vector<real> vorticity(const GridView& grid, const output::Components& u) {
 }
 
 }  // namespace
+
+void particles_as_markers(output::FrameData& frame, const scene::Scene& scene) {
+    const auto set = frame.particles.find("particles");
+    if (frame.grid.dim != 0 || set == frame.particles.end()) return;
+    frame.particles["markers"] = std::move(set->second);
+    frame.grid.dim = scene.dim();
+    const auto cells = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size"),
+               origin = scene.root().numbers("grid.origin");
+    for (std::size_t a = 0; a < static_cast<std::size_t>(scene.dim()); ++a) {
+        frame.grid.cells[a] = std::max(1, static_cast<int>(std::lround(cells[a] / 2)));  // a cell of the scene is one particle
+        frame.grid.origin[a] = origin[a];
+        frame.grid.spacing[a] = size[a] / frame.grid.cells[a];
+    }
+}
 
 std::string best_field(const output::FrameData& frame) {
     if (frame.particles.count("markers")) return "water";

@@ -16,6 +16,8 @@ struct View {
     real range = 0;     // of colours: from 0 (or -range) to range; 0: the frame's own
 };
 
+/// Lets a run without a grid be drawn: its particles become markers, on a grid of the scene's domain with 2^D of them to a cell.
+void particles_as_markers(output::FrameData& frame, const scene::Scene& scene);
 /// The field worth showing: water where there are markers, else smoke, temperature, speed.
 std::string best_field(const output::FrameData& frame);
 /// A cell field by name; "speed" and (in 2D) "vorticity" are made from the velocity. Throws BadInput naming what there is.
