@@ -106,6 +106,7 @@ struct PassTable {
         void (*density)(const SphPass&, const ListChunk&);
         void (*rate)(const SphPass&, const ListChunk&);
         void (*force)(const SphPass&, const ListChunk&);
+        void (*force_summed)(const SphPass&, const ListChunk&);
         void (*normal)(const SphPass&, const ListChunk&);
         void (*tension)(const SphPass&, const ListChunk&);
     } sph[3];

@@ -218,8 +218,9 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
             const Point d = difference(x[i], x[j]), u = difference(v[i], v[j]);
             const double r2 = square(d), approach = d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
             if (j == i || r2 >= p.h2) continue;
-            const double push =
-                functions[kernel].sph_push(r2, approach, (pressure[i] + pressure[j]) / (rho[i] * rho[j]), 0.5 / rho[i] + 0.5 / rho[j], &p);
+            const double pressures = summed ? pressure[i] / (rho[i] * rho[i]) + pressure[j] / (rho[j] * rho[j])
+                                            : (pressure[i] + pressure[j]) / (rho[i] * rho[j]);
+            const double push = functions[kernel].sph_push(r2, approach, pressures, 0.5 / rho[i] + 0.5 / rho[j], &p);
             const double drag = functions[kernel].sph_drag(r2, 1 / (rho[i] * rho[j]), &p);
             for (std::size_t b = 0; b < 3; ++b) a[i][b] += push * d[b] - drag * u[b];
         }

@@ -34,6 +34,7 @@ struct ReferenceSph {
     plain::SphParams p{};
     plain::WallParams walls{};
     int kernel = 0;
+    bool summed = true;  // density by summation: pairs push by the gradient of its energy
 
     std::vector<double> densities(const std::vector<Point>& x) const;
     /// d rho / dt by continuity and diffusion.

@@ -15,7 +15,9 @@ Key scheme() {
             .doc = "Numerical choices of SPH.",
             .keys = {{.name = "kernel",
                       .type = Type::choice,
-                      .doc = "muller: poly6 for density, spiky for pressure, its own for viscosity; cubic and wendland use one for all.",
+                      .doc = "muller: poly6 for density, spiky for pressure, its own for viscosity; having no common energy, these need "
+                             "viscosity to rest. "
+                             "cubic and wendland use one for all.",
                       .fallback = std::string("muller"),
                       .choices = {"muller", "cubic", "wendland"}},
                      {.name = "support",

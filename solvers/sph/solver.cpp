@@ -206,7 +206,8 @@ void SphSolver<D>::find_forces() {
     const auto timed = passes_.time("forces");
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
-    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.force(job, chunk); });
+    const auto force = options_.continuity ? table.force : table.force_summed;
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { force(job, chunk); });
 }
 
 /// v += dt a.

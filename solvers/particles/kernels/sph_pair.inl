@@ -19,7 +19,8 @@ WEIR_FN REAL sph_diffusion(REAL r2, REAL excess, REAL volume, WEIR_PARAM SphPara
 /* Acceleration along x_i - x_j: -m ((p_i + p_j) / (rho_i rho_j) + Pi) s, grad W = s (x_i - x_j)              eq. 10 over rho_i
    without the 1/2 of eq. 10, under which a linear pressure would have half its gradient (Colagrossi & Landrini 2003, eq. 12)
    Pi = -alpha c h mu / rho, mu = v.x / (r^2 + eta^2) for approaching pairs                     artificial viscosity, Monaghan 1992
-   pressures: (p_i + p_j) / (rho_i rho_j); approach: (v_i - v_j).(x_i - x_j); volume: the mean of 1 / rho */
+   pressures: (p_i + p_j) / (rho_i rho_j), or of a density that is summed p_i / rho_i^2 + p_j / rho_j^2; approach: (v_i - v_j).(x_i - x_j);
+   volume: the mean of 1 / rho */
 WEIR_FN REAL sph_push(REAL r2, REAL approach, REAL pressures, REAL volume, WEIR_PARAM SphParams* p) {
     REAL closing = MAX0(-approach) / (r2 + p->soften);
     return -(pressures + p->artificial * closing * volume) * p->gradient * WEIR_SLOPE(r2, p);

@@ -40,6 +40,9 @@ static void sph_rates(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
+/* All forces. Summed: of a density that is summed, between particles the gradient of the energy sum_i m e(rho_i), e' = p / rho^2 (Monaghan
+   1992, eq. 3.3); else the form that goes with continuity. */
+template <bool Summed>
 static void sph_forces(const SphPass& a, const ListChunk& chunk) {
     const single::SphParams* p = a.p;
     const vf half = broadcast(0.5f);
@@ -63,7 +66,8 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
             const vf ux = u.x - v.x, uy = u.y - v.y, uz = u.z - v.z;
             const vf volumes = i.w * j.w;
-            const vf push = sph_push(r2, ux * dx + uy * dy + uz * dz, (u.w + v.w) * volumes, half * (i.w + j.w), p);
+            const vf pressures = Summed ? u.w * i.w * i.w + v.w * j.w * j.w : (u.w + v.w) * volumes;
+            const vf push = sph_push(r2, ux * dx + uy * dy + uz * dz, pressures, half * (i.w + j.w), p);
             const vf drag = sph_drag(r2, volumes, p);
             ax += push * dx - drag * ux;
             ay += push * dy - drag * uy;
@@ -117,4 +121,4 @@ static void sph_tensions(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
-static constexpr PassTable::Sph sph_table{sph_densities, sph_rates, sph_forces, sph_normals, sph_tensions};
+static constexpr PassTable::Sph sph_table{sph_densities, sph_rates, sph_forces<false>, sph_forces<true>, sph_normals, sph_tensions};

@@ -64,6 +64,7 @@ std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Sp
     reference.walls =
         before.domain.template walls<particles::plain::WallParams>(sph::density_kernel<D>(o, d), sph::gradient_kernel<D>(o, d));
     reference.kernel = static_cast<int>(o.smoothing);
+    reference.summed = !o.continuity;
     const auto [x, v] = points_of(before);
     std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
     for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
