@@ -94,7 +94,7 @@ private:
     void redistribute_markers();
     bool fill_cell(const Index<D>& I, int wanted);
     void pour(const Emitter<D>& emitter, real dt);
-    bool holds(const Emitter<D>& emitter, const Vec<D>& x) const;
+    bool is_free(const Vec<D>& x) const;
     void impose_emitters(real dt);
     void curvature();
     void correct_surface();

@@ -39,6 +39,10 @@ void Water<D>::list_faces_in_solids() {
             in_solids_[at].push_back(I);
             solid_faces_[at].push_back({solids.normal(x, eps), solids.velocity(x), solids[solids.nearest(x)].no_slip});
         }
+        if (steps_ > 0) continue;
+        // Solids that move may come to cut more faces: there is room for twice as many, so that no step allocates.
+        in_solids_[at].reserve(2 * in_solids_[at].size());
+        solid_faces_[at].reserve(2 * solid_faces_[at].size());
     }
 }
 

@@ -45,10 +45,10 @@ bool Water<D>::fill_cell(const Index<D>& I, int wanted) {
 }
 
 template <int D>
-bool Water<D>::holds(const Emitter<D>& emitter, const Vec<D>& x) const {
+bool Water<D>::is_free(const Vec<D>& x) const {
     for (int d = 0; d < D; ++d)
         if (x[d] < frame_.origin[d] || x[d] >= frame_.origin[d] + frame_.h[d] * frame_.cells[d]) return false;
-    return emitter.shape->contains(x) && (!solids_.any() || solids_.solids().distance(x) > 0);
+    return !solids_.any() || solids_.solids().distance(x) > 0;
 }
 
 /// A jittered lattice of half cells moves with the emitter's velocity; its points become markers as they enter the emitter, all of them
@@ -76,8 +76,9 @@ void Water<D>::pour(const Emitter<D>& emitter, real dt) {
                 x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
                        emitter.velocity[d] * running;
             }
-            const bool now = holds(emitter, x), before = holds(emitter, x - (to - from) * emitter.velocity);
-            if (starts ? now || before : now && !before) markers_.add(x, emitter.velocity);
+            const Vec<D> earlier = x - (to - from) * emitter.velocity;
+            const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
+            if ((starts ? now || before : now && !before) && is_free(x)) markers_.add(x, emitter.velocity);
         }
     });
 }
