@@ -96,4 +96,19 @@ TEST(
     EXPECT_TRUE(std::filesystem::exists(out / "last_good.weir"));
 }
 
+TEST("a particle whose place is not a number is caught in the step it appears: exit 3, and the last good state saved") {
+    TemporaryFolder folder;
+    const auto scene = folder.path() / "nan.toml", out = folder.path() / "out";
+    std::ofstream(scene) << "title = \"not a number\"\nsolver = \"pbf\"\ndim = 2\ngrid = { cells = [8, 12], size = [1, 1.5] }\n"
+                            "time = { end = 1.0, dt = 0.008 }\nfluid = { density = 1000.0 }\nscheme = { settle = 0 }\n"
+                            "liquid = [ { shape = \"box\", min = [0, 0], max = [1, 1] } ]\n"
+                            // omega^2 overflows, and infinity times the distance 0 of one particle to the centre is NaN
+                            "effects = { central_force = { omega = 1e160, centre = [0.4375, 0.4375] } }\n";
+    const auto answer = weir_says({"run", scene, "--out", out, "--threads", "1"});
+    EXPECT_EQ(answer.code, 3) << answer.text;
+    EXPECT_NE(answer.text.find("step 1, "), std::string::npos) << answer.text;
+    EXPECT_NE(answer.text.find("position"), std::string::npos) << answer.text;
+    EXPECT_TRUE(std::filesystem::exists(out / "last_good.weir"));
+}
+
 }  // namespace

@@ -109,3 +109,28 @@ TEST_IN_2D_AND_3D("a liquid at rest on a periodic floor is the same everywhere a
     for (int i = 0; i < solver->fluid().count(); ++i) EXPECT_LE(std::abs(solver->fluid().velocity(i)[0]), 1e-3);
     EXPECT_EQ(integral(*solver, "outside"), 0);
 }
+
+TEST_IN_2D_AND_3D("a list that would need more memory than it may have is refused by name, and the state is that of the last step") {
+    auto solver = test::pbf_solver<D>(test::pbf_scene<D>(test::box<D>(1, 1, 1), "settle = 0"));
+    solver->step(0.008);
+    auto& fluid = solver->fluid();
+    for (int i = 0; i < fluid.count(); ++i) Fluid<D>::put(fluid.x, i, Vec<D>::constant(0.5) + 0.001 * fluid.position(i));
+    solver->pairs().list().max_bytes = 1000;  // all in one cell: n^2 entries of 4 bytes
+    const auto steps = fluid.steps;
+    try {
+        solver->step(0.008);
+        ADD_FAILURE() << "was not refused";
+    } catch (const NumericalFailure& failure) {
+        EXPECT_NE(std::string(failure.what()).find("neighbour list"), std::string::npos) << failure.what();
+    }
+    EXPECT_EQ(fluid.steps, steps);
+    EXPECT_GE(fluid.max_speed(), 0);
+}
+
+TEST("a million particles make a few steps, inside and finite") {
+    auto solver = test::pbf_solver<3>(
+        test::pbf_scene<3>("{ shape = \"box\", min = [0, 0, 0], max = [1, 1, 1] }", "settle = 0", "", "[100, 150, 100]", "[1, 1.5, 1]"));
+    ASSERT_EQ(solver->fluid().count(), 1000000);
+    stays_inside(*solver, 3, 0.0006);
+    EXPECT_EQ(integral(*solver, "particles"), 1e6);
+}
