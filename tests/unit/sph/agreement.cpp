@@ -187,3 +187,24 @@ TEST("the advised step obeys the acoustic and the viscous limit") {
     sph::SphSolver<2> honey(sph_scene<2>("sound_speed = 1e-3", "effects.viscosity = {}"));
     EXPECT_NEAR(honey.advised_dt(), 0.125 * 0.125 * 0.125 / 0.01, 1e-12);
 }
+
+TEST("an effect without strength changes no bit: what is not named is not there") {
+    const std::string scheme = "density = \"continuity\", tension = true";
+    const auto run = [&](const std::string& effects) {
+        sph::SphSolver<2> solver(sph_scene<2>(scheme, effects));
+        disturb(solver.fluid(), 0.2);
+        for (int s = 0; s < 10; ++s) solver.step(0.001);
+        return std::pair{solver.fluid().x, solver.fluid().density};
+    };
+    const auto plain = run("");
+    EXPECT_EQ(run("effects.density_diffusion = { delta = 0 }"), plain);
+    EXPECT_EQ(run("effects.surface_tension = { sigma = 0 }"), plain);
+    EXPECT_EQ(run("effects.artificial_viscosity = { alpha = 0 }"), plain);
+    EXPECT_NE(run("effects.artificial_viscosity = { alpha = 0.1 }"), plain);
+}
+
+TEST("surface tension without tension, diffusion of a summed density, a surface for one: each is refused") {
+    EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("density = \"continuity\"", "effects.surface_tension = { sigma = 1 }")), scene::BadScene);
+    EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("", "effects.density_diffusion = {}")), scene::BadScene);
+    EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("", "initial.surface = [0, 1]")), scene::BadScene);
+}
