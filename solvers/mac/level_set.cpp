@@ -1,12 +1,13 @@
 #include "mac/level_set.hpp"
 
 #include "core/parallel.hpp"
+#include "mac/marker_lanes.hpp"
 
 namespace weir::mac {
 
 template <int D>
 LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
-    : phi(frame.cells), frame_(frame), layers_(reach + 4), reach_(reach), layer_(frame.cells) {
+    : phi(frame.cells), frame_(frame), layers_(reach + 4), reach_(reach), layer_(frame.cells), inside_(frame.cells) {
     phi.fill(cap());
     layer_start_.assign(static_cast<std::size_t>(layers_) + 1, 0);
 }
@@ -106,11 +107,16 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
     const real margin = 0.1 * h;                     // Enright et al. 2002: nearer to the surface than this, no side is sure
     escaped_.assign(markers.count(), 0);
-    for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        const std::size_t cell = phi.linear(I);
-        if (phi[cell] < -norm(frame_.h)) return;
-        for (std::size_t p = markers.begin(cell); p < markers.end(cell); ++p)
-            escaped_[p] = sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > margin;
+    markers.for_each_occupied_cell(frame_, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+        if (phi(I) < -norm(frame_.h)) return;
+        CellNodes<D> nodes;
+        nodes.look_at(phi, frame_, I);
+        for (std::size_t p = begin; p < end; p += marker_lanes) {
+            const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
+            const Hats<D, false> hats(from_centre(frame_, I, load_positions(markers, p, count)));
+            const Lanes distance = nodes.template at<-1>(hats);
+            for (int l = 0; l < count; ++l) escaped_[p + static_cast<std::size_t>(l)] = distance[l] > margin;
+        }
     });
     std::size_t count = 0;
     for (std::size_t p = 0; p < markers.count(); ++p) {
@@ -168,8 +174,8 @@ void LevelSet<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t LevelSet<D>::bytes() const {
-    return phi.size() * sizeof(real) + layer_.size() + closed_.size() + (band_.capacity() + skin_.capacity()) * sizeof(Index<D>) +
-           value_.capacity() * sizeof(real) + escaped_.capacity();
+    return phi.size() * sizeof(real) + layer_.size() + inside_.size() + closed_.size() +
+           (band_.capacity() + skin_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) + escaped_.capacity();
 }
 
 template class LevelSet<2>;

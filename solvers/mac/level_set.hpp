@@ -62,6 +62,9 @@ private:
     /// where a neighbour's distance is not known, it goes on as on the other side.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
     void find_surface();
+    void mark_changes_of_sign(const Index<D>& first, std::size_t at);
+    template <class F>
+    real sum_over_band(std::size_t end, F&& f) const;
     bool crosses_in_liquid(const Index<D>& I) const;
     void rescale_surface();
     void grow_band();
@@ -71,7 +74,7 @@ private:
 
     Frame<D> frame_;
     int layers_ = 4, reach_ = 1;
-    Grid<std::uint8_t, D> layer_, closed_;  // layer_: 1.. in the band, 0 outside
+    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as find_surface() saw it
     std::vector<Index<D>> band_, skin_;
     std::vector<std::size_t> layer_start_;
     std::vector<real> value_;

@@ -2,6 +2,8 @@
 #include "core/parallel.hpp"
 #include "mac/level_set.hpp"
 
+#include <cstring>
+
 namespace weir::mac {
 
 template <int D>
@@ -16,36 +18,44 @@ void LevelSet<D>::redistance() {
 /// Layer 1: the cells with a neighbour on the other side of the surface.
 template <int D>
 void LevelSet<D>::find_surface() {
-    const Index<D>& n = frame_.cells;
-    for_each_line(n, [&](const Index<D>& first, std::size_t at) {
-        const real* line = phi.data() + at;
-        std::uint8_t* mark = layer_.data() + at;
-        for (int i = 0; i < n[0]; ++i) mark[i] = 0;
-        for (int i = 0; i + 1 < n[0]; ++i) {
-            const std::uint8_t crosses = (line[i] < 0) != (line[i + 1] < 0);
-            mark[i] = static_cast<std::uint8_t>(mark[i] | crosses);
-            mark[i + 1] = static_cast<std::uint8_t>(mark[i + 1] | crosses);
-        }
-        if (frame_.periodic(0) && (line[0] < 0) != (line[n[0] - 1] < 0)) mark[0] = mark[n[0] - 1] = 1;
-        for (int d = 1; d < D; ++d)
-            for (const int by : {-1, 1}) {
-                Index<D> J = first;
-                if (!frame_.step(J, d, by)) continue;
-                const real* other = phi.data() + phi.linear(J);
-                for (int i = 0; i < n[0]; ++i) mark[i] = static_cast<std::uint8_t>(mark[i] | ((line[i] < 0) != (other[i] < 0)));
-            }
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
+        for (std::size_t i = at; i < at + n; ++i) inside_[i] = phi[i] < 0;
     });
+    for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t at) { mark_changes_of_sign(first, at); });
     band_.clear();
-    for (std::size_t cell = 0; cell < layer_.size(); ++cell)
-        if (layer_[cell]) {
-            const Index<D> I = frame_.index_of(cell);
+    for (std::size_t line = 0; line < layer_.size(); line += n) {
+        std::uint8_t *mark = layer_.data() + line, *end = mark + n;
+        Index<D> I = frame_.index_of(line);
+        for (auto* at = mark; (at = static_cast<std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)))) != nullptr; ++at) {
+            I[0] = static_cast<int>(at - mark);
             if (crosses_in_liquid(I))
                 band_.push_back(I);
             else
-                layer_[cell] = 0;
+                *at = 0;
         }
+    }
     layer_start_[0] = 0;
     layer_start_[1] = band_.size();
+}
+
+/// Marks the cells of a line, which begins at `at`, that have a neighbour of the other sign.
+template <int D>
+void LevelSet<D>::mark_changes_of_sign(const Index<D>& first, std::size_t at) {
+    const int n = frame_.cells[0];
+    const std::uint8_t* line = inside_.data() + at;
+    std::uint8_t* mark = layer_.data() + at;
+    mark[0] = frame_.periodic(0) ? line[0] ^ line[n - 1] : 0;
+    for (int i = 1; i < n; ++i) mark[i] = line[i] ^ line[i - 1];
+    for (int i = 0; i + 1 < n; ++i) mark[i] = static_cast<std::uint8_t>(mark[i] | (line[i] ^ line[i + 1]));
+    if (frame_.periodic(0)) mark[n - 1] = static_cast<std::uint8_t>(mark[n - 1] | (line[0] ^ line[n - 1]));
+    for (int d = 1; d < D; ++d)
+        for (const int by : {-1, 1}) {
+            Index<D> J = first;
+            if (!frame_.step(J, d, by)) continue;
+            const std::uint8_t* other = inside_.data() + inside_.linear(J);
+            for (int i = 0; i < n; ++i) mark[i] = static_cast<std::uint8_t>(mark[i] | (line[i] ^ other[i]));
+        }
 }
 
 /// A change of sign between two closed cells is no surface.
@@ -212,26 +222,39 @@ real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     return sum / (1 << D);
 }
 
+/// Sum of f(I) over the open cells of the band up to place `end`; block by block of equal length, so that its order is fixed.
 template <int D>
-real LevelSet<D>::volume() const {
-    return frame_.cell_volume() *
-           sum_over(frame_.cells, [&](const Index<D>& I) { return !closed_.empty() && closed_(I) ? 0.0 : fraction(I); });
+template <class F>
+real LevelSet<D>::sum_over_band(std::size_t end, F&& f) const {
+    constexpr std::size_t block = 256;
+    return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {
+        real sum = 0;
+        for (std::size_t i = static_cast<std::size_t>(b) * block; i < std::min(end, static_cast<std::size_t>(b + 1) * block); ++i)
+            if (closed_.empty() || !closed_(band_[i])) sum += f(band_[i]);
+        return sum;
+    });
 }
 
-/// dV/dshift, by a difference over half a cell; band by band of equal length, so that the order of the sum is fixed.
+/// Outside the band a cell is full or empty.
+template <int D>
+real LevelSet<D>::volume() const {
+    const int planes = frame_.cells[D - 1];
+    const std::size_t plane = phi.size() / static_cast<std::size_t>(planes);
+    const real full = ordered_sum(planes, [&](int k) {
+        int count = 0;
+        for (std::size_t i = static_cast<std::size_t>(k) * plane; i < static_cast<std::size_t>(k + 1) * plane; ++i)
+            count += phi[i] < 0 && layer_[i] == 0 && (closed_.empty() || closed_[i] == 0);
+        return real(count);
+    });
+    return frame_.cell_volume() * (full + sum_over_band(band_.size(), [&](const Index<D>& I) { return fraction(I); }));
+}
+
+/// dV/dshift, by a difference over half a cell.
 template <int D>
 real LevelSet<D>::area() const {
     const real width = 0.25 * frame_.h_min();
-    constexpr int block = 256;
-    const int count = static_cast<int>(layer_end(std::min(2, layers_)));
-    const real sum = ordered_sum((count + block - 1) / block, [&](int b) {
-        real part = 0;
-        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) {
-            const Index<D>& I = band_[static_cast<std::size_t>(i)];
-            if (closed_.empty() || !closed_(I)) part += fraction(I, width) - fraction(I, -width);
-        }
-        return part;
-    });
+    const real sum =
+        sum_over_band(layer_end(std::min(2, layers_)), [&](const Index<D>& I) { return fraction(I, width) - fraction(I, -width); });
     return frame_.cell_volume() / (2 * width) * sum;
 }
 

@@ -134,52 +134,62 @@ private:
     bool straight_;
 };
 
-/// The faces around one cell, where they lie in memory; beside a side of the domain a copy, continued beyond it.
+/// The nodes around one cell, where they lie in memory; beside a side of the domain a copy, continued beyond it.
+template <int D>
+class CellNodes {
+public:
+    void look_at(const Grid<real, D>& nodes, const Frame<D>& frame, const Index<D>& I) {
+        bool inner = true;
+        for (int d = 0; d < D; ++d) inner = inner && is_inner(frame, I, d);
+        if (!inner) return copy(nodes, frame, I);
+        node_ = &nodes(I);
+        for (int d = 0; d < D; ++d) stride_[static_cast<std::size_t>(d)] = nodes.stride(d);
+    }
+    /// Interpolation of component A of a velocity; of a cell field where A is −1.
+    template <int A, bool Wide>
+    WEIR_LANES Lanes at(const Hats<D, Wide>& hats) const {
+        return hats.template along<A, D - 1>(node_, stride_);
+    }
+
+private:
+    static constexpr int width = NodeOffsets<D>::width;
+
+    void copy(const Grid<real, D>& nodes, const Frame<D>& frame, const Index<D>& I) {
+        const NodeOffsets<D> offset(nodes, frame, I);
+        std::ptrdiff_t own = 0;
+        for (std::size_t d = 0, step = 1; d < D; ++d, step *= width) own += stride_[d] = static_cast<std::ptrdiff_t>(step);
+        real* to = copy_.data();
+        for (int k = D == 2 ? 0 : -1; k < (D == 2 ? 1 : width - 1); ++k)
+            for (int j = -1; j < width - 1; ++j)
+                for (int i = -1; i < width - 1; ++i) *to++ = nodes.data()[offset(i, j, k)];
+        node_ = copy_.data() + own;
+    }
+
+    const real* node_;
+    std::array<std::ptrdiff_t, D> stride_;
+    std::array<real, (D == 2 ? width * width : width * width * width)> copy_;
+};
+
+/// The faces around one cell.
 template <int D>
 class CellFaces {
 public:
     CellFaces(const MacVelocity<D>& u, const Frame<D>& frame, const Index<D>& I) {
-        bool inner = true;
-        for (int d = 0; d < D; ++d) inner = inner && is_inner(frame, I, d);
-        for (int a = 0; a < D; ++a) {
-            const auto at = static_cast<std::size_t>(a);
-            if (!inner) {
-                copy(u[a], a, frame, I);
-                continue;
-            }
-            node_[at] = &u[a](I);
-            for (int d = 0; d < D; ++d) stride_[at][static_cast<std::size_t>(d)] = u[a].stride(d);
-        }
+        for (int a = 0; a < D; ++a) along_[static_cast<std::size_t>(a)].look_at(u[a], frame, I);
     }
     /// The velocity at points d [cells] from the cell's centre: at most half a cell, or, if Wide, a cell.
     template <bool Wide>
     WEIR_LANES LaneVec<D> velocity(const LaneVec<D>& d) const {
         const Hats<D, Wide> hats(d);
         LaneVec<D> v;
-        v[0] = hats.template along<0, D - 1>(node_[0], stride_[0]);
-        v[1] = hats.template along<1, D - 1>(node_[1], stride_[1]);
-        if constexpr (D == 3) v[2] = hats.template along<2, D - 1>(node_[2], stride_[2]);
+        v[0] = along_[0].template at<0>(hats);
+        v[1] = along_[1].template at<1>(hats);
+        if constexpr (D == 3) v[2] = along_[2].template at<2>(hats);
         return v;
     }
 
 private:
-    static constexpr int width = NodeOffsets<D>::width;
-
-    void copy(const Grid<real, D>& u, int a, const Frame<D>& frame, const Index<D>& I) {
-        const auto at = static_cast<std::size_t>(a);
-        const NodeOffsets<D> offset(u, frame, I);
-        std::ptrdiff_t own = 0;
-        for (int d = 0, step = 1; d < D; ++d, step *= width) own += stride_[at][static_cast<std::size_t>(d)] = step;
-        real* to = copy_[at].data();
-        for (int k = D == 2 ? 0 : -1; k < (D == 2 ? 1 : width - 1); ++k)
-            for (int j = -1; j < width - 1; ++j)
-                for (int i = -1; i < width - 1; ++i) *to++ = u.data()[offset(i, j, k)];
-        node_[at] = copy_[at].data() + own;
-    }
-
-    std::array<const real*, D> node_;
-    std::array<std::array<std::ptrdiff_t, D>, D> stride_;
-    std::array<std::array<real, (D == 2 ? width * width : width * width * width)>, D> copy_;
+    std::array<CellNodes<D>, D> along_;
 };
 
 }  // namespace weir::mac

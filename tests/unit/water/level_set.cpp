@@ -46,6 +46,13 @@ TEST_IN_2D_AND_3D("the volume of a ball and the area of its surface converge at 
     EXPECT_LT(area_error[1], 0.01);
 }
 
+TEST_IN_2D_AND_3D("the volume is the sum of the fractions of all cells, though only those of the band are looked at") {
+    const Surface<D> s(18, *geometry::sphere<D>(Vec<D>::constant(0.45), 0.3));
+    const real all = sum_over(s.frame.cells, [&](const Index<D>& I) { return s.level_set.fraction(I); });
+    EXPECT_NEAR(s.level_set.volume(), all * s.frame.cell_volume(), 1e-12);
+    EXPECT_GT(s.level_set.volume(), 0.1);
+}
+
 TEST_IN_2D_AND_3D("redistancing leaves the distance to a plane as it is, and makes a stretched field a distance within a tenth of a cell") {
     Vec<D> normal = Vec<D>::constant(0.3);
     normal[1] = 1;
