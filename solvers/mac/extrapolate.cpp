@@ -39,8 +39,8 @@ void Extrapolation<D>::join_front(Grid<std::uint8_t, D>& mark, int a, const Inde
 /// What u changed by from the face behind J to J. The next face goes on like this (Aslam 2004: linear), as far as the second layer, which
 /// is as far as cells beside the surface look. It goes on only where the flow is smooth: by the smaller of the last two changes (minmod),
 /// and by at most 0.3 |u|. And it claims that liquid which comes there has accelerated by u du/dx: in a jet, whose tip only flies, that
-/// claim becomes true when the tip arrives, and feeds it; so it is held to a tenth of what drives a surface. A wave of ten cells or
-/// longer with a slope k a below 0.3 is not limited: u du/dx = (k a)² g.
+/// claim becomes true when the tip arrives, and feeds it; so it is held to what drives a surface, gravity and tension. No wave reaches
+/// that (u du/dx = (k a)² g); the front of a dam break does, and loses volume if held to a tenth of it.
 template <int D>
 real Extrapolation<D>::slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by,
                              int layer) const {

@@ -116,7 +116,7 @@ Water<D>::Water(const scene::Scene& scene)
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
     pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
     const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);  // σ k²/ρ of a wave of ten cells
-    extrapolate_ = Extrapolation<D>(frame_, 0.1 * (norm(gravity_) + capillary));
+    extrapolate_ = Extrapolation<D>(frame_, norm(gravity_) + capillary);
     sums_ = FaceSums<D>(frame_.cells);
     for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
     before_ = state_.u;
