@@ -1,5 +1,7 @@
 #include "particles/pairs.hpp"
 
+#include "particles/fluid.hpp"
+
 #include <algorithm>
 
 namespace weir::particles {
@@ -93,6 +95,14 @@ std::vector<int> Pairs::particle_order() const {
     for (const int i : cells_.order())
         if (i < particles_) order.push_back(i);
     return order;
+}
+
+Pairs::NeighbourCounts Pairs::neighbour_counts() const {
+    const auto& counts = list_.neighbours();
+    if (counts.empty() || particles_ == 0) return {};
+    const auto count = [&](int k) { return is_image(k) ? 0.0 : static_cast<real>(counts[static_cast<std::size_t>(k)]); };
+    const int n = static_cast<int>(counts.size());
+    return {block_sum(n, count) / particles_, block_max(n, count)};
 }
 
 std::size_t Pairs::bytes() const {

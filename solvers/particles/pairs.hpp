@@ -52,6 +52,11 @@ public:
             for (int k = begin; k < end; ++k) f(k);
         });
     }
+    /// Mean and largest number of neighbours of the particles; those of images are not counted.
+    struct NeighbourCounts {
+        real mean = 0, most = 0;
+    };
+    NeighbourCounts neighbour_counts() const;
     std::size_t bytes() const;
 
 private:

@@ -219,11 +219,9 @@ FieldSet PbfSolver<D>::fields() const {
 template <int D>
 std::vector<Integral> PbfSolver<D>::integrals() const {
     auto list = fluid_.integrals();
-    const auto& counts = pairs_.list().neighbours();
-    const int n = static_cast<int>(counts.size());
-    list.push_back(
-        {"mean_neighbours", "1", n ? particles::block_sum(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); }) / n : 0});
-    list.push_back({"max_neighbours", "1", particles::block_max(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); })});
+    const auto neighbours = pairs_.neighbour_counts();
+    list.push_back({"mean_neighbours", "1", neighbours.mean});
+    list.push_back({"max_neighbours", "1", neighbours.most});
     const Compression c = compression();
     list.push_back({"mean_compression", "1", c.mean});
     list.push_back({"max_compression", "1", c.worst});

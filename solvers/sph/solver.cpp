@@ -270,11 +270,9 @@ FieldSet SphSolver<D>::fields() const {
 template <int D>
 std::vector<Integral> SphSolver<D>::integrals() const {
     auto list = fluid_.integrals();
-    const auto& counts = pairs_.list().neighbours();
-    const int n = static_cast<int>(counts.size());
-    list.push_back(
-        {"mean_neighbours", "1", n ? particles::block_sum(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); }) / n : 0});
-    list.push_back({"max_neighbours", "1", particles::block_max(n, [&](int k) { return real(counts[static_cast<std::size_t>(k)]); })});
+    const auto neighbours = pairs_.neighbour_counts();
+    list.push_back({"mean_neighbours", "1", neighbours.mean});
+    list.push_back({"max_neighbours", "1", neighbours.most});
     return list;
 }
 

@@ -14,5 +14,6 @@ std::vector<Metric> exactness_metrics();
 std::vector<Metric> obstacle_metrics();
 std::vector<Metric> particle_metrics();
 std::vector<Metric> phase_metrics();
+std::vector<Metric> lattice_metrics();
 
 }  // namespace weir::validation
