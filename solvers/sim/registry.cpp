@@ -9,8 +9,8 @@
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {mac::smoke_kind(), mac::water_kind(), mac::transport_kind(), mac::poisson_kind(),
-                                                         pbf::kind(), sph::kind()};
+    static const std::vector<scene::SolverKind> kinds = {mac::smoke_kind(),   mac::water_kind(), mac::transport_kind(),
+                                                         mac::poisson_kind(), pbf::kind(),       sph::kind()};
     return kinds;
 }
 
