@@ -24,18 +24,6 @@ real fraction(const Grid<real, D>& corner, int a, const Index<D>& I) {
     return open < least_open_fraction ? 0 : open;
 }
 
-/// The index of the entry at this place in memory.
-template <int D>
-Index<D> index_of(const Index<D>& extent, std::size_t at) {
-    Index<D> I;
-    for (int d = 0; d < D; ++d) {
-        const auto n = static_cast<std::size_t>(extent[d]);
-        I[d] = static_cast<int>(at % n);
-        at /= n;
-    }
-    return I;
-}
-
 /// Component b at a face along a: itself, or the mean of the four faces around it.
 template <int D>
 real component_at(const PaddedVelocity<D>& u, int b, int a, const Index<D>& I) {

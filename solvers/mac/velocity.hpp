@@ -55,6 +55,18 @@ real divergence(const MacVelocity<D>& u, const Index<D>& I) {
     return sum;
 }
 
+/// The index whose place in memory is `at`, x fastest.
+template <int D>
+Index<D> index_of(const Index<D>& extent, std::size_t at) {
+    Index<D> I;
+    for (int d = 0; d < D; ++d) {
+        const auto n = static_cast<std::size_t>(extent[d]);
+        I[d] = static_cast<int>(at % n);
+        at /= n;
+    }
+    return I;
+}
+
 /// f(I) on every face along `a` with a cell on both sides inside the domain.
 template <int D, class F>
 void for_each_inner_face(const MacVelocity<D>& u, int a, F&& f) {

@@ -64,14 +64,7 @@ struct Frame {
         return I;
     }
     /// The cell with this place in memory.
-    Index<D> index_of(std::size_t linear) const {
-        Index<D> I;
-        for (int d = 0; d < D; ++d) {
-            I[d] = static_cast<int>(linear % static_cast<std::size_t>(cells[d]));
-            linear /= static_cast<std::size_t>(cells[d]);
-        }
-        return I;
-    }
+    Index<D> index_of(std::size_t linear) const { return mac::index_of<D>(cells, linear); }
     /// Moves I by ±1 along an axis, around a periodic one; false, and I unchanged, at a side of the domain.
     bool step(Index<D>& I, int axis, int by) const {
         const int i = I[axis] + by;

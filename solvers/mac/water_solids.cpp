@@ -27,12 +27,7 @@ void Water<D>::list_faces_in_solids() {
         solid_faces_[at].clear();
         for (std::size_t i = 0; i < open.size(); ++i) {
             if (open[i] >= least_trusted_fraction) continue;
-            Index<D> I;
-            std::size_t rest = i;
-            for (int d = 0; d < D; ++d) {
-                I[d] = static_cast<int>(rest % static_cast<std::size_t>(open.extent()[d]));
-                rest /= static_cast<std::size_t>(open.extent()[d]);
-            }
+            const Index<D> I = index_of<D>(open.extent(), i);
             if (!frame_.periodic(a) && (I[a] == 0 || I[a] == frame_.cells[a])) continue;  // the side's own
             const Vec<D> x = state_.u.face_centre(a, I);
             if (solids.distance(x) < deepest) continue;

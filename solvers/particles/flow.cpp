@@ -168,6 +168,23 @@ Key sinks_key() {
             .variants_from = &scene::shapes};
 }
 
+Key support_key(real usual) {
+    return {.name = "support",
+            .type = Type::number,
+            .doc = "Support of the kernels over the particles' spacing.",
+            .fallback = usual,
+            .min = 1.2,
+            .max = 4.0};
+}
+
+Key isa_key() {
+    return {.name = "isa",
+            .type = Type::choice,
+            .doc = "Instruction set of the pair passes.",
+            .fallback = std::string("auto"),
+            .choices = {"auto", "sse2", "avx2", "avx512"}};
+}
+
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid) {
     if (!scene.has("initial.velocity")) return;

@@ -21,12 +21,7 @@ Key scheme() {
                     "gradient, as published; a force that is no gradient, so it feeds energy.",
              .fallback = std::string("cubic"),
              .choices = {"muller", "cubic", "wendland"}},
-            {.name = "support",
-             .type = Type::number,
-             .doc = "Support of the kernels over the particles' spacing.",
-             .fallback = usual.support,
-             .min = 1.2,
-             .max = 4.0},
+            particles::support_key(usual.support),
             {.name = "iterations",
              .type = Type::integer,
              .doc = "Iterations a step, where no tolerance is given.",
@@ -66,11 +61,7 @@ Key scheme() {
                     "so that it does not become speed.",
              .fallback = std::int64_t{usual.settle},
              .min = 0},
-            {.name = "isa",
-             .type = Type::choice,
-             .doc = "Instruction set of the pair passes.",
-             .fallback = std::string("auto"),
-             .choices = {"auto", "sse2", "avx2", "avx512"}}}};
+            particles::isa_key()}};
 }
 
 std::vector<scene::Variant> effects() {

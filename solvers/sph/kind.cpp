@@ -20,12 +20,7 @@ Key scheme() {
                              "cubic and wendland use one for all.",
                       .fallback = std::string("muller"),
                       .choices = {"muller", "cubic", "wendland"}},
-                     {.name = "support",
-                      .type = Type::number,
-                      .doc = "Support of the kernels over the particles' spacing.",
-                      .fallback = usual.support,
-                      .min = 1.2,
-                      .max = 4.0},
+                     particles::support_key(usual.support),
                      {.name = "sound_speed",
                       .type = Type::number,
                       .doc = "Speed of sound; ten times the fastest flow keeps density within one per cent.",
@@ -45,11 +40,7 @@ Key scheme() {
                       .fallback = std::string("summation"),
                       .choices = {"summation", "continuity"}},
                      {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension},
-                     {.name = "isa",
-                      .type = Type::choice,
-                      .doc = "Instruction set of the pair passes.",
-                      .fallback = std::string("auto"),
-                      .choices = {"auto", "sse2", "avx2", "avx512"}}}};
+                     particles::isa_key()}};
 }
 
 std::vector<scene::Variant> effects() {

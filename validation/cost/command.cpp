@@ -22,15 +22,6 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<std::filesystem::path> chosen(const CostOptions& options) {
-    if (options.all && !options.names.empty()) throw BadInput("weir cost takes names or --all, not both");
-    if (options.all || (options.list && options.names.empty())) return find_studies(case_root());
-    if (options.names.empty()) throw BadInput("weir cost needs the name of a case, or --all; --list shows the ready studies");
-    std::vector<std::filesystem::path> list;
-    for (const std::string& name : options.names) list.push_back(find_case(name));
-    return list;
-}
-
 std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers) {
     std::vector<scene::SolverSchema> list;
     for (const auto& kind : solvers) list.push_back(kind.schema);
@@ -92,7 +83,8 @@ void publish_studies(const std::vector<json>& studies, const std::filesystem::pa
 int cost_command(const CostOptions& options, const Solvers& solvers) {
     std::vector<Study> studies;
     std::string problems;
-    for (const auto& folder : chosen(options)) try {
+    const auto found = [] { return find_studies(case_root()); };
+    for (const auto& folder : chosen_folders("cost", options.names, options.all, options.list, found)) try {
             studies.push_back(prepared(folder, options, solvers));
         } catch (const BadInput& wrong) {
             problems += (problems.empty() ? "" : "\n") + std::string(wrong.what());

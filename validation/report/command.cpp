@@ -23,24 +23,12 @@ namespace {
 /// A folder named with a slash at its end has an empty last part.
 std::filesystem::path without_slash(const std::filesystem::path& p) { return p.has_filename() ? p : p.parent_path(); }
 
-std::vector<std::filesystem::path> chosen(const ValidateOptions& options) {
-    if (options.all && !options.names.empty()) throw BadInput("weir validate takes names or --all, not both");
-    if (options.all || (options.list && options.names.empty())) {
-        const auto found = find_cases(case_root());
-        if (found.empty()) throw BadInput(fmt::format("no cases in {}", case_root().string()));
-        return found;
-    }
-    if (options.names.empty()) throw BadInput("weir validate needs the name of a case, or --all; --list shows them");
-    std::vector<std::filesystem::path> list;
-    for (const std::string& name : options.names) list.push_back(find_case(name));
-    return list;
-}
-
 /// All case files and their scenes are read before one is run; the problems of all are shown together.
 std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solvers) {
     std::vector<Case> cases;
     std::string problems;
-    for (const auto& folder : chosen(options)) try {
+    const auto found = [] { return find_cases(case_root()); };
+    for (const auto& folder : chosen_folders("validate", options.names, options.all, options.list, found)) try {
             cases.push_back(read_case(folder, options.size));
             if (!options.list) check_case(cases.back(), solvers);
         } catch (const BadInput& wrong) {
@@ -79,6 +67,20 @@ std::filesystem::path find_case(const std::string& name) {
     std::vector<std::string> known;
     for (const auto& path : find_cases(case_root())) known.push_back(path.filename().string());
     throw BadInput(fmt::format("unknown case {}{}\n    {}", scene::quote(name), scene::did_you_mean(name, known), scene::known(known)));
+}
+
+std::vector<std::filesystem::path> chosen_folders(const std::string& command, const std::vector<std::string>& names, bool all, bool list,
+                                                  const std::function<std::vector<std::filesystem::path>()>& find) {
+    if (all && !names.empty()) throw BadInput(fmt::format("weir {} takes names or --all, not both", command));
+    if (all || (list && names.empty())) {
+        const auto found = find();
+        if (found.empty()) throw BadInput(fmt::format("nothing for weir {} in {}", command, case_root().string()));
+        return found;
+    }
+    if (names.empty()) throw BadInput(fmt::format("weir {} needs the name of a case, or --all; --list shows what there is", command));
+    std::vector<std::filesystem::path> folders;
+    for (const std::string& name : names) folders.push_back(find_case(name));
+    return folders;
 }
 
 int validate_command(const ValidateOptions& options, const Solvers& solvers) {

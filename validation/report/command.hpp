@@ -4,6 +4,7 @@
 #include "validation/harness/case.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct ValidateOptions {
 std::filesystem::path case_root();
 /// The folder of a case by its name, or a folder that holds a case.toml. Throws BadInput with the nearest known name.
 std::filesystem::path find_case(const std::string& name);
+/// The folders that a command works on: those named, or all that `find` gives. Throws BadInput where the choice is none or both.
+std::vector<std::filesystem::path> chosen_folders(const std::string& command, const std::vector<std::string>& names, bool all, bool list,
+                                                  const std::function<std::vector<std::filesystem::path>()>& find);
 
 /// Runs the command and returns its exit code: 0, 1 (a claim failed), 2 (a case asks for what is not there). Throws BadInput before
 /// anything is run or written when a name is unknown or a case file or its scene is wrong.

@@ -32,6 +32,25 @@ std::size_t drawable_points(const Panel& p, const Curve& c) {
     return n;
 }
 
+/// A curve that has more points than the panel has pixels, thinned: of each stretch the lowest and the highest point, so that no peak is
+/// lost. A minute of steps would else make a file of megabytes.
+Curve thinned(const Curve& c) {
+    constexpr std::size_t stretches = panel_width;
+    if (c.size() <= 4 * stretches || c.points || !c.names.empty()) return c;
+    Curve thin = c;
+    thin.x.clear(), thin.y.clear();
+    const auto keep = [&](std::size_t i) { thin.x.push_back(c.x[i]), thin.y.push_back(c.y[i]); };
+    for (std::size_t s = 0; s < stretches; ++s) {
+        const auto first = c.y.begin() + static_cast<std::ptrdiff_t>(c.size() * s / stretches);
+        const auto last = c.y.begin() + static_cast<std::ptrdiff_t>(c.size() * (s + 1) / stretches);
+        const auto [low, high] = std::minmax_element(first, last);
+        keep(static_cast<std::size_t>(std::min(low, high) - c.y.begin()));
+        if (low != high) keep(static_cast<std::size_t>(std::max(low, high) - c.y.begin()));
+    }
+    keep(c.size() - 1);
+    return thin;
+}
+
 /// Ticks and scale of one axis that spans low..high.
 std::string axis(const char* name, bool log, real low, real high) {
     const std::string plain = fmt::format("set {0}tics auto; set format {0} '%g'\n", name);
@@ -79,8 +98,9 @@ std::string style_of(const Curve& c, std::size_t number) {
 std::string panel_program(const Panel& p, std::size_t number) {
     std::string data, plots;
     std::size_t drawn = 0;
-    for (const Curve& c : p.curves) {
-        if (drawable_points(p, c) == 0) continue;
+    for (const Curve& whole : p.curves) {
+        if (drawable_points(p, whole) == 0) continue;
+        const Curve c = thinned(whole);
         const std::string block = fmt::format("$p{}c{}", number, drawn);
         data += block + " << EOD\n";
         for (std::size_t i = 0; i < c.size(); ++i)

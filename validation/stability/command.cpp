@@ -20,21 +20,13 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<std::filesystem::path> chosen(const StabilityOptions& options) {
-    if (options.all && !options.names.empty()) throw BadInput("weir stability takes names or --all, not both");
-    if (options.all || (options.list && options.names.empty())) return find_stability(case_root());
-    if (options.names.empty()) throw BadInput("weir stability needs the name of a case, or --all; --list shows the axes");
-    std::vector<std::filesystem::path> list;
-    for (const std::string& name : options.names) list.push_back(find_case(name));
-    return list;
-}
-
 /// The studies with the axes that are wanted; every scene at the low end of its axis reads.
 std::vector<StressStudy> prepared(const StabilityOptions& options, const Solvers& solvers) {
     std::vector<scene::SolverSchema> schemas;
     for (const auto& kind : solvers) schemas.push_back(kind.schema);
     std::vector<StressStudy> studies;
-    for (const auto& folder : chosen(options)) {
+    const auto found = [] { return find_stability(case_root()); };
+    for (const auto& folder : chosen_folders("stability", options.names, options.all, options.list, found)) {
         studies.push_back(read_stability(folder, options.size));
         auto& stresses = studies.back().stresses;
         if (!options.axis.empty()) std::erase_if(stresses, [&](const Stress& s) { return s.name != options.axis; });
