@@ -1,6 +1,7 @@
 #include "mac/extrapolate.hpp"
 
 #include "core/parallel.hpp"
+#include "core/scratch.hpp"
 
 namespace weir::mac {
 
@@ -96,7 +97,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
         for (int layer = 1; layer <= layers && !front_.empty(); ++layer) {
             const int count = static_cast<int>(front_.size());
-            value_.resize(front_.size());
+            resize_scratch(value_, front_.size());
             parallel_for(0, count, [&](int i) {
                 const auto at = static_cast<std::size_t>(i);
                 value_[at] = value(u[a], mark, surface.phi, front_[at], a, layer);

@@ -1,6 +1,7 @@
 #include "mac/level_set.hpp"
 
 #include "core/parallel.hpp"
+#include "core/scratch.hpp"
 #include "mac/marker_lanes.hpp"
 
 namespace weir::mac {
@@ -58,7 +59,7 @@ void LevelSet<D>::continue_into_solids() {
 template <int D>
 void LevelSet<D>::advect(const MacVelocity<D>& u, real dt) {
     const real near = (reach_ + 2) * frame_.h_min();  // beyond, no point can come to lie beside the surface
-    value_.resize(band_.size());
+    resize_scratch(value_, band_.size());
     parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
         const Index<D>& I = band_[static_cast<std::size_t>(i)];
         real& to = value_[static_cast<std::size_t>(i)];
@@ -106,7 +107,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     const real h = frame_.h_min();
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
     const real margin = 0.1 * h;                     // Enright et al. 2002: nearer to the surface than this, no side is sure
-    escaped_.assign(markers.count(), 0);
+    refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
     markers.for_each_occupied_cell(frame_, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
         if (phi(I) < -norm(frame_.h)) return;
         CellNodes<D> nodes;

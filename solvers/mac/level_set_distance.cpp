@@ -1,5 +1,6 @@
 // The half of the level set that keeps φ a distance in a band of cells, and measures what it encloses.
 #include "core/parallel.hpp"
+#include "core/scratch.hpp"
 #include "mac/level_set.hpp"
 
 #include <cstring>
@@ -74,7 +75,7 @@ bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
 /// outside [3/4, 4/3], so that a surface that keeps its distance, above all one at rest, keeps it bit for bit.
 template <int D>
 void LevelSet<D>::rescale_surface() {
-    value_.resize(band_.size());
+    resize_scratch(value_, band_.size());
     parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
         const Index<D>& I = band_[static_cast<std::size_t>(i)];
         const auto slope = slopes(I);
@@ -120,7 +121,7 @@ void LevelSet<D>::fill_layer(int layer) {
     const std::size_t from = layer_begin(layer);
     const int count = static_cast<int>(layer_end(layer) - from);
     const real keep = layer == 2 ? 0.3 * frame_.h_min() : 0;
-    value_.resize(band_.size());
+    resize_scratch(value_, band_.size());
     for (int visit = 0; visit < 2; ++visit) {
         parallel_for(0, count, [&](int i) {
             const std::size_t at = from + static_cast<std::size_t>(i);

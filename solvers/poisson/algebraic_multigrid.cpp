@@ -49,7 +49,10 @@ void AlgebraicMultigrid::prepare(const Matrix& A, const Components& components) 
         for (Vector* v : {&level.r, &level.x, &level.c, &level.v, &level.d, &level.w}) v->assign(n, 0);
     }
     const Matrix& last = levels_.back().matrix();
-    coarsest_components_ = levels_.size() == 1 ? components : find_components(last);
+    if (levels_.size() == 1)
+        coarsest_components_ = components;
+    else
+        ComponentFinder().find(last, coarsest_components_);
     coarsest_ = std::make_unique<SparseCholesky>();
     coarsest_->factor(last, coarsest_components_);
 }

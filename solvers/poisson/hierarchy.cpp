@@ -5,6 +5,7 @@
 #include "poisson/transfer.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace weir::poisson {
 
@@ -85,41 +86,50 @@ std::array<bool, D> axes_to_halve(const Level<D>& level) {
     return halve;
 }
 
+/// The next coarser level, none if no axis is worth halving. Marks in `fine` which are.
+template <int D>
+std::optional<Level<D>> halve(Level<D>& fine) {
+    fine.coarsened = axes_to_halve(fine);
+    Level<D> coarse;
+    Index<D> n = fine.at.n;
+    coarse.plain_weight = fine.plain_weight;
+    bool any = false;
+    for (std::size_t a = 0; a < D; ++a) {
+        if (!fine.coarsened[a]) continue;
+        any = true;
+        n[static_cast<int>(a)] = (n[static_cast<int>(a)] + 1) / 2;
+        for (std::size_t other = 0; other < D; ++other) coarse.plain_weight[other] *= other == a ? 0.5f : 2.0f;
+    }
+    if (!any) return std::nullopt;
+    coarse.at = Layout<D>(n, fine.at.periodic);
+    coarse.zero_width = 2 * fine.zero_width;
+    return coarse;
+}
+
 }  // namespace
 
 template <int D>
 bool Hierarchy<D>::plan(const Natural<D>& problem) {
-    std::vector<Level<D>> levels(1);
-    levels[0].at = Layout<D>(problem.extent(), problem.periodic());
-    levels[0].by_count = !problem.weighted();
-    for (int a = 0; a < D; ++a) {
-        levels[0].plain_weight[static_cast<std::size_t>(a)] = static_cast<float>(problem.axis_weight()[a]);
-        if (levels[0].at.periodic[static_cast<std::size_t>(a)] && levels[0].at.n[a] % 2 == 1) return false;
+    Level<D> finest;
+    finest.at = Layout<D>(problem.extent(), problem.periodic());
+    finest.by_count = !problem.weighted();
+    for (std::size_t a = 0; a < D; ++a) finest.plain_weight[a] = static_cast<float>(problem.axis_weight()[static_cast<int>(a)]);
+    const auto same = [&](const Level<D>& other) {
+        return other.at.n == finest.at.n && other.at.periodic == finest.at.periodic && other.plain_weight == finest.plain_weight &&
+               other.by_count == finest.by_count;
+    };
+    if (!levels_.empty() && same(levels_.front())) return true;
+    levels_.clear();
+    for (int a = 0; a < D; ++a)
+        if (finest.at.periodic[static_cast<std::size_t>(a)] && finest.at.n[a] % 2 == 1) return false;
+    levels_.push_back(std::move(finest));
+    while (levels_.back().cells() > direct_cells) {
+        std::optional<Level<D>> coarse = halve(levels_.back());
+        if (!coarse) return false;
+        levels_.push_back(std::move(*coarse));
     }
-    while (levels.back().cells() > direct_cells) {
-        Level<D>& fine = levels.back();
-        fine.coarsened = axes_to_halve(fine);
-        Level<D> coarse;
-        Index<D> n = fine.at.n;
-        coarse.plain_weight = fine.plain_weight;
-        bool any = false;
-        for (int a = 0; a < D; ++a) {
-            if (!fine.coarsened[static_cast<std::size_t>(a)]) continue;
-            any = true;
-            n[a] = (n[a] + 1) / 2;
-            for (int other = 0; other < D; ++other) coarse.plain_weight[static_cast<std::size_t>(other)] *= other == a ? 0.5f : 2.0f;
-        }
-        if (!any) return false;
-        coarse.at = Layout<D>(n, fine.at.periodic);
-        coarse.zero_width = 2 * fine.zero_width;
-        levels.push_back(std::move(coarse));
-    }
-    if (levels.size() < 2) return false;
-    const bool same = levels_.size() == levels.size() && levels_[0].at.n == levels[0].at.n &&
-                      levels_[0].at.periodic == levels[0].at.periodic && levels_[0].plain_weight == levels[0].plain_weight &&
-                      levels_[0].by_count == levels[0].by_count;
-    if (!same) levels_ = std::move(levels);
-    if (!same) lay_out();
+    if (levels_.size() < 2) return false;
+    lay_out();
     return true;
 }
 
@@ -179,7 +189,7 @@ bool Hierarchy<D>::build(const Natural<D>& problem) {
 
 template <int D>
 std::size_t Hierarchy<D>::bytes() const {
-    std::size_t sum = arena_.size() + coarsest_.bytes();
+    std::size_t sum = arena_.size() + coarsest_.bytes() + coarsest_matrix_.bytes() + coarsest_components_.bytes() + finder_.bytes();
     for (const auto& level : levels_)
         sum += level.plain.capacity() + level.span_start.capacity() * sizeof(int) + level.spans.capacity() * sizeof(Span) +
                level.work.capacity() * sizeof(std::int64_t);

@@ -28,8 +28,9 @@ private:
     std::vector<Level<D>> levels_;
     Arena arena_;
     SparseCholesky coarsest_;
+    Matrix coarsest_matrix_;
     Components coarsest_components_;
-    std::vector<float*> coarsest_u_, coarsest_r_;
+    ComponentFinder finder_;
     Vector x_, b_;
 };
 

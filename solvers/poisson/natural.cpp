@@ -1,5 +1,7 @@
 #include "poisson/natural.hpp"
 
+#include "core/scratch.hpp"
+
 #include <algorithm>
 #include <cstring>
 #include <numeric>
@@ -131,14 +133,14 @@ void Natural<D>::find_runs() {
             }
             run_start_.push_back(static_cast<int>(runs_.size()));
         }
-    sum_.assign(runs_.size(), 0);
+    refill_scratch<real>(sum_, runs_.size(), 0);
 }
 
 /// Union-find over runs of neighbouring rows that share an open face; components that no face joins to p = 0 are closed.
 template <int D>
 void Natural<D>::find_closed() {
     std::vector<int>& parent = root_;
-    parent.resize(runs_.size());
+    resize_scratch(parent, runs_.size());
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int i) {
         while (parent[static_cast<std::size_t>(i)] != i)
@@ -173,12 +175,12 @@ void Natural<D>::find_closed() {
         }
     for (std::size_t k = 0; k < parent.size(); ++k) parent[k] = root(static_cast<int>(k));
     mark_open();
-    number_.assign(runs_.size(), -1);
+    refill_scratch(number_, runs_.size(), -1);
     closed_ = 0;
     for (std::size_t k = 0; k < runs_.size(); ++k)
         if (parent[k] == static_cast<int>(k) && !open_[k]) number_[k] = closed_++;
-    size_.assign(static_cast<std::size_t>(closed_), 0);
-    mean_.assign(static_cast<std::size_t>(closed_), 0);
+    refill_scratch<real>(size_, static_cast<std::size_t>(closed_), 0);
+    refill_scratch<real>(mean_, static_cast<std::size_t>(closed_), 0);
     for (std::size_t k = 0; k < runs_.size(); ++k) {
         runs_[k].component = number_[static_cast<std::size_t>(parent[k])];
         if (runs_[k].component >= 0) size_[static_cast<std::size_t>(runs_[k].component)] += runs_[k].end - runs_[k].begin;
@@ -188,7 +190,7 @@ void Natural<D>::find_closed() {
 /// A run is open if any of its cells has an open face to a cell that is not fluid.
 template <int D>
 void Natural<D>::mark_open() {
-    open_.assign(runs_.size(), 0);
+    refill_scratch<char>(open_, runs_.size(), 0);
     for (int q = 0; q < planes(); ++q)
         for (int j = 0; j < rows_in_plane(); ++j)
             for (const Run* run = runs_begin(row(q, j)); run != runs_end(row(q, j)); ++run) {

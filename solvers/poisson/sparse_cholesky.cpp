@@ -1,6 +1,7 @@
 #include "poisson/sparse_cholesky.hpp"
 
 #include "core/error.hpp"
+#include "core/scratch.hpp"
 
 #include <suitesparse/cholmod.h>
 
@@ -31,10 +32,13 @@ namespace {
 
 constexpr int small = 5000;  // below, dense blocks and the threads of BLAS cost more than they save
 
+}  // namespace
+
 /// The upper triangle of A by columns, which is its lower triangle by rows. In each closed component the first diagonal entry is doubled
 /// (an isolated cell gets 1): a compatible right-hand side then makes that unknown zero, and the other equations stay as they are.
-void upper_by_columns(const Matrix& A, const Components& components, std::vector<long>& start, std::vector<long>& row, Vector& value) {
-    std::vector<char> held(static_cast<std::size_t>(components.closed), 0);
+void SparseCholesky::upper_by_columns(const Matrix& A, const Components& components) {
+    auto& [start, row, value] = next_;
+    refill_scratch<char>(held_, static_cast<std::size_t>(components.closed), 0);
     start.assign(1, 0);
     row.clear();
     value.clear();
@@ -51,28 +55,25 @@ void upper_by_columns(const Matrix& A, const Components& components, std::vector
         }
         real diagonal = A.diagonal[i];
         const int c = components.closed > 0 ? components.of[i] : -1;
-        if (c >= 0 && !held[static_cast<std::size_t>(c)]) held[static_cast<std::size_t>(c)] = 1, diagonal = diagonal > 0 ? 2 * diagonal : 1;
+        if (c >= 0 && !held_[static_cast<std::size_t>(c)])
+            held_[static_cast<std::size_t>(c)] = 1, diagonal = diagonal > 0 ? 2 * diagonal : 1;
         row.push_back(static_cast<long>(i));
         value.push_back(diagonal);
         start.push_back(static_cast<long>(row.size()));
     }
 }
 
-}  // namespace
-
 void SparseCholesky::factor(const Matrix& A, const Components& components) {
-    std::vector<long> start, row;
-    Vector value;
-    upper_by_columns(A, components, start, row, value);
+    upper_by_columns(A, components);
     auto& [common, factor, x, y, e] = *cholmod_;
-    const bool same_pattern = factor != nullptr && start == start_ && row == row_;
-    if (same_pattern && value == value_) return;
-    start_.swap(start), row_.swap(row), value_.swap(value);
+    const bool same_pattern = factor != nullptr && next_.start == now_.start && next_.row == now_.row;
+    if (same_pattern && next_.value == now_.value) return;
+    now_ = next_;  // not swapped: both have their room after the first
     if (A.size() == 0) return;
     cholmod_sparse matrix{};
     matrix.nrow = matrix.ncol = static_cast<std::size_t>(A.size());
-    matrix.nzmax = row_.size();
-    matrix.p = start_.data(), matrix.i = row_.data(), matrix.x = value_.data();
+    matrix.nzmax = now_.row.size();
+    matrix.p = now_.start.data(), matrix.i = now_.row.data(), matrix.x = now_.value.data();
     matrix.stype = 1, matrix.itype = CHOLMOD_LONG, matrix.xtype = CHOLMOD_REAL, matrix.dtype = CHOLMOD_DOUBLE;
     matrix.sorted = matrix.packed = 1;
     common.supernodal = A.size() < small ? CHOLMOD_SIMPLICIAL : CHOLMOD_AUTO;
@@ -101,8 +102,6 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
     std::memcpy(x.data(), h.x->x, b.size() * sizeof(real));
 }
 
-std::size_t SparseCholesky::bytes() const {
-    return cholmod_->common.memory_inuse + (start_.capacity() + row_.capacity()) * sizeof(long) + value_.capacity() * sizeof(real);
-}
+std::size_t SparseCholesky::bytes() const { return cholmod_->common.memory_inuse + now_.bytes() + next_.bytes() + held_.capacity(); }
 
 }  // namespace weir::poisson

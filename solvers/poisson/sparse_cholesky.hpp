@@ -23,10 +23,17 @@ public:
     int factorizations() const { return factorizations_; }
 
 private:
+    void upper_by_columns(const Matrix& A, const Components& components);
+
     struct Handles;
     std::unique_ptr<Handles> cholmod_;
-    std::vector<long> start_, row_;
-    Vector value_;
+    struct Columns {
+        std::vector<long> start, row;
+        Vector value;
+        std::size_t bytes() const { return (start.capacity() + row.capacity()) * sizeof(long) + value.capacity() * sizeof(real); }
+    };
+    Columns now_, next_;      // of the factor, and of the matrix that comes
+    std::vector<char> held_;  // closed components whose diagonal has been raised
     int analyses_ = 0, factorizations_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "poisson/system.hpp"
 
+#include "core/scratch.hpp"
 #include "poisson/faces.hpp"
 
 #include <algorithm>
@@ -49,8 +50,8 @@ real dot(const Vector& a, const Vector& b) {
 
 void Components::remove_means(Vector& x) const {
     if (closed == 0) return;
-    sum_.assign(static_cast<std::size_t>(closed), 0);
-    count_.assign(static_cast<std::size_t>(closed), 0);
+    refill_scratch<real>(sum_, static_cast<std::size_t>(closed), 0);
+    refill_scratch<real>(count_, static_cast<std::size_t>(closed), 0);
     for (std::size_t i = 0; i < x.size(); ++i)
         if (of[i] >= 0) sum_[static_cast<std::size_t>(of[i])] += x[i], count_[static_cast<std::size_t>(of[i])] += 1;
     for (std::size_t c = 0; c < sum_.size(); ++c) sum_[c] /= count_[c];
@@ -60,39 +61,40 @@ void Components::remove_means(Vector& x) const {
 
 std::size_t Components::bytes() const { return bytes_of(of) + bytes_of(sum_) + bytes_of(count_); }
 
-/// Union-find over the faces; a component is open if some row's diagonal exceeds its weights, that is, if a face leads to p = 0.
-Components find_components(const Matrix& A) {
+int ComponentFinder::root(int i) {
+    const auto parent = [&](int j) -> int& { return parent_[static_cast<std::size_t>(j)]; };
+    while (parent(i) != i) i = parent(i) = parent(parent(i));
+    return i;
+}
+
+void ComponentFinder::find(const Matrix& A, Components& components) {
     const auto n = static_cast<std::size_t>(A.size());
-    std::vector<int> parent(n);
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int i) {
-        while (parent[static_cast<std::size_t>(i)] != i)
-            i = parent[static_cast<std::size_t>(i)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
-        return i;
-    };
-    std::vector<char> open(n, 0);
+    parent_.resize(n);
+    std::iota(parent_.begin(), parent_.end(), 0);
+    open_.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
         real weights = 0;
         for (int k = A.start[i]; k < A.start[i + 1]; ++k) {
             const auto entry = static_cast<std::size_t>(k);
             weights += A.weight[entry];
-            if (A.column[entry] >= static_cast<int>(i)) continue;
+            if (A.column[entry] >= static_cast<int>(i) || !(A.weight[entry] > 0)) continue;
             const int a = root(A.column[entry]), b = root(static_cast<int>(i));
-            parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+            parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
         }
-        open[i] = A.diagonal[i] > weights;
+        open_[i] = A.diagonal[i] > weights;
     }
     for (std::size_t i = 0; i < n; ++i)
-        if (open[i]) open[static_cast<std::size_t>(root(static_cast<int>(i)))] = 1;
-    Components c;
-    std::vector<int> number(n, -1);
+        if (open_[i]) open_[static_cast<std::size_t>(root(static_cast<int>(i)))] = 1;
+    components.closed = 0;
+    number_.assign(n, -1);
     for (std::size_t i = 0; i < n; ++i)
-        if (parent[i] == static_cast<int>(i) && !open[i]) number[i] = c.closed++;
-    if (c.closed == 0) return c;
-    c.of.resize(n);
-    for (std::size_t i = 0; i < n; ++i) c.of[i] = number[static_cast<std::size_t>(root(static_cast<int>(i)))];
-    return c;
+        if (parent_[i] == static_cast<int>(i) && !open_[i]) number_[i] = components.closed++;
+    components.of.clear();
+    if (components.closed == 0) return;
+    for (std::size_t i = 0; i < n; ++i) components.of.push_back(number_[static_cast<std::size_t>(root(static_cast<int>(i)))]);
 }
+
+std::size_t ComponentFinder::bytes() const { return bytes_of(parent_) + bytes_of(number_) + bytes_of(open_); }
 
 namespace {
 
@@ -173,7 +175,7 @@ void System<D>::build(const Operator<D>& op) {
         colour.push_back(colour_of(op, I));
         append_row(A, op, number, I);
     });
-    components = find_components(A);
+    ComponentFinder().find(A, components);
 }
 
 template <int D>

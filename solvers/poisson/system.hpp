@@ -58,7 +58,19 @@ struct Components {
 private:
     mutable Vector sum_, count_;
 };
-Components find_components(const Matrix& A);
+
+/// Union-find over the faces of positive weight; a component is open if some row's diagonal exceeds its weights, that is, if a face leads
+/// to p = 0. Keeps its room between calls.
+class ComponentFinder {
+public:
+    void find(const Matrix& A, Components& components);
+    std::size_t bytes() const;
+
+private:
+    int root(int i);
+    std::vector<int> parent_, number_;
+    std::vector<char> open_;
+};
 
 template <int D>
 struct System {

@@ -1,27 +1,9 @@
 // What a scene does not name costs nothing: no field, no pass, no byte, and no step allocates.
+#include "support/count_allocations.hpp"
 #include "support/mac_solver.hpp"
 #include "support/test.hpp"
 
 #include "core/parallel.hpp"
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // g++ 12 does not see that both halves are replaced together
-
-// Every way to allocate in this program is counted.
-void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* p = std::malloc(size)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace weir::mac {
 
@@ -44,6 +26,17 @@ const char* const stirred = "initial.velocity = { name = \"random\" }\n";
 
 std::unique_ptr<Solver> make(int dim, const std::string& rest) {
     return smoke_kind().make(test::mac_scene(test::unit_box(dim, 16, stirred + rest)));
+}
+
+/// A tank of 1.5 m by 1 m (by 0.75 m) with a block of water in its lower left corner.
+std::unique_ptr<Solver> make_water(int dim, const std::string& transfer, const std::string& width, const std::string& height) {
+    const bool flat = dim == 2;
+    const std::string text = "solver = \"mac_water\"\ndim = " + std::to_string(dim) + "\ngrid = { cells = [24, 16" + (flat ? "" : ", 12") +
+                             "], size = [1.5, 1.0" + (flat ? "" : ", 0.75") + "] }\ntime = { end = 9.0 }\nfluid = { density = 1000.0 }\n" +
+                             "liquid = [ { shape = \"box\", min = " + test::list(dim, "0.0") + ", max = [" + width + ", " + height +
+                             (flat ? "" : ", 0.75") + "] } ]\neffects = { gravity = { g = [0.0, -9.81" + (flat ? "" : ", 0.0") +
+                             "] } }\nscheme = { transfer = \"" + transfer + "\" }\n";
+    return water_kind().make(scene::parse(text, "water.toml", {water_kind().schema}));
 }
 
 }  // namespace
@@ -96,11 +89,34 @@ TEST_IN_2D_AND_3D("after the first, a step allocates nothing, whatever the schem
         for (const std::string& rest : {std::string(), all}) {
             const auto flow = make(D, std::string("scheme = { advection = \"") + advection + "\" }\n" + rest);
             flow->step(0.01);
-            const long before = allocations;
+            const long before = test::allocations;
             flow->step(0.01);
             flow->step(0.01);
-            EXPECT_EQ(allocations - before, 0) << advection << (rest.empty() ? " alone" : " with everything");
+            EXPECT_EQ(test::allocations - before, 0) << advection << (rest.empty() ? " alone" : " with everything");
         }
+}
+
+TEST_IN_2D_AND_3D("a step of water allocates nothing after the first while its surface keeps its length") {
+    set_threads(1);
+    for (const char* transfer : {"grid", "pic", "flip", "apic"}) {
+        const auto water = make_water(D, transfer, "0.5", "0.5");
+        water->step(0.001);
+        const long before = test::allocations;
+        for (int i = 0; i < 5; ++i) water->step(0.001);
+        EXPECT_EQ(test::allocations - before, 0) << transfer;
+    }
+}
+
+// A vector grows only past twice its largest size so far. Some 40 vectors have the surface's, the spray's or the components' size; from the
+// column to the most broken surface these grow to at most 16 times (4 doublings), and none ever grows again after its largest.
+TEST_IN_2D_AND_3D("a breaking dam allocates only as its surface grows, by doubling") {
+    set_threads(1);
+    const auto water = make_water(D, "flip", "0.3", "0.7");
+    water->step(0.004);
+    const long before = test::allocations;
+    for (int i = 0; i < 400; ++i) water->step(0.004);
+    EXPECT_GT(test::allocations - before, 0) << "nothing grew: the scene does not show what it is for";
+    EXPECT_LE(test::allocations - before, 40 * 4);
 }
 
 }  // namespace weir::mac

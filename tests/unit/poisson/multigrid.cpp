@@ -3,23 +3,8 @@
 
 #include "poisson/geometric_cg.hpp"
 #include "problems.hpp"
+#include "support/count_allocations.hpp"
 #include "support/test.hpp"
-
-#include <cstdlib>
-#include <new>
-
-namespace {
-bool counting = false;
-long allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-    if (counting) ++allocations;
-    if (void* p = std::malloc(size)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace weir;
 using namespace weir::test;
@@ -127,11 +112,9 @@ TEST_IN_2D_AND_3D("the second solve allocates nothing") {
             Grid<real, D> p(b.extent());
             solver->solve(p, b);
             p.fill(0);
-            allocations = 0;
-            counting = true;
+            const long before = allocations;
             solver->solve(p, b);
-            counting = false;
-            EXPECT_EQ(allocations, 0) << name;
+            EXPECT_EQ(allocations - before, 0) << name;
         }
 }
 
