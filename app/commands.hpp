@@ -11,5 +11,6 @@ void add_list(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_cost(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
+void add_report(CLI::App& app, int& exit_code);
 
 }  // namespace weir::app

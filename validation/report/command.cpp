@@ -5,6 +5,7 @@
 #include "output/atomic_file.hpp"
 #include "scene/names.hpp"
 #include "validation/harness/runner.hpp"
+#include "validation/page/page.hpp"
 #include "validation/report/figure.hpp"
 #include "validation/report/publish.hpp"
 #include "validation/report/svg.hpp"
@@ -107,6 +108,7 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
         passed = passed && result.pass(), bad = bad || result.bad_input();
     }
     if (!options.publish.empty()) publish(results, options.out, options.publish);
+    if (!options.publish.empty() && options.page) fmt::print("{}\n", write_page(options.publish).string());
     std::size_t claims = verdicts.size(), held = 0;
     for (const auto& verdict : verdicts) held += verdict["pass"].get<bool>() ? 1 : 0;
     fmt::print("{} of {} claims hold, in {} cases\n", held, claims, results.size());

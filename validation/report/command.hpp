@@ -17,6 +17,7 @@ struct ValidateOptions {
     Size size = Size::ci;
     std::filesystem::path out = "out/validate";  // verdicts.json, svg/, csv/ and the frames of each run
     std::filesystem::path publish{};             // folder of the published page; empty: not published
+    bool page = false;                           // write its index.html too
     bool quiet = false;                          // no progress on the terminal
 };
 

@@ -1,0 +1,22 @@
+// weir report: the page of all published results, put together again without running anything.
+#include "app/commands.hpp"
+#include "core/error.hpp"
+#include "validation/page/page.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace weir::app {
+
+void add_report(CLI::App& app, int& exit_code) {
+    auto results = std::make_shared<std::string>("results");
+    CLI::App* command = app.add_subcommand("report", "Write index.html from what is published; nothing is run");
+    command->add_option("results", *results, "Folder of published results (default: results)");
+    command->callback([results, &exit_code] {
+        std::printf("%s\n", validation::write_page(*results).c_str());
+        exit_code = exit_success;
+    });
+}
+
+}  // namespace weir::app

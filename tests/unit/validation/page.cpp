@@ -1,0 +1,135 @@
+// The page of results: what is thinned still looks the same, what is quoted cannot break the page, what fails is shown first.
+#include "validation/page/page.hpp"
+
+#include "core/error.hpp"
+#include "validation/page/chart.hpp"
+#include "validation/page/sections.hpp"
+#include "validation/page/text.hpp"
+#include "validation/page/thin.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "support/temporary_folder.hpp"
+#include "support/test.hpp"
+
+using namespace weir::validation;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+json claim(bool pass, double measured, const json& bound, const std::string& bound_text) {
+    return {{"case", "tank"},
+            {"claim", "rest.speed"},
+            {"kind", "exact"},
+            {"pass", pass},
+            {"measured", measured},
+            {"bound", bound},
+            {"bound_text", bound_text},
+            {"why", "2 < 3 & so"},
+            {"question", "Does it rest?"},
+            {"blind_to", "motion"},
+            {"seconds", 0.5},
+            {"size", "ci"},
+            {"commit", "abc"},
+            {"machine", "a machine"}};
+}
+
+fs::path results_with(const fs::path& folder, const json& verdicts) {
+    std::ofstream(folder / "verdicts.json") << verdicts.dump();
+    return folder;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size()) ++n;
+    return n;
+}
+
+}  // namespace
+
+TEST("bytes are written in base 64 as RFC 4648 gives it") {
+    // section 10 of the RFC
+    for (const auto& [plain, coded] :
+         {std::pair{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"foobar", "Zm9vYmFy"}})
+        EXPECT_EQ(base64(plain), coded);
+}
+
+TEST("a straight line keeps its ends, a corner stays, and a thousand steps of noise keep their envelope") {
+    std::string straight = "M0.00,0.00", corner = "M0.00,0.00", noise = "M0.00,0.00";
+    for (int i = 1; i <= 1000; ++i) {
+        straight += fmt::format(" L{:.2f},{:.2f}", 0.5 * i, 0.25 * i);
+        corner += fmt::format(" L{:.2f},{:.2f}", 0.5 * i, i < 500 ? 0.0 : 50.0);
+        noise += fmt::format(" L{:.2f},{:.2f}", 0.01 * i, i % 2 ? 0.0 : 80.0);
+    }
+    const auto path = [](const std::string& d) { return "<path stroke='black'  d='" + d + "'/>"; };
+    EXPECT_EQ(thin_svg(path(straight)), path("M0.0,0.0L500.0,250.0"));
+    EXPECT_EQ(thin_svg(path(corner)), path("M0.0,0.0L249.5,0.0 250.0,50.0 500.0,50.0"));
+    const std::string thinned = thin_svg(path(noise));
+    EXPECT_LT(thinned.size(), noise.size() / 10);
+    EXPECT_NE(thinned.find(",80.0"), std::string::npos);
+    EXPECT_NE(thinned.find(",0.0"), std::string::npos);
+}
+
+TEST("a path of curves is left as it is, and so is what comes before and after a path") {
+    const std::string curves = "<g><path d='M0,0 C" + std::string(100, '1') + "'/></g>tail";
+    EXPECT_EQ(thin_svg(curves), curves);
+}
+
+TEST("marks of one curve that cover each other are drawn once; those of the next curve stay") {
+    const std::string mark = "<use xlink:href='#p' transform='translate(10.00,10.00) scale(3)' color='red'/>";
+    EXPECT_EQ(count(thin_svg("<g id=\"a\">" + mark + mark + "</g><g id=\"b\">" + mark + "</g>"), "<use"), 2u);
+}
+
+TEST("a claim's part of its bound: measured over an upper bound, a lower one over measured, the distance from the middle of a range") {
+    EXPECT_NEAR(*used_part(claim(true, 0.5, 2.0, "<= 2")), 0.25, 1e-15);
+    EXPECT_NEAR(*used_part(claim(true, 4.0, 2.0, ">= 2")), 0.5, 1e-15);
+    EXPECT_NEAR(*used_part(claim(true, 2.1, {1.8, 2.2}, "in [1.8, 2.2]")), 0.5, 1e-12);
+    EXPECT_FALSE(used_part(claim(true, 0.0, 0.0, "<= 0")));
+    EXPECT_FALSE(used_part(claim(false, 0, 1, "<= 1").patch(json::parse(R"([{"op": "replace", "path": "/measured", "value": null}])"))));
+}
+
+TEST("a failed claim is named at the top, marked in its row, and its case is open") {
+    const weir::test::TemporaryFolder folder;
+    const std::string page = page_html(results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2"), claim(false, 3, 2, "<= 2")})));
+    EXPECT_NE(page.find("<p class=\"big no\">1 of 2</p>"), std::string::npos);
+    EXPECT_NE(page.find("<ul class=\"failures\"><li><a href=\"#case-tank\">tank</a>: rest.speed</li></ul>"), std::string::npos);
+    EXPECT_NE(page.find("<details id=\"case-tank\" class=\"case\" open>"), std::string::npos);
+    EXPECT_EQ(count(page, "<b class=\"no\">FAIL</b>"), 1u);
+}
+
+TEST("texts are quoted, every claim carries its reason and blind spot, and the page asks the network for nothing") {
+    const weir::test::TemporaryFolder folder;
+    const std::string page = page_html(results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2")})));
+    EXPECT_NE(page.find("2 &lt; 3 &amp; so"), std::string::npos);
+    EXPECT_NE(page.find("<b>Blind to:</b> motion"), std::string::npos);
+    EXPECT_NE(page.find("commit abc, a machine"), std::string::npos);
+    EXPECT_EQ(page.find("src=\"http"), std::string::npos);
+    EXPECT_EQ(page.find("href=\"http"), std::string::npos);
+}
+
+TEST("a folder without verdicts is refused by name") {
+    const weir::test::TemporaryFolder folder;
+    try {
+        page_html(folder.path());
+        FAIL() << "accepted";
+    } catch (const weir::BadInput& wrong) {
+        EXPECT_NE(std::string(wrong.what()).find("verdicts.json"), std::string::npos) << wrong.what();
+    }
+}
+
+TEST("a diagram holds every point that its axes can show, and a map one cell a run") {
+    const Panel panel{.title = "t", .x = {"x", true}, .y = {"y", true}, .curves = {{.label = "a", .x = {1, 10, -1}, .y = {1, 2, 3}}}};
+    EXPECT_EQ(count(chart_svg(panel), "<circle"), 2u) << "a negative number has no place on a logarithmic axis";
+    const Map map{.title = "t",
+                  .x_label = "x",
+                  .y_label = "y",
+                  .x = {"1", "2"},
+                  .y = {"a"},
+                  .cells = {{{.stable = true}}, {{.stable = false, .kind = 0, .text = "7"}}},
+                  .kinds = {"volume"}};
+    EXPECT_EQ(count(map_svg(map), "class=\"cell held\"><rect x"), 2u) << "one cell and its entry in the legend";
+    EXPECT_EQ(count(map_svg(map), "class=\"cell k0\"><rect x"), 2u);
+}

@@ -1,0 +1,111 @@
+#include "validation/page/sections.hpp"
+
+#include "validation/page/chart.hpp"
+#include "validation/page/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace weir::validation {
+namespace {
+
+using nlohmann::json;
+
+bool failed(const json& point) { return point.contains("failure"); }
+bool by_step(const json& study) { return text_at(study, "price") == "step"; }
+
+/// Real-time factor, or milliseconds where a step is the price.
+double abscissa(const json& study, const json& point) {
+    if (by_step(study)) return number_at(point, "ms_per_step").value_or(0);
+    const double seconds = number_at(point, "seconds_per_second").value_or(0);
+    return seconds > 0 ? 1 / seconds : 0;
+}
+
+/// One curve a method in the order of the study's cheapest first, and the front.
+Panel panel_of(const json& study) {
+    Panel panel{.title = text_at(study, "question"),
+                .x = {by_step(study) ? "computing time a step [ms]" : "real-time factor: simulated seconds a second of computing", true},
+                .y = {text_at(study, "error"), true}};
+    Curve front{.label = "Pareto front: nothing is both cheaper and more accurate", .dashed = true};
+    for (const json& p : study["points"]) {
+        if (failed(p)) continue;
+        const std::string method = text_at(p, "method");
+        auto at = std::find_if(panel.curves.begin(), panel.curves.end(), [&](const Curve& c) { return c.label == method; });
+        if (at == panel.curves.end()) at = panel.curves.insert(at, Curve{.label = method});
+        at->x.push_back(abscissa(study, p)), at->y.push_back(number_at(p, "error").value_or(0)), at->names.push_back(text_at(p, "name"));
+        if (p.value("front", false))
+            front.x.push_back(at->x.back()), front.y.push_back(at->y.back()), front.names.push_back(at->names.back());
+    }
+    panel.curves.push_back(std::move(front));
+    return panel;
+}
+
+std::string table_of(const json& study) {
+    HtmlTable table({"setting", text_at(study, "error"), "× real time", "ms of a 60 Hz frame", "ms a step", "MB", "steps", "on the front"},
+                    "All settings of " + text_at(study, "study"));
+    for (const json& p : study["points"]) {
+        const auto bytes = number_at(p, "bytes");
+        const auto memory = value(bytes ? std::optional(*bytes / 1e6) : std::nullopt);
+        if (failed(p)) {
+            table.row({word(text_at(p, "name")), raw("failed: " + escaped(text_at(p, "failure"))), value({}), value({}), value({}), memory,
+                       value(number_at(p, "steps")), word("")},
+                      "fail");
+            continue;
+        }
+        const double seconds = number_at(p, "seconds_per_second").value_or(0);
+        const bool front = p.value("front", false);
+        table.row({word(text_at(p, "name")), value(number_at(p, "error")), value(seconds > 0 ? std::optional(1 / seconds) : std::nullopt),
+                   value(seconds * 1000 / 60), value(number_at(p, "ms_per_step")), memory, value(number_at(p, "steps")),
+                   raw(front ? "front" : "", front ? 0 : 1)},
+                  front ? "front" : "");
+    }
+    return table.html();
+}
+
+std::string study_html(const json& study, const std::filesystem::path& results) {
+    const std::string name = text_at(study, "study");
+    const Panel panel = panel_of(study);
+    std::string s = fmt::format(
+        "<article id=\"cost-{}\"><h3>{}</h3>\n<div class=\"beside\"><figure><div class=\"scroll\">{}</div>{}</figure>\n<ul "
+        "class=\"advice\">",
+        escaped(name), escaped(text_at(study, "question")),
+        chart_svg(panel, by_step(study) ? std::vector<Mark>{} : std::vector<Mark>{{1, "real time"}}), chart_legend(panel));
+    for (const json& sentence : study["advice"]) s += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
+    s += "</ul></div>\n<details><summary>All settings</summary>" + table_of(study) + "</details>\n";
+    s += fmt::format("<p class=\"fine\"><code>./weir.sh cost {0} --size {1}</code> · {2} thread(s), commit {3}, {4}", escaped(name),
+                     escaped(text_at(study, "size")), study.value("threads", 1), escaped(text_at(study, "commit")),
+                     escaped(text_at(study, "machine")));
+    if (!text_at(study, "source").empty()) s += " · compared with " + escaped(text_at(study, "source"));
+    if (const std::string csv = "cost/csv/" + name + ".csv"; std::filesystem::exists(results / csv))
+        s += fmt::format(" · <a href=\"{}\">every number (CSV)</a>", escaped(csv));
+    return s + "</p></article>\n";
+}
+
+/// Water methods side by side first, then the others by name: the more methods, the more a newcomer learns.
+std::vector<const json*> in_reading_order(const std::vector<json>& studies) {
+    std::vector<const json*> order;
+    for (const json& s : studies) order.push_back(&s);
+    std::stable_sort(order.begin(), order.end(), [](const json* a, const json* b) {
+        return text_at(*a, "study").starts_with("dam_break") && !text_at(*b, "study").starts_with("dam_break");
+    });
+    return order;
+}
+
+}  // namespace
+
+Section cost_section(const std::vector<json>& studies, const std::filesystem::path& results) {
+    if (studies.empty()) return {.summary = "<p>No study is published: <code>./weir.sh cost --all --publish</code></p>", .html = ""};
+    const auto order = in_reading_order(studies);
+    Section section;
+    section.summary = fmt::format("<p class=\"asks\">{}</p><ul>", escaped(text_at(*order.front(), "question")));
+    for (const json& sentence : (*order.front())["advice"]) section.summary += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
+    section.summary += fmt::format("</ul><p><a href=\"#cost-{}\">Figure and table</a></p>", escaped(text_at(*order.front(), "study")));
+    section.html =
+        "<p>Nobody compares settings here, only error for time. Computing time is wall-clock time of all steps but the first, the "
+        "median of the repeats; settings that fail stay in the tables.</p>\n";
+    for (const json* study : order) section.html += study_html(*study, results);
+    return section;
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,90 @@
+#include "validation/page/sections.hpp"
+
+#include "validation/page/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace weir::validation {
+namespace {
+
+using nlohmann::json;
+
+std::string axis_of(const json& limit) {
+    const std::string method = text_at(limit, "method");
+    return text_at(limit, "axis") + (method.empty() ? "" : ", " + method);
+}
+
+HtmlTable::Cell last_stable(const json& limit) {
+    const auto at = number_at(limit, "last_stable");
+    const bool open = !limit.contains("first_unstable");
+    return {.html = at ? (open ? "≥ " : "") + number_text(*at) : escaped(text_at(limit, "last_stable_text")),
+            .key = at.value_or(0),
+            .number = true};
+}
+
+void add_rows(HtmlTable& table, const json& study) {
+    for (const json& l : study["limits"]) {
+        const bool guarded = l.value("guarded", true);
+        std::string theory = number_at(l, "theory") ? number_text(*number_at(l, "theory")) : "–";
+        if (!text_at(l, "theory_source").empty()) theory += "<br><small>" + escaped(text_at(l, "theory_source")) + "</small>";
+        table.row({word(text_at(l, "solver").empty() ? text_at(study, "study") : text_at(l, "solver")),
+                   word(axis_of(l)),
+                   last_stable(l),
+                   {.html = theory, .key = number_at(l, "theory")},
+                   {.html = (number_at(l, "floor") ? number_text(*number_at(l, "floor")) : "–") +
+                            (guarded ? "" : " <b class=\"no\">not reached</b>"),
+                    .key = number_at(l, "floor"),
+                    .number = true},
+                   raw("<span class=\"why\">" + escaped(text_at(l, "broke")) + "</span>"),
+                   raw("<span class=\"why\">" + escaped(text_at(l, "hard_because")) + "</span>"),
+                   word(text_at(study, "study"))},
+                  guarded ? "" : "fail");
+    }
+}
+
+/// Limits that theory has a word on: what was found beside what was foretold.
+std::string beside_theory(const std::vector<json>& studies) {
+    std::string list;
+    for (const json& study : studies)
+        for (const json& l : study["limits"])
+            if (l.contains("theory") && l.contains("first_unstable") && l.contains("last_stable"))
+                list += fmt::format("<li>{}, {}: stable up to {}, theory {}</li>", escaped(text_at(study, "study")), escaped(axis_of(l)),
+                                    number_text(*number_at(l, "last_stable")), number_text(*number_at(l, "theory")));
+    return list.empty() ? "" : "<ul>" + list + "</ul>";
+}
+
+}  // namespace
+
+Section limits_section(const std::vector<json>& studies) {
+    if (studies.empty()) return {.summary = "<p>No limit is published: <code>./weir.sh stability --all --publish</code></p>", .html = ""};
+    HtmlTable table({"solver", "pushed along", "last stable", "theory", "floor", "what broke first", "hard because", "case"},
+                    "Each key is raised until something that must hold does not; the last value at which all held is the limit");
+    std::size_t limits = 0, unbroken = 0, below = 0;
+    std::set<std::string> machines;
+    for (const json& study : studies) {
+        add_rows(table, study);
+        for (const json& l : study["limits"]) {
+            ++limits;
+            unbroken += l.contains("first_unstable") ? 0 : 1;
+            below += l.value("guarded", true) ? 0 : 1;
+        }
+        machines.insert(fmt::format("{}: commit {}, {}", text_at(study, "study"), text_at(study, "commit"), text_at(study, "machine")));
+    }
+    Section section;
+    section.summary = fmt::format(
+        "<p class=\"big {}\">{} limits</p><p>measured by pushing solvers until an invariant broke; {} did not break however far "
+        "they were pushed. {}</p>{}",
+        below ? "no" : "pass", limits, unbroken,
+        below ? fmt::format("{} fall below the floor that is guarded.", below) : std::string("Every floor that is guarded holds."),
+        beside_theory(studies));
+    section.html = table.html();
+    std::string footer;
+    for (const std::string& m : machines) footer += "<li>" + escaped(m) + "</li>";
+    section.html += "<details class=\"fine\"><summary><code>./weir.sh stability --all</code></summary><ul>" + footer + "</ul></details>\n";
+    return section;
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,194 @@
+#include "validation/page/thin.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace weir::validation {
+namespace {
+
+struct Point {
+    double x, y;
+};
+using Line = std::vector<Point>;
+
+constexpr double visible = 0.3;        // pixels off the straight line
+constexpr double column = 0.5;         // pixels
+constexpr double mark_distance = 1.5;  // pixels
+
+void replace_all(std::string& s, std::string_view from, std::string_view to) {
+    for (std::size_t at = 0; (at = s.find(from, at)) != std::string::npos; at += to.size()) s.replace(at, from.size(), to);
+}
+
+/// Of each run of points within a column: the first, the lowest, the highest, the last, in their order.
+Line by_columns(const Line& line) {
+    Line kept;
+    for (std::size_t begin = 0; begin < line.size();) {
+        std::size_t end = begin + 1;
+        while (end < line.size() && std::floor(line[end].x / column) == std::floor(line[begin].x / column)) ++end;
+        std::size_t low = begin, high = begin;
+        for (std::size_t i = begin; i < end; ++i) low = line[i].y < line[low].y ? i : low, high = line[i].y > line[high].y ? i : high;
+        for (const std::size_t i : std::set<std::size_t>{begin, low, high, end - 1}) kept.push_back(line[i]);
+        begin = end;
+    }
+    return kept;
+}
+
+double distance(Point p, Point a, Point b) {
+    const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+    const double s = squared > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0.0;
+    return std::hypot(p.x - a.x - s * dx, p.y - a.y - s * dy);
+}
+
+/// Douglas & Peucker 1973, with a list of open pieces in place of recursion.
+Line straightened(const Line& line) {
+    if (line.size() < 3) return line;
+    std::vector<char> keep(line.size(), 0);
+    keep.front() = keep.back() = 1;
+    std::vector<std::pair<std::size_t, std::size_t>> open = {{0, line.size() - 1}};
+    while (!open.empty()) {
+        const auto [a, b] = open.back();
+        open.pop_back();
+        std::size_t farthest = a;
+        double most = visible;
+        for (std::size_t i = a + 1; i < b; ++i)
+            if (const double d = distance(line[i], line[a], line[b]); d > most) most = d, farthest = i;
+        if (farthest == a) continue;
+        keep[farthest] = 1;
+        open.push_back({a, farthest});
+        open.push_back({farthest, b});
+    }
+    Line kept;
+    for (std::size_t i = 0; i < line.size(); ++i)
+        if (keep[i]) kept.push_back(line[i]);
+    return kept;
+}
+
+std::string path_of(const std::vector<Line>& lines) {
+    std::string d;
+    for (const Line& line : lines) {
+        const char* command = "M";
+        for (const Point p : straightened(by_columns(line))) {
+            d += fmt::format("{}{:.1f},{:.1f}", command, p.x, p.y);
+            command = *command == 'M' ? "L" : " ";
+        }
+    }
+    return d;
+}
+
+/// The path with fewer corners; itself where it holds anything but absolute M and L.
+std::string thinner_path(std::string_view d) {
+    std::vector<Line> lines;
+    const char* at = d.data();
+    const char* const end = d.data() + d.size();
+    const auto number = [&](double& value) {
+        char* after = nullptr;
+        value = std::strtod(at, &after);  // the text goes on behind the path, so it ends in a quote
+        if (after == at || after > end) return false;
+        at = after;
+        return true;
+    };
+    while (at < end) {
+        if (std::isspace(static_cast<unsigned char>(*at)) || *at == ',') {
+            ++at;
+            continue;
+        }
+        if (*at == 'M')
+            lines.emplace_back(), ++at;
+        else if (*at == 'L')
+            ++at;
+        Point p{};
+        if (lines.empty() || !number(p.x) || at >= end || *at != ',') return std::string(d);
+        ++at;
+        if (!number(p.y)) return std::string(d);
+        lines.back().push_back(p);
+    }
+    return path_of(lines);
+}
+
+/// Text between `from` and the next `until`, from `at` on; empty where there is none.
+std::string_view between(std::string_view s, std::size_t at, std::string_view from, char until) {
+    const auto begin = s.find(from, at);
+    if (begin == std::string_view::npos) return {};
+    const auto end = s.find(until, begin + from.size());
+    return end == std::string_view::npos ? std::string_view{} : s.substr(begin + from.size(), end - begin - from.size());
+}
+
+/// Marks seen so far: a second one in the same square of the same kind is not seen.
+class Marks {
+public:
+    bool hidden(std::string_view tag) {
+        const auto where = between(tag, 0, "transform='translate(", ')');
+        const auto comma = where.find(',');
+        if (where.empty() || comma == std::string_view::npos) return false;
+        const double x = std::atof(std::string(where.substr(0, comma)).c_str());
+        const double y = std::atof(std::string(where.substr(comma + 1)).c_str());
+        const std::string kind = std::string(between(tag, 0, "href='", '\'')) + std::string(between(tag, 0, "color='", '\''));
+        return !seen_.insert({kind, std::lround(x / mark_distance), std::lround(y / mark_distance)}).second;
+    }
+    void forget() { seen_.clear(); }
+
+private:
+    std::set<std::tuple<std::string, long, long>> seen_;
+};
+
+}  // namespace
+
+std::string thin_svg(const std::string& svg) {
+    std::string out;
+    out.reserve(svg.size() / 2);
+    Marks marks;
+    for (std::size_t at = 0; at < svg.size();) {
+        const auto tag = svg.find('<', at);
+        if (tag == std::string::npos) return out + svg.substr(at);
+        const auto close = svg.find('>', tag);
+        if (close == std::string::npos) return out + svg.substr(at);
+        out.append(svg, at, tag - at);
+        const std::string_view whole(svg.data() + tag, close + 1 - tag);
+        at = close + 1;
+        if (whole.starts_with("<g id=")) marks.forget();  // the next curve
+        if (whole.starts_with("<use") && marks.hidden(whole)) continue;
+        const auto d = whole.starts_with("<path") ? between(whole, 0, " d='", '\'') : std::string_view{};
+        if (d.size() < 80) {
+            out += whole;
+            continue;
+        }
+        out += whole.substr(0, static_cast<std::size_t>(d.data() - whole.data()));
+        out += thinner_path(d);
+        out += whole.substr(static_cast<std::size_t>(d.data() - whole.data()) + d.size());
+    }
+    return out;
+}
+
+std::string inline_svg(const std::string& svg, std::string_view prefix) {
+    const auto begin = svg.find("<svg");
+    std::string s = begin == std::string::npos ? svg : svg.substr(begin);
+    if (const auto title = s.find("<title>Gnuplot</title>"); title != std::string::npos) s.erase(title, 22);
+    for (const char* quote : {"'", "\""}) replace_all(s, fmt::format("id={}", quote), fmt::format("id={}{}-", quote, prefix));
+    replace_all(s, "href='#", fmt::format("href='#{}-", prefix));
+    for (const auto& [from, to] : {std::pair{"fill=\"#ffffff\"", "fill=\"none\""},
+                                   {"fill=\"black\"", "fill=\"currentColor\""},
+                                   {"color=\"black\"", ""},
+                                   {"stroke='black'", "stroke='currentColor'"},
+                                   {"stroke=\"black\"", "stroke=\"currentColor\""},
+                                   {"rgb(  0,   0,   0)", "currentColor"},
+                                   {"xlink:href", "href"},
+                                   {" font-family=\"sans\"", ""}})
+        replace_all(s, from, to);
+    std::string one_line;  // no blank lines, no indentation
+    bool line_begins = true;
+    for (const char c : s) {
+        if (line_begins && (c == ' ' || c == '\t' || c == '\n')) continue;
+        one_line += c;
+        line_begins = c == '\n';
+    }
+    return one_line;
+}
+
+}  // namespace weir::validation
