@@ -43,7 +43,9 @@ scene::Scene scene_of(const Job& job) {
     if (job.solver == "pbf") {
         set.push_back({"scheme.iterations", std::to_string(job.iterations)});
     } else {
-        set.push_back({"scheme", fmt::format("{{ support = 2.0, sound_speed = 12.0, isa = \"{}\" }}", job.isa)});
+        set.push_back(
+            {"scheme",
+             fmt::format("{{ kernel = \"muller\", support = 2.0, density = \"summation\", sound_speed = 12.0, isa = \"{}\" }}", job.isa)});
         set.push_back({"effects", "{ gravity = { g = [0, -9.81, 0] }, artificial_viscosity = { alpha = 0.1 } }"});
     }
     if (job.solver == "pbf")

@@ -205,11 +205,20 @@ void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid) {
     }
 }
 
+template <int D>
+Fluid<D> initial_fluid(const scene::Scene& scene) {
+    Fluid<D> fluid(scene);
+    set_initial_velocity(scene, fluid);
+    return fluid;
+}
+
 template struct Flow<2>;
 template struct Flow<3>;
 template void add_effects(const scene::Scene&, Effects<Flow<2>>&);
 template void add_effects(const scene::Scene&, Effects<Flow<3>>&);
 template void set_initial_velocity(const scene::Scene&, Fluid<2>&);
 template void set_initial_velocity(const scene::Scene&, Fluid<3>&);
+template Fluid<2> initial_fluid(const scene::Scene&);
+template Fluid<3> initial_fluid(const scene::Scene&);
 
 }  // namespace weir::particles

@@ -38,5 +38,8 @@ scene::Key support_key(real usual);
 scene::Key isa_key();
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid);
+/// The scene's liquid with its initial velocity.
+template <int D>
+Fluid<D> initial_fluid(const scene::Scene& scene);
 
 }  // namespace weir::particles

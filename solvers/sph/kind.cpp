@@ -10,37 +10,42 @@ namespace {
 
 Key scheme() {
     const Options usual;
-    return {.name = "scheme",
-            .type = Type::table,
-            .doc = "Numerical choices of SPH.",
-            .keys = {{.name = "kernel",
-                      .type = Type::choice,
-                      .doc = "muller: poly6 for density, spiky for pressure, its own for viscosity; having no common energy, these need "
-                             "viscosity to rest. "
-                             "cubic and wendland use one for all.",
-                      .fallback = std::string("muller"),
-                      .choices = {"muller", "cubic", "wendland"}},
-                     particles::support_key(usual.support),
-                     {.name = "sound_speed",
-                      .type = Type::number,
-                      .doc = "Speed of sound; ten times the fastest flow keeps density within one per cent.",
-                      .unit = "m/s",
-                      .fallback = usual.sound,
-                      .min = 0,
-                      .min_open = true},
-                     {.name = "state",
-                      .type = Type::choice,
-                      .doc = "Equation of state. linear: p = c^2 (rho - rho0); tait: c^2 rho0 / gamma ((rho / rho0)^gamma - 1).",
-                      .fallback = std::string("linear"),
-                      .choices = {"linear", "tait"}},
-                     {.name = "gamma", .type = Type::number, .doc = "Of Tait's equation.", .fallback = 7.0, .min = 1.0},
-                     {.name = "density",
-                      .type = Type::choice,
-                      .doc = "summation: of the kernel over neighbours; continuity: by its rate, which a free surface does not thin.",
-                      .fallback = std::string("summation"),
-                      .choices = {"summation", "continuity"}},
-                     {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension},
-                     particles::isa_key()}};
+    return {
+        .name = "scheme",
+        .type = Type::table,
+        .doc = "Numerical choices of SPH.",
+        .keys = {{.name = "kernel",
+                  .type = Type::choice,
+                  .doc = "wendland and cubic: one kernel for all, so that forces between particles are the gradient of an energy. "
+                         "muller: as published in 2003, poly6 for density, spiky for pressure, its own for viscosity; these have no "
+                         "common energy and feed a liquid at rest, so they need viscosity.",
+                  .fallback = std::string("wendland"),
+                  .choices = {"muller", "cubic", "wendland"}},
+                 particles::support_key(usual.support),
+                 {.name = "sound_speed",
+                  .type = Type::number,
+                  .doc = "Speed of sound; absent: ten times the fastest flow that can be told before the start, which keeps density "
+                         "within one per cent: a fall from the highest liquid to the bottom of the domain, initial velocities, "
+                         "emitters, moving walls and solids (10 m/s where there are none).",
+                  .unit = "m/s",
+                  .min = 0,
+                  .min_open = true},
+                 {.name = "state",
+                  .type = Type::choice,
+                  .doc = "Equation of state. linear: p = c^2 (rho - rho0); tait: c^2 rho0 / gamma ((rho / rho0)^gamma - 1).",
+                  .fallback = std::string("linear"),
+                  .choices = {"linear", "tait"}},
+                 {.name = "gamma", .type = Type::number, .doc = "Of Tait's equation.", .fallback = 7.0, .min = 1.0},
+                 {.name = "density",
+                  .type = Type::choice,
+                  .doc = "summation: of the kernel over neighbours (Müller et al. 2003), which thins at a free surface. continuity: by its "
+                         "rate, which a surface does not thin. delta: continuity with the diffusion of density (delta = 0.1) and the "
+                         "artificial viscosity (alpha = 0.02) of delta-SPH (Marrone et al. 2011), without which a column at rest goes "
+                         "on ringing; the effects of these names set other values.",
+                  .fallback = std::string("delta"),
+                  .choices = {"delta", "continuity", "summation"}},
+                 {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension},
+                 particles::isa_key()}};
 }
 
 std::vector<scene::Variant> effects() {
@@ -72,7 +77,7 @@ Key initial() {
     key.keys.push_back({.name = "surface",
                         .type = Type::numbers,
                         .doc = "A point of the surface: pressure begins as rho g.(x - surface) where that is positive, of effects.gravity. "
-                               "Needs scheme.density = \"continuity\"; absent: no pressure.",
+                               "Needs a density by its rate (delta, continuity); absent: no pressure.",
                         .unit = "m",
                         .length = -1});
     return key;

@@ -25,10 +25,12 @@ Options::Options(const scene::Scene& scene) {
     const std::string& name = scene.text("scheme.kernel");
     smoothing = name == "cubic" ? Smoothing::cubic : name == "wendland" ? Smoothing::wendland : Smoothing::muller;
     support = scene.number("scheme.support");
-    sound = scene.number("scheme.sound_speed");
+    sound = scene.root().number_or("scheme.sound_speed", 0);
     gamma = scene.text("scheme.state") == "tait" ? scene.number("scheme.gamma") : 1;
     tension = scene.flag("scheme.tension");
-    continuity = scene.text("scheme.density") == "continuity";
+    const std::string& by = scene.text("scheme.density");
+    continuity = by != "summation";
+    if (by == "delta") diffusion = delta_sph.diffusion, artificial = delta_sph.viscosity;
     isa = scene.text("scheme.isa");
     if (scene.effect("viscosity")) viscosity = scene.number("fluid.viscosity");
     if (const auto* a = scene.effect("artificial_viscosity")) artificial = a->number("alpha");
@@ -46,6 +48,12 @@ Options::Options(const scene::Scene& scene) {
         read_sides<2>(scene);
     else
         read_sides<3>(scene);
+}
+
+Options Options::with_sound(real fastest) const {
+    Options all = *this;
+    if (sound == 0) all.sound = fastest > 0 ? 10 * fastest : 10;
+    return all;
 }
 
 bool Options::wall_forces() const {

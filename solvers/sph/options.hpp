@@ -10,10 +10,16 @@ namespace weir::sph {
 
 enum class Smoothing { muller, cubic, wendland };
 
+/// The constants of delta-SPH: diffusion of density and artificial viscosity (Marrone et al. 2011, section 2).
+struct DeltaSph {
+    real diffusion = 0.1, viscosity = 0.02;
+};
+inline constexpr DeltaSph delta_sph{};
+
 struct Options {
-    Smoothing smoothing = Smoothing::muller;
-    real support = 2;         // over the spacing
-    real sound = 10;          // speed of sound [m/s]
+    Smoothing smoothing = Smoothing::wendland;
+    real support = 4;         // over the spacing
+    real sound = 0;           // speed of sound [m/s]; 0: not named
     real gamma = 1;           // 1: the linear equation of state of Müller et al.; else Tait's
     bool tension = false;     // whether pressure may be negative
     bool continuity = false;  // density by its rate, not by a sum
@@ -28,6 +34,8 @@ struct Options {
 
     Options() = default;
     explicit Options(const scene::Scene& scene);
+    /// These options with a speed of sound: where none is named, ten times the fastest flow, or 10 m/s where there is none to tell.
+    Options with_sound(real fastest) const;
     /// p = c^2 (rho - rho0), or B ((rho / rho0)^gamma - 1) with B = c^2 rho0 / gamma (Monaghan 1994).
     real pressure(real rho, real rho0) const;
     /// The density that has this pressure.

@@ -1,5 +1,6 @@
 #include "sph/solver.hpp"
 
+#include "sph/sound.hpp"
 #include "sph/tension.hpp"
 
 #include <algorithm>
@@ -48,8 +49,8 @@ real interpolate(const std::vector<double>& t, const std::vector<double>& value,
 
 template <int D>
 SphSolver<D>::SphSolver(const scene::Scene& scene)
-    : options_(scene),
-      fluid_(scene),
+    : fluid_(particles::initial_fluid<D>(scene)),
+      options_(Options(scene).with_sound(fastest_flow(scene, fluid_))),
       emitters_(scene, fluid_.domain),
       params_(sph_params<particles::single::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
       smooth_(smoothing_params<D>(params_, particles::cell_volume<D>(fluid_.domain.spacing), fluid_.mass)),
@@ -61,7 +62,6 @@ SphSolver<D>::SphSolver(const scene::Scene& scene)
       flow_{fluid_, pairs_, smooth_, {}, {}, static_cast<int>(options_.smoothing)},
       rho_rest_(fluid_.rho0),
       max_dt_(scene.root().number_or("time.max_dt", infinity)) {
-    particles::set_initial_velocity(scene, fluid_);
     particles::add_effects(scene, effects_);
     if (scene.effect("surface_tension")) effects_.add(std::make_unique<SurfaceTension<D>>(options_, params_, walls_, solids_));
     start_pressure(scene);

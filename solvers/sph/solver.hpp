@@ -49,8 +49,8 @@ private:
     void drift(real dt);
     particles::SphPass pass();
 
-    Options options_;
     particles::Fluid<D> fluid_;
+    Options options_;
     particles::Emitters<D> emitters_;
     particles::single::SphParams params_;
     particles::single::PbfParams smooth_;  // the same kernels as XSPH and vorticity read them

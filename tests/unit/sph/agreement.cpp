@@ -93,7 +93,7 @@ struct Physics {
 template <int D>
 std::vector<Physics> all_physics() {
     const bool flat = D == 2;
-    return {{"", "effects.viscosity = {}\neffects.artificial_viscosity = { alpha = 0.1 }"},
+    return {{"density = \"summation\"", "effects.viscosity = {}\neffects.artificial_viscosity = { alpha = 0.1 }"},
             {"density = \"continuity\", tension = true",
              "effects.density_diffusion = { delta = 0.5 }\neffects.surface_tension = { sigma = 50 }"},
             {"density = \"continuity\"",
@@ -111,7 +111,7 @@ TEST_IN_2D_AND_3D("every instruction set agrees with the double reference to 1e-
         for (const char* kernel : {"muller", "cubic", "wendland"})
             for (const Physics& physics : all_physics<D>()) {
                 sph::SphSolver<D> solver(sph_scene<D>(
-                    fmt::format("kernel = \"{}\", isa = \"{}\"{}{}", kernel, table->name, *physics.scheme ? ", " : "", physics.scheme),
+                    fmt::format("kernel = \"{}\", support = 2.0, sound_speed = 10, isa = \"{}\", {}", kernel, table->name, physics.scheme),
                     physics.effects));
                 disturb(solver.fluid(), 0.2);
                 const Fluid<D> before = solver.fluid();
@@ -148,7 +148,7 @@ TEST("each effect on pairs and walls does something in the scenes of the compari
 }
 
 TEST_IN_2D_AND_3D("a free drop keeps its momentum to round-off, whatever its particles do to each other") {
-    sph::SphSolver<D> solver(sph_scene<D>("tension = true", "effects.viscosity = {}\neffects.artificial_viscosity = {}"));
+    sph::SphSolver<D> solver(sph_scene<D>("support = 2.0, tension = true", "effects.viscosity = {}\neffects.artificial_viscosity = {}"));
     disturb(solver.fluid(), 0.1);
     for (int i = 0; i < solver.fluid().count(); ++i)  // away from the walls
         for (int a = 0; a < D; ++a) {
@@ -182,10 +182,38 @@ TEST_IN_2D_AND_3D("results are equal to the last bit for one, two and three thre
 }
 
 TEST("the advised step obeys the acoustic and the viscous limit") {
-    sph::SphSolver<2> sound(sph_scene<2>("sound_speed = 50", ""));
+    sph::SphSolver<2> sound(sph_scene<2>("support = 2.0, density = \"continuity\", sound_speed = 50", ""));
     EXPECT_NEAR(sound.advised_dt(), 0.4 * 0.125 / 50, 1e-12);  // smoothing length 0.125 m, nothing moves
-    sph::SphSolver<2> honey(sph_scene<2>("sound_speed = 1e-3", "effects.viscosity = {}"));
+    sph::SphSolver<2> honey(sph_scene<2>("support = 2.0, density = \"continuity\", sound_speed = 1e-3", "effects.viscosity = {}"));
     EXPECT_NEAR(honey.advised_dt(), 0.125 * 0.125 * 0.125 / 0.01, 1e-12);
+}
+
+TEST("a scene that names no speed of sound gets ten times the fastest flow that it can tell") {
+    const auto sound = [](const std::string& more) { return sph::SphSolver<2>(sph_scene<2>("", more)).options().sound; };
+    const real fall = std::sqrt(2 * 9.81 * 0.9375);  // from the highest particle to the floor
+    EXPECT_NEAR(sound("effects.gravity = { g = [0, -9.81] }"), 10 * fall, 1e-9);
+    EXPECT_EQ(sound(""), 10);  // nothing tells
+    EXPECT_NEAR(sound("initial.velocity = { name = \"constant\", value = [3, 4] }"), 50, 1e-9);
+    EXPECT_NEAR(sound("sides.x_max = { kind = \"moving_wall\", velocity = [0, 7] }"), 70, 1e-9);
+    EXPECT_NEAR(sound("emitters = [ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.1, velocity = [8, 0] } ]"), 80, 1e-9);
+    EXPECT_NEAR(sound("solids = [ { shape = \"sphere\", centre = [0.8, 0.8], radius = 0.1, motion = { kind = \"constant\", velocity = "
+                      "[0, 9] } } ]"),
+                90, 1e-9);
+    EXPECT_EQ(sph::SphSolver<2>(sph_scene<2>("sound_speed = 5", "effects.gravity = { g = [0, -9.81] }")).options().sound, 5);
+}
+
+TEST("delta-SPH is continuity with its published constants, and effects of the same names set others") {
+    const auto run = [](const std::string& scheme, const std::string& effects) {
+        sph::SphSolver<2> solver(sph_scene<2>(scheme, effects));
+        disturb(solver.fluid(), 0.2);
+        for (int s = 0; s < 5; ++s) solver.step(0.001);
+        return std::pair{solver.fluid().x, solver.fluid().density};
+    };
+    const auto spelled =
+        run("density = \"continuity\"", "effects.density_diffusion = { delta = 0.1 }\neffects.artificial_viscosity = { alpha = 0.02 }");
+    EXPECT_EQ(run("", ""), spelled);
+    EXPECT_EQ(run("density = \"delta\"", "effects.density_diffusion = { delta = 0 }\neffects.artificial_viscosity = { alpha = 0 }"),
+              run("density = \"continuity\"", ""));
 }
 
 TEST("an effect without strength changes no bit: what is not named is not there") {
@@ -205,6 +233,6 @@ TEST("an effect without strength changes no bit: what is not named is not there"
 
 TEST("surface tension without tension, diffusion of a summed density, a surface for one: each is refused") {
     EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("density = \"continuity\"", "effects.surface_tension = { sigma = 1 }")), scene::BadScene);
-    EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("", "effects.density_diffusion = {}")), scene::BadScene);
-    EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("", "initial.surface = [0, 1]")), scene::BadScene);
+    EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("density = \"summation\"", "effects.density_diffusion = {}")), scene::BadScene);
+    EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("density = \"summation\"", "initial.surface = [0, 1]")), scene::BadScene);
 }
