@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace weir::validation {
@@ -11,8 +12,12 @@ namespace {
 
 using Points = std::vector<const CostPoint*>;
 
+constexpr double frame_ms = 1000.0 / 60;  // what there is at 60 frames a second
+
+std::string in_frames(const CostPoint& p) { return fmt::format("{:.3g} ms of each 16.7 ms frame", p.seconds_per_second * frame_ms); }
+
 std::string priced(const CostPoint& p, Price by) {
-    return by == Price::second ? fmt::format("{:.3g} s of computing a simulated second", p.seconds_per_second)
+    return by == Price::second ? fmt::format("{} ({:.3g} times real time)", in_frames(p), 1 / p.seconds_per_second)
                                : fmt::format("{:.3g} ms a step", p.ms_per_step);
 }
 
@@ -41,11 +46,11 @@ std::string in_real_time(const Study& study, const Points& by_price) {
     Points fast;
     std::copy_if(by_price.begin(), by_price.end(), std::back_inserter(fast), [](auto* p) { return p->seconds_per_second <= 1; });
     if (fast.empty())
-        return fmt::format("Nothing here runs in real time; {} comes nearest with {:.3g} s of computing a simulated second.",
-                           plain(*by_price.front()), by_price.front()->seconds_per_second);
+        return fmt::format("Nothing here runs in real time; {} comes nearest with {}.", plain(*by_price.front()),
+                           in_frames(*by_price.front()));
     const auto best = *std::min_element(fast.begin(), fast.end(), [](auto* a, auto* b) { return a->error < b->error; });
-    return fmt::format("{} of {} settings run in real time; the most accurate of them is {}: {} = {:.3g} at {:.3g} times real time.",
-                       fast.size(), by_price.size(), plain(*best), study.error, best->error, 1 / best->seconds_per_second);
+    return fmt::format("{} of {} settings run in real time; the most accurate of them is {}: {} = {:.3g}, for {}.", fast.size(),
+                       by_price.size(), plain(*best), study.error, best->error, in_frames(*best));
 }
 
 std::string along_the_front(const Study& study, const Points& by_price) {
@@ -55,6 +60,26 @@ std::string along_the_front(const Study& study, const Points& by_price) {
     const CostPoint &from = *front.front(), &to = *front.back();
     return fmt::format("From {}, the cheapest, to {}, the most accurate, the error falls {:.3g} times for {:.3g} times the time.",
                        plain(from), plain(to), from.error / to.error, to.price(study.price) / from.price(study.price));
+}
+
+/// Where most methods are no more accurate at their dearest setting than at their cheapest, that is what to know; nothing otherwise.
+std::string that_finer_does_not_pay(const Study& study, const Points& by_price) {
+    std::map<std::string, std::pair<const CostPoint*, const CostPoint*>> ends;  // of each method: cheapest, dearest
+    for (const CostPoint* p : by_price) ends.try_emplace(p->method, p, p).first->second.second = p;
+    std::size_t refined = 0, worse = 0;
+    double least = infinity, most = 0;
+    for (const auto& [method, end] : ends) {
+        if (end.first == end.second) continue;
+        ++refined;
+        if (end.second->error < end.first->error) continue;
+        const double times = end.second->price(study.price) / end.first->price(study.price);
+        ++worse, least = std::min(least, times), most = std::max(most, times);
+    }
+    if (refined < 2 || 2 * worse <= refined) return "";
+    return fmt::format(
+        "A finer setting does not pay here: the dearest of {} of {} methods is no more accurate than its cheapest, at {:.2g} to "
+        "{:.2g} times the price.",
+        worse, refined, least, most);
 }
 
 }  // namespace
@@ -69,7 +94,8 @@ std::vector<std::string> advice(const StudyResult& result) {
     std::vector<std::string> sentences;
     if (study.good_enough > 0) sentences.push_back(at_good_enough(study, by_price));
     if (study.price == Price::second) sentences.push_back(in_real_time(study, by_price));
-    sentences.push_back(along_the_front(study, by_price));
+    const std::string in_vain = that_finer_does_not_pay(study, by_price);
+    sentences.push_back(in_vain.empty() ? along_the_front(study, by_price) : in_vain);
     if (const auto failed = result.points.size() - by_price.size(); failed > 0)
         sentences.push_back(fmt::format("{} of {} settings failed: see the table.", failed, result.points.size()));
     return sentences;

@@ -129,18 +129,21 @@ std::string cost_markdown(const json& study) {
 
 std::vector<Panel> cost_panels(const StudyResult& result) {
     const Study& study = result.study;
-    Panel panel{.title = study.question,
-                .x = {study.price == Price::second ? "computing time a simulated second [s]" : "computing time a step [ms]", true},
-                .y = {study.error, true}};
+    const auto abscissa = [&](const CostPoint& p) { return study.price == Price::second ? 1 / p.seconds_per_second : p.ms_per_step; };
+    Panel panel{
+        .title = study.question,
+        .x = {study.price == Price::second ? "real-time factor: simulated seconds a second of computing" : "computing time a step [ms]",
+              true},
+        .y = {study.error, true}};
     for (const Variant& method : study.methods) {
         Curve c{.label = method.name.empty() ? study.name : method.name};
         for (const CostPoint& p : result.points)
-            if (p.method == method.name && !p.failure) c.x.push_back(p.price(study.price)), c.y.push_back(p.error);
+            if (p.method == method.name && !p.failure) c.x.push_back(abscissa(p)), c.y.push_back(p.error);
         if (c.size() > 0) panel.curves.push_back(std::move(c));
     }
     Curve front{.label = "Pareto front", .dashed = true};
     for (const CostPoint* p : by_price(result))
-        if (p->on_front) front.x.push_back(p->price(study.price)), front.y.push_back(p->error), front.names.push_back(p->name());
+        if (p->on_front) front.x.push_back(abscissa(*p)), front.y.push_back(p->error), front.names.push_back(p->name());
     panel.curves.push_back(std::move(front));
     return {panel};
 }

@@ -19,10 +19,10 @@ nlohmann::json cost_json(const StudyResult& result);
 std::string cost_markdown(const nlohmann::json& study);
 
 /// Three sentences or fewer that say which setting to take: at the error that is good enough, within real time, and what more accuracy
-/// costs. Each is made from the points alone.
+/// costs, or that it is not to be had. Each is made from the points alone; prices are parts of a frame at 60 a second.
 std::vector<std::string> advice(const StudyResult& result);
 
-/// Error against price, one curve a method, and the front with its points named.
+/// Error against the real-time factor (or milliseconds a step), one curve a method, and the front with its points named.
 std::vector<Panel> cost_panels(const StudyResult& result);
 
 }  // namespace weir::validation

@@ -85,12 +85,33 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
     mark_front(result.points, Price::second);
     const auto sentences = advice(result);
     ASSERT_EQ(sentences.size(), 4u);
-    EXPECT_EQ(sentences[0], "For e <= 0.2 take fine: 2 s of computing a simulated second; the next method, other, costs 4 times as much.");
-    EXPECT_EQ(sentences[1], "1 of 3 settings run in real time; the most accurate of them is coarse: e = 0.5 at 2 times real time.");
+    EXPECT_EQ(
+        sentences[0],
+        "For e <= 0.2 take fine: 33.3 ms of each 16.7 ms frame (0.5 times real time); the next method, other, costs 4 times as much.");
+    EXPECT_EQ(sentences[1],
+              "1 of 3 settings run in real time; the most accurate of them is coarse: e = 0.5, for 8.33 ms of each 16.7 ms frame.");
     EXPECT_EQ(sentences[2], "From coarse, the cheapest, to fine, the most accurate, the error falls 5 times for 4 times the time.");
     EXPECT_EQ(sentences[3], "1 of 4 settings failed: see the table.");
     result.study.good_enough = 0.01;
-    EXPECT_EQ(advice(result)[0], "No setting reaches e = 0.01; fine comes nearest with 0.1, for 2 s of computing a simulated second.");
+    EXPECT_EQ(advice(result)[0],
+              "No setting reaches e = 0.01; fine comes nearest with 0.1, for 33.3 ms of each 16.7 ms frame (0.5 times real time).");
+}
+
+TEST("where most methods gain nothing from a dearer setting the third sentence says so") {
+    StudyResult result{.study = {.name = "s", .error = "e"}};
+    for (const char* method : {"a", "b", "c"})
+        for (const int setting : {1, 2}) {
+            result.points.push_back(point(method, setting == 1 ? 0.1 : *method == 'c' ? 0.05 : 0.2, setting * (*method == 'a' ? 1 : 3)));
+            result.points.back().setting = std::to_string(setting);
+        }
+    for (CostPoint& p : result.points)
+        if (p.method == "b" && p.setting == "2") p.seconds_per_second = 15;
+    mark_front(result.points, Price::second);
+    EXPECT_EQ(advice(result).back(),
+              "A finer setting does not pay here: the dearest of 2 of 3 methods is no more accurate than its cheapest, at 2 to 5 times the "
+              "price.");
+    result.points[1].error = 0.01;  // now most methods gain
+    EXPECT_EQ(advice(result).back().substr(0, 4), "From");
 }
 
 TEST("the command writes table, JSON, figure and page; a setting that fails stays in them with its step") {
