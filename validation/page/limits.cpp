@@ -58,6 +58,40 @@ std::string beside_theory(const std::vector<json>& studies) {
 
 }  // namespace
 
+Map drawing_of_map(const json& m) {
+    const auto texts = [](const json& list) {
+        std::vector<std::string> words;
+        for (const json& text : list) words.push_back(text.get<std::string>());
+        return words;
+    };
+    const std::string method = text_at(m, "method");
+    Map map{.title = text_at(m, "name") + (method.empty() ? "" : ", " + method),
+            .x_label = text_at(m["x"], "label"),
+            .y_label = text_at(m["y"], "label"),
+            .x = texts(m["x"]["values"]),
+            .y = texts(m["y"]["values"])};
+    for (const json& column : m["cells"]) {
+        map.cells.emplace_back();
+        for (const json& c : column) {
+            if (c.value("stable", true)) {
+                map.cells.back().push_back(
+                    {.text = "held", .detail = fmt::format("held for {} steps or to the scene's end", m.value("steps", 0))});
+                continue;
+            }
+            const std::string kind = text_at(c, "kind");
+            auto at = std::find(map.kinds.begin(), map.kinds.end(), kind);
+            if (at == map.kinds.end()) at = map.kinds.insert(at, kind);
+            const auto step = c.value("step", std::int64_t{0});
+            map.cells.back().push_back(
+                {.stable = false,
+                 .kind = static_cast<int>(at - map.kinds.begin()),
+                 .text = fmt::format("{}", step),
+                 .detail = fmt::format("step {}, t = {:.3g} s: {}", step, c.value("time", 0.0), text_at(c, "what"))});
+        }
+    }
+    return map;
+}
+
 Section limits_section(const std::vector<json>& studies) {
     if (studies.empty()) return {.summary = "<p>No limit is published: <code>./weir.sh stability --all --publish</code></p>", .html = ""};
     HtmlTable table({"solver", "pushed along", "last stable", "theory", "floor", "what broke first", "hard because", "case"},
@@ -80,7 +114,14 @@ Section limits_section(const std::vector<json>& studies) {
         below ? "no" : "pass", limits, unbroken,
         below ? fmt::format("{} fall below the floor that is guarded.", below) : std::string("Every floor that is guarded holds."),
         beside_theory(studies));
-    section.html = table.html();
+    for (const json& study : studies)
+        if (study.contains("maps"))
+            for (const json& map : study["maps"])
+                section.html +=
+                    fmt::format("<figure><div class=\"scroll\">{}</div><figcaption>{}: hard because {}</figcaption></figure>\n",
+                                map_svg(drawing_of_map(map)), escaped(text_at(study, "study")), escaped(text_at(map, "hard_because")));
+    if (!section.html.empty()) section.html = "<h3>Two axes at once</h3><div class=\"maps\">" + section.html + "</div>";
+    section.html = table.html() + section.html;
     std::string footer;
     for (const std::string& m : machines) footer += "<li>" + escaped(m) + "</li>";
     section.html += "<details class=\"fine\"><summary><code>./weir.sh stability --all</code></summary><ul>" + footer + "</ul></details>\n";

@@ -1,5 +1,7 @@
 // The parts of the page, each from published JSON. A section brings its own heading; a summary is the sentence that stands at the top.
 #pragma once
+#include "validation/page/chart.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -19,6 +21,8 @@ Section claims_section(const nlohmann::json& verdicts, const std::filesystem::pa
 Section cost_section(const std::vector<nlohmann::json>& studies, const std::filesystem::path& results);
 /// Limits of all solvers in one table, and two-axis maps.
 Section limits_section(const std::vector<nlohmann::json>& studies);
+/// One of their maps, to be drawn.
+Map drawing_of_map(const nlohmann::json& map);
 /// The pictures themselves, inside the page.
 Section pictures_section(const std::filesystem::path& results);
 

@@ -62,9 +62,12 @@ std::filesystem::path case_root() {
 }
 
 std::filesystem::path find_case(const std::string& name) {
-    if (std::filesystem::exists(std::filesystem::path(name) / "case.toml"))
-        return without_slash(std::filesystem::path(name).lexically_normal());
-    if (std::filesystem::exists(case_root() / name / "case.toml")) return case_root() / name;
+    const auto holds_something = [](const std::filesystem::path& folder) {
+        const auto holds = [&](const char* file) { return std::filesystem::exists(folder / file); };
+        return holds("case.toml") || holds("cost.toml") || holds("stability.toml");
+    };
+    if (holds_something(name)) return without_slash(std::filesystem::path(name).lexically_normal());
+    if (holds_something(case_root() / name)) return case_root() / name;
     std::vector<std::string> known;
     for (const auto& path : find_cases(case_root())) known.push_back(path.filename().string());
     throw BadInput(fmt::format("unknown case {}{}\n    {}", scene::quote(name), scene::did_you_mean(name, known), scene::known(known)));

@@ -4,12 +4,14 @@
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
 #include "scene/names.hpp"
+#include "validation/page/sections.hpp"
 #include "validation/report/command.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 
@@ -20,24 +22,41 @@ namespace {
 
 using nlohmann::json;
 
-/// The studies with the axes that are wanted; every scene at the low end of its axis reads.
-std::vector<StressStudy> prepared(const StabilityOptions& options, const Solvers& solvers) {
+/// The name of the solver that a configuration runs; throws where its scene does not read.
+std::string solver_of(const Variant& variant, const Solvers& solvers) {
     std::vector<scene::SolverSchema> schemas;
     for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    return scene_of(variant, 0, schemas).solver();
+}
+
+/// Only the axes and maps that are wanted.
+void choose(StressStudy& study, const StabilityOptions& options) {
+    if (!options.axis.empty()) {
+        std::erase_if(study.stresses, [&](const Stress& s) { return s.name != options.axis; });
+        std::erase_if(study.maps, [&](const StressMap& m) { return m.stress.name != options.axis; });
+    }
+    if (!options.floors) return;
+    std::erase_if(study.stresses, [](const Stress& s) { return !s.floor; });
+    study.maps.clear();
+}
+
+/// The studies with the axes that are wanted; every scene at the low end of its axis reads, and so does the first of each map.
+std::vector<StressStudy> prepared(const StabilityOptions& options, const Solvers& solvers) {
     std::vector<StressStudy> studies;
     const auto found = [] { return find_stability(case_root()); };
     for (const auto& folder : chosen_folders("stability", options.names, options.all, options.list, found)) {
         studies.push_back(read_stability(folder, options.size));
-        auto& stresses = studies.back().stresses;
-        if (!options.axis.empty()) std::erase_if(stresses, [&](const Stress& s) { return s.name != options.axis; });
-        if (options.floors) std::erase_if(stresses, [](const Stress& s) { return !s.floor; });
-        for (const Stress& s : stresses) {
-            Variant low = s.base;
-            low.overrides.push_back({s.key, fmt::format("{:g}", s.low)});
-            scene_of(low, 0, schemas);
+        StressStudy& study = studies.back();
+        choose(study, options);
+        for (Stress& s : study.stresses) s.solver = solver_of(pushed_to(s, s.low), solvers);
+        for (StressMap& m : study.maps) {
+            Variant first = m.stress.base;
+            first.overrides.push_back({m.x.key, m.x.values.front()});
+            first.overrides.push_back({m.y.key, m.y.values.front()});
+            m.stress.solver = solver_of(first, solvers);
         }
     }
-    std::erase_if(studies, [](const StressStudy& s) { return s.stresses.empty(); });
+    std::erase_if(studies, [](const StressStudy& s) { return s.stresses.empty() && s.maps.empty(); });
     if (studies.empty())
         throw BadInput(options.axis.empty() ? "no axis has a floor" : fmt::format("no axis is called {}", scene::quote(options.axis)));
     return studies;
@@ -45,19 +64,26 @@ std::vector<StressStudy> prepared(const StabilityOptions& options, const Solvers
 
 /// Writes the page anew, with the studies that were there before.
 void publish_limits(const std::vector<json>& studies, const std::filesystem::path& folder) {
-    std::filesystem::create_directories(folder);
-    for (const json& study : studies) output::write_file(folder / (study["study"].get<std::string>() + ".json"), study.dump(1) + "\n");
+    std::filesystem::create_directories(folder / "svg");
+    for (const json& study : studies) {
+        output::write_file(folder / (study["study"].get<std::string>() + ".json"), study.dump(1) + "\n");
+        for (const json& map : study["maps"])
+            output::write_file(folder / "svg" / map_file(study, map), standalone(map_svg(drawing_of_map(map))));
+    }
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         if (entry.path().extension() == ".json") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
-    std::string page =
-        "# Where it breaks\n\nThis page is written by `weir stability --publish`; nothing in it is typed by hand. Each key is "
-        "raised until an invariant breaks; the last value at which none did is the limit.\n\n";
+    std::vector<json> all;
     for (const auto& file : files) {
         std::ifstream stream(file);
-        if (const json study = json::parse(stream, nullptr, false); study.is_object()) page += limits_markdown(study);
+        if (json study = json::parse(stream, nullptr, false); study.is_object()) all.push_back(std::move(study));
     }
+    std::string page =
+        "# Where it breaks\n\nThis page is written by `weir stability --publish`; nothing in it is typed by hand. Each key is "
+        "raised until an invariant breaks; the last value at which none did is the limit.\n\n" +
+        all_limits_markdown(all);
+    for (const json& study : all) page += limits_markdown(study);
     output::write_file(folder / "index.md", page);
 }
 
@@ -76,16 +102,25 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
     std::vector<json> done;
     bool guarded = true;
     for (const StressStudy& study : studies) {
+        const auto say = [&](const Stress& s, const std::string& more) {
+            if (talk) std::fprintf(stderr, "\r\033[K%s %s %s%s", study.name.c_str(), s.name.c_str(), s.method.c_str(), more.c_str());
+        };
         std::vector<Limit> limits;
         for (const Stress& s : study.stresses) {
-            if (talk) std::fprintf(stderr, "\r\033[K%s %s %s", study.name.c_str(), s.name.c_str(), s.method.c_str());
+            say(s, "");
             limits.push_back(options.floors ? check_floor(s, solvers) : find_limit(s, bisection_factor(options.size), solvers));
             guarded = guarded && limits.back().guarded();
         }
-        if (talk) std::fprintf(stderr, "\r\033[K");
-        fmt::print("{}\n", limits_table(study, limits));
-        std::fflush(stdout);
         done.push_back(limits_json(study, limits));
+        for (const StressMap& m : study.maps) {
+            const auto start = std::chrono::steady_clock::now();
+            const auto cells = fill_map(m, solvers, [&](std::size_t i) { say(m.stress, fmt::format(" {}", i + 1)); });
+            const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            done.back()["maps"].push_back(map_json(m, cells, seconds));
+        }
+        if (talk) std::fprintf(stderr, "\r\033[K");
+        fmt::print("{}{}\n", limits_table(study, limits), maps_text(done.back()));
+        std::fflush(stdout);
         done.back()["commit"] = machine.commit;
         done.back()["machine"] = fmt::format("{}, {}, {}", machine.processor, machine.system, machine.compiler);
         output::write_file(options.out / (study.name + ".json"), done.back().dump(1) + "\n");

@@ -30,6 +30,14 @@ inline real bisection_factor(Size size) { return size == Size::ci ? 1.5 : 1.1; }
 std::string limits_table(const StressStudy& study, const std::vector<Limit>& limits);
 nlohmann::json limits_json(const StressStudy& study, const std::vector<Limit>& limits);
 std::string limits_markdown(const nlohmann::json& study);
+/// One table of all studies' limits, by solver.
+std::string all_limits_markdown(const std::vector<nlohmann::json>& studies);
+
+nlohmann::json map_json(const StressMap& map, const std::vector<std::vector<std::optional<Break>>>& cells, double seconds);
+/// The maps of a study for the terminal: a dot where nothing broke, a letter for what broke first.
+std::string maps_text(const nlohmann::json& study);
+/// "study-dt-against-iterations-flip.svg"
+std::string map_file(const nlohmann::json& study, const nlohmann::json& map);
 
 /// Runs the command and returns its exit code: 1 where a floor is not reached. Throws BadInput before anything is run.
 int stability_command(const StabilityOptions& options, const Solvers& solvers = sim::registry());

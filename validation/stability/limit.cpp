@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 namespace weir::validation {
@@ -25,11 +26,12 @@ real value_of(const std::string& series, const Simulation& simulation, const Ste
     throw BadInput(fmt::format("no integral or step report is called \"{}\"", series));
 }
 
+constexpr int rungs = 6;  // from the low end of an axis to its high end
+
 /// Watches one invariant from step to step.
 class Watch {
 public:
-    Watch(const Invariant& invariant, real pushed)
-        : invariant_(&invariant), bound_(invariant.times_value ? pushed * invariant.bound : invariant.bound) {}
+    Watch(const Invariant& invariant, real pushed) : invariant_(&invariant), bound_(invariant.bound * std::pow(pushed, invariant.power)) {}
 
     bool holds(real value) {
         using Test = Invariant::Test;
@@ -62,14 +64,43 @@ std::string value_text(real value) {
     return value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value) : fmt::format("{:.17g}", value);
 }
 
+/// What "a", "a^p" or "a^p round" is at `value`.
+std::string placeholder_text(const std::string& text, real value) {
+    const char* at = text.c_str();
+    char* after = nullptr;
+    real result = std::strtod(at, &after);
+    bool good = after != at;
+    real power = 1;
+    if (*after == '^') power = std::strtod(at = after + 1, &after), good = good && after != at;
+    result *= std::pow(value, power);
+    if (std::string_view(after) == " round")
+        result = std::max(1.0, std::round(result));
+    else
+        good = good && *after == '\0';
+    if (!good) throw BadInput(fmt::format("<{}>: expected <a>, <a^p> or <a^p round>, with numbers a and p", text));
+    return value_text(result);
+}
+
+std::string filled_in(const std::string& text, real value) {
+    std::string s;
+    for (std::size_t at = 0;;) {
+        const auto open = text.find('<', at), close = text.find('>', open);
+        if (open == std::string::npos || close == std::string::npos) return s + text.substr(at);
+        s += text.substr(at, open - at) + placeholder_text(text.substr(open + 1, close - open - 1), value);
+        at = close + 1;
+    }
+}
+
+std::string growth(real power) { return power == 0 ? "" : power == 1 ? " times the key" : fmt::format(" times the key^{:g}", power); }
+
 }  // namespace
 
 std::string Invariant::text() const {
     switch (test) {
         case Test::at_most:
-            return fmt::format("{} <= {:g}{}", series, bound, times_value ? " times the key" : "");
+            return fmt::format("{} <= {:g}{}", series, bound, growth(power));
         case Test::at_least:
-            return fmt::format("{} >= {:g}{}", series, bound, times_value ? " times the key" : "");
+            return fmt::format("{} >= {:g}{}", series, bound, growth(power));
         case Test::drift:
             return fmt::format("{} within {:g} of its first value", series, bound);
         case Test::never_rises:
@@ -78,38 +109,70 @@ std::string Invariant::text() const {
     return series;
 }
 
-std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers) {
+Variant pushed_to(const Stress& stress, real value) {
+    Variant variant = stress.base;
+    for (scene::Override& change : variant.overrides) change.value = filled_in(change.value, value);
+    if (!stress.key.empty()) variant.overrides.push_back({stress.key, value_text(value)});
+    return variant;
+}
+
+std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers) {
     std::vector<scene::SolverSchema> schemas;
     for (const auto& kind : solvers) schemas.push_back(kind.schema);
-    Variant variant = stress.base;
-    variant.overrides.push_back({stress.key, value_text(value)});
+    auto scene = scene_of(variant, 0, schemas);
+    const auto failed = [](const NumericalFailure& failure, std::int64_t step, real time) {
+        return Break{failure.what(), "the step failed", step, time};
+    };
+    std::optional<Simulation> simulation;
     try {
-        Simulation simulation(scene_of(variant, 0, schemas), solvers);
-        std::vector<Watch> watches;
-        for (const Invariant& invariant : stress.watch) watches.emplace_back(invariant, value);
-        StepReport report;
-        const auto broken = [&]() -> std::optional<Break> {
-            for (Watch& watch : watches) {
-                const std::string& series = watch.invariant().series;
-                if (simulation.steps() == 0 && (series == "divergence" || series == "density_error" || series == "dt")) continue;
-                if (const real v = value_of(series, simulation, report); !watch.holds(v))
-                    return Break{fmt::format("{}: {:.4g}", watch.invariant().text(), v), simulation.steps(), simulation.time()};
-            }
-            return std::nullopt;
-        };
-        if (auto at_start = broken()) return at_start;
-        while (!simulation.finished() && simulation.steps() < stress.steps) {
-            try {
-                report = simulation.step();
-            } catch (const NumericalFailure& failure) {
-                return Break{failure.what(), simulation.steps() + 1, simulation.time()};
-            }
-            if (auto found = broken()) return found;
+        simulation.emplace(std::move(scene), solvers);
+    } catch (const NumericalFailure& failure) {
+        return failed(failure, 0, 0);
+    } catch (const BadInput& refusal) {
+        return Break{fmt::format("refused: {}", refusal.what()), "refused", 0, 0};
+    }
+    std::vector<Watch> watches;
+    for (const Invariant& invariant : stress.watch) watches.emplace_back(invariant, value);
+    StepReport report;
+    const auto broken = [&]() -> std::optional<Break> {
+        for (Watch& watch : watches) {
+            const std::string& series = watch.invariant().series;
+            if (simulation->steps() == 0 && (series == "divergence" || series == "density_error" || series == "dt")) continue;
+            if (const real v = value_of(series, *simulation, report); !watch.holds(v))
+                return Break{fmt::format("{}: {:.4g}", watch.invariant().text(), v), watch.invariant().text(), simulation->steps(),
+                             simulation->time()};
         }
-    } catch (const NumericalFailure& failure) {  // of the initial state
-        return Break{failure.what(), 0, 0};
+        return std::nullopt;
+    };
+    if (auto at_start = broken()) return at_start;
+    while (!simulation->finished() && simulation->steps() < stress.steps) {
+        try {
+            report = simulation->step();
+        } catch (const NumericalFailure& failure) {
+            return failed(failure, simulation->steps() + 1, simulation->time());
+        }
+        if (auto found = broken()) return found;
     }
     return std::nullopt;
+}
+
+std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers) {
+    return run_watched(pushed_to(stress, value), stress, value, solvers);
+}
+
+std::vector<std::vector<std::optional<Break>>> fill_map(const StressMap& map, const Solvers& solvers,
+                                                        const std::function<void(std::size_t)>& progress) {
+    std::vector<std::vector<std::optional<Break>>> cells(map.x.values.size());
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < map.x.values.size(); ++i)
+        for (const std::string& y : map.y.values) {
+            if (progress) progress(done++);
+            Variant variant = map.stress.base;
+            variant.overrides.push_back({map.x.key, map.x.values[i]});
+            variant.overrides.push_back({map.y.key, y});
+            cells[i].push_back(run_watched(variant, map.stress, 1, solvers));
+        }
+    return cells;
 }
 
 Limit bisect(const Stress& stress, real factor, const std::function<std::optional<Break>(real)>& push) {
@@ -124,7 +187,11 @@ Limit bisect(const Stress& stress, real factor, const std::function<std::optiona
             limit.last_stable = value;
         return !broke;
     };
-    if (stable(stress.low) && stress.high < infinity && !stable(stress.high))
+    // Climbed in equal steps of the logarithm: what is stable at the end of an axis need not be so below it.
+    bool holds = stable(stress.low);
+    for (int rung = 1; holds && stress.high < infinity && rung <= rungs; ++rung)
+        holds = stable(rung == rungs ? stress.high : stress.low * std::pow(stress.high / stress.low, static_cast<real>(rung) / rungs));
+    if (limit.last_stable && limit.first_unstable)
         while (*limit.first_unstable > factor * *limit.last_stable) stable(std::sqrt(*limit.last_stable * *limit.first_unstable));
     limit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return limit;

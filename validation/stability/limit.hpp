@@ -19,18 +19,20 @@ namespace weir::validation {
 struct Invariant {
     enum class Test { at_most, at_least, drift, never_rises } test = Test::at_most;
     std::string series{};
-    bool times_value = false;  // at_most, at_least: the bound is for a value of 1 of the key, and grows with it
+    real power = 0;  // at_most, at_least: the bound is for a value of 1, and grows with this power of the value
     real bound = 0;  // at_most, at_least: of the value; drift: |value - first| / |first|; never_rises: a step, relative to the largest
     std::string why{};
     /// "kinetic_energy <= 3"
     std::string text() const;
 };
 
-/// One axis of one method.
+/// One axis of one method. Its value sets `key`, and stands wherever a change of the scene says <a> (a times the value), <a^p> (a times
+/// its power p) or <a^p round> (that, as a whole number).
 struct Stress {
     std::string name{};  // of the axis: "cfl"
     std::string method{};
-    std::string key{};
+    std::string solver{};    // as the scene names it; known once its scene has been read
+    std::string key{};       // may be empty where changes hold the value
     real low = 0, high = 0;  // both positive; the axis is logarithmic
     std::string hard_because{};
     std::optional<real> theory{};  // the limit that theory gives
@@ -42,11 +44,25 @@ struct Stress {
     std::vector<Invariant> watch{};
 };
 
+/// One axis of a two-axis map: a key and its values, as they stand in a scene.
+struct MapAxis {
+    std::string key{};
+    std::string label{};
+    std::vector<std::string> values{};
+};
+
+/// Every pair of two keys' values, each run until something breaks.
+struct StressMap {
+    Stress stress{};  // whose name, method, changes, invariants and steps hold for all runs
+    MapAxis x{}, y{};
+};
+
 struct StressStudy {
     std::string name{};
     std::filesystem::path folder{};
     std::string question{};
     std::vector<Stress> stresses{};
+    std::vector<StressMap> maps{};
 };
 
 const std::vector<scene::Key>& stability_keys();
@@ -58,6 +74,7 @@ std::vector<std::filesystem::path> find_stability(const std::filesystem::path& r
 /// What broke first in a run, where and when.
 struct Break {
     std::string what{};
+    std::string kind{};  // the invariant without the number; what maps colour by
     std::int64_t step = 0;
     real time = 0;
 };
@@ -72,14 +89,25 @@ struct Limit {
     bool guarded() const { return !stress.floor || (last_stable && *last_stable >= *stress.floor); }
 };
 
-/// Runs the scene with the key at `value`; nothing broke: no value.
+/// The configuration with the axis at `value`. Throws BadInput where a placeholder cannot be read.
+Variant pushed_to(const Stress& stress, real value);
+
+/// Runs the configuration until something breaks, its scene ends or so many steps are taken; nothing broke: no value. A state that the
+/// solver refuses to start from is a break at step 0; a scene that does not read is BadInput.
+std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers);
+
+/// The same with the axis at `value`.
 std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers);
 
-/// Bisects in the logarithm until stable and unstable differ by less than `factor`.
+/// Climbs the axis until something breaks, then bisects in the logarithm until stable and unstable differ by less than `factor`.
 Limit find_limit(const Stress& stress, real factor, const Solvers& solvers);
 
 /// Whether the floor holds, by one run at it.
 Limit check_floor(const Stress& stress, const Solvers& solvers);
+
+/// What each run of a map came to: [x][y].
+std::vector<std::vector<std::optional<Break>>> fill_map(const StressMap& map, const Solvers& solvers,
+                                                        const std::function<void(std::size_t)>& progress = nullptr);
 
 /// For tests: the bisection alone, on any predicate.
 Limit bisect(const Stress& stress, real factor, const std::function<std::optional<Break>(real)>& push);

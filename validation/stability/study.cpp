@@ -32,29 +32,56 @@ Key watch_key() {
                    text("why", "Why it must hold.", true),
                    {.name = "at_most", .type = Type::number, .doc = "value <= this"},
                    {.name = "at_least", .type = Type::number, .doc = "value >= this"},
-                   {.name = "times_value",
-                    .type = Type::flag,
-                    .doc = "at_most and at_least are for a key of 1, and grow with it.",
-                    .fallback = false},
+                   {.name = "power",
+                    .type = Type::number,
+                    .doc = "at_most and at_least are for a key of 1, and grow with this power of it.",
+                    .fallback = 0.0},
                    positive("drift", "|value - first| / |first| <= this"),
                    positive("never_rises", "No step raises the value by more than this part of the largest.")});
 }
 
-std::vector<Key> make_keys() {
+Key steps_key() { return {.name = "steps", .type = Type::integer, .doc = "Longest run.", .min = 1}; }
+Key methods_of_key() { return {.name = "methods", .type = Type::texts, .doc = "Only these of the study's methods; absent: all."}; }
+
+std::vector<Key> axis_keys() {
     std::vector<Key> axis = variant_keys();
-    for (Key k : {text("name", "Its name.", true), text("key", "The key of the scene that is raised.", true),
+    for (Key k : {text("name", "Its name.", true),
+                  text("key", "The key of the scene that is raised; absent where changes hold the value as <a>, <a^p> or <a^p round>."),
                   positive("low", "Where it begins.", true), positive("high", "How far it is tried.", true),
                   text("hard_because", "Why this is hard.", true), positive("theory", "The limit that theory gives."),
                   text("theory_source", "Where that limit comes from."), positive("floor", "The least that must be stable."),
-                  text("floor_why", "Why so much is asked."), watch_key()})
+                  text("floor_why", "Why so much is asked."), steps_key(), methods_of_key(), watch_key()})
         axis.push_back(std::move(k));
+    return axis;
+}
+
+std::vector<Key> map_keys() {
+    const auto values = [](std::string name, std::string doc) {
+        return Key{.name = std::move(name),
+                   .type = Type::table,
+                   .doc = std::move(doc),
+                   .required = true,
+                   .keys = {text("key", "The key.", true),
+                            text("label", "Quantity and unit; absent: the key."),
+                            {.name = "values", .type = Type::texts, .doc = "Its values at full size.", .required = true},
+                            {.name = "ci", .type = Type::texts, .doc = "Its values at ci size; absent: the same."}}};
+    };
+    std::vector<Key> map = variant_keys();
+    for (Key k : {text("name", "Its name.", true), values("x", "From left to right."), values("y", "From the bottom to the top."),
+                  text("hard_because", "Why this is hard.", true), steps_key(), methods_of_key(), watch_key()})
+        map.push_back(std::move(k));
+    return map;
+}
+
+std::vector<Key> make_keys() {
     std::vector<Key> method = variant_keys();
     method.insert(method.begin(), text("name", "Its name.", true));
     std::vector<Key> keys = {text("question", "What the study asks.", true),
                              {.name = "steps", .type = Type::integer, .doc = "Longest run.", .fallback = std::int64_t{2000}, .min = 1},
                              watch_key(),
                              tables("methods", "Each axis is tried with each of these.", method),
-                             tables("axes", "What is raised.", axis, true)};
+                             tables("axes", "What is raised.", axis_keys(), true),
+                             tables("maps", "Pairs of keys, every value of one with every value of the other.", map_keys())};
     for (const Key& k : variant_keys()) keys.push_back(k);
     return keys;
 }
@@ -62,7 +89,7 @@ std::vector<Key> make_keys() {
 std::vector<Invariant> invariants(const Table& t, VariantReader& reader) {
     std::vector<Invariant> list;
     for (const Table& w : t.tables("watch")) {
-        Invariant invariant{.series = reader.said(w, "series"), .times_value = w.flag("times_value"), .why = reader.said(w, "why")};
+        Invariant invariant{.series = reader.said(w, "series"), .power = w.number("power"), .why = reader.said(w, "why")};
         int given = 0;
         for (std::size_t i = 0; i < tests.size(); ++i)
             if (w.has(tests[i])) invariant.test = static_cast<Invariant::Test>(i), invariant.bound = w.number(tests[i]), ++given;
@@ -79,7 +106,8 @@ std::optional<real> optional_number(const Table& t, std::string_view key) {
 Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader) {
     Stress s{.name = reader.said(axis, "name"),
              .method = method.name,
-             .key = axis.text("key"),
+             .solver = {},
+             .key = axis.text_or("key", ""),
              .low = axis.number("low"),
              .high = axis.number("high"),
              .hard_because = reader.said(axis, "hard_because"),
@@ -92,7 +120,44 @@ Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader
     if (s.floor && s.floor_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
     if (s.theory && s.theory_source.empty()) reader.problem(axis.place("theory"), "\"theory\" needs a \"theory_source\"");
     reader.lay_over(s.base, axis);
+    const auto holds_value = [](const scene::Override& change) { return change.value.find('<') != std::string::npos; };
+    if (s.key.empty() && std::none_of(s.base.overrides.begin(), s.base.overrides.end(), holds_value))
+        reader.problem(axis.place("name"), "an axis needs a \"key\", or changes with <a> for the value");
     return s;
+}
+
+MapAxis map_axis(const Table& t, Size size) {
+    return {.key = t.text("key"),
+            .label = t.text_or("label", t.text("key")),
+            .values = size == Size::ci && t.has("ci") ? t.texts("ci") : t.texts("values")};
+}
+
+StressMap map_of(const Table& t, const Variant& method, VariantReader& reader) {
+    StressMap map{.stress = {.name = reader.said(t, "name"),
+                             .method = method.name,
+                             .solver = {},
+                             .hard_because = reader.said(t, "hard_because"),
+                             .base = method},
+                  .x = map_axis(t.table("x"), reader.size()),
+                  .y = map_axis(t.table("y"), reader.size())};
+    reader.lay_over(map.stress.base, t);
+    for (const auto& [axis, values] : {std::pair{"x", map.x.values}, {"y", map.y.values}})
+        if (values.empty()) reader.problem(t.table(axis).place("values"), "an axis of a map needs a value");
+    return map;
+}
+
+/// The study's methods that an axis or map asks for.
+std::vector<Variant> methods_of(const Table& t, const std::vector<Variant>& methods, VariantReader& reader) {
+    if (!t.has("methods")) return methods;
+    std::vector<Variant> chosen;
+    for (const std::string& name : t.texts("methods")) {
+        const auto at = std::find_if(methods.begin(), methods.end(), [&](const Variant& v) { return v.name == name; });
+        if (at == methods.end())
+            reader.problem(t.place("methods"), fmt::format("no method is called \"{}\"", name));
+        else
+            chosen.push_back(*at);
+    }
+    return chosen;
 }
 
 }  // namespace
@@ -108,12 +173,19 @@ StressStudy parse_stability(std::string_view text, const std::string& file, cons
     StressStudy study{.name = folder.filename().string(), .folder = folder, .question = reader.said(root, "question")};
     const auto common = invariants(root, reader);
     const auto methods = reader.read(root, "methods", nullptr);
+    const auto watch_over = [&](Stress& s, const Table& t) {
+        s.steps = t.has("steps") ? t.integer("steps") : root.integer("steps");
+        s.watch = t.tables("watch").empty() ? common : invariants(t, reader);
+    };
     for (const Table& axis : root.tables("axes"))
-        for (const Variant& method : methods) {
-            Stress s = stress_of(axis, method, reader);
-            s.steps = root.integer("steps");
-            s.watch = axis.tables("watch").empty() ? common : invariants(axis, reader);
-            study.stresses.push_back(std::move(s));
+        for (const Variant& method : methods_of(axis, methods, reader)) {
+            study.stresses.push_back(stress_of(axis, method, reader));
+            watch_over(study.stresses.back(), axis);
+        }
+    for (const Table& map : root.tables("maps"))
+        for (const Variant& method : methods_of(map, methods, reader)) {
+            study.maps.push_back(map_of(map, method, reader));
+            watch_over(study.maps.back().stress, map);
         }
     if (!reader.problems().empty()) throw scene::BadScene(reader.problems(), text);
     return study;

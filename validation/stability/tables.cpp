@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 
 namespace weir::validation {
 namespace {
@@ -45,6 +46,7 @@ json limits_json(const StressStudy& study, const std::vector<Limit>& limits) {
     json list = json::array();
     for (const Limit& l : limits) {
         json entry = {{"axis", l.stress.name},
+                      {"solver", l.stress.solver},
                       {"method", l.stress.method},
                       {"key", l.stress.key},
                       {"hard_because", l.stress.hard_because},
@@ -59,24 +61,108 @@ json limits_json(const StressStudy& study, const std::vector<Limit>& limits) {
         if (l.stress.floor) entry["floor"] = *l.stress.floor, entry["floor_why"] = l.stress.floor_why;
         list.push_back(entry);
     }
-    return {{"study", study.name}, {"question", study.question}, {"limits", list}};
+    return {{"study", study.name}, {"question", study.question}, {"limits", list}, {"maps", json::array()}};
 }
 
+namespace {
+
+std::string text(const json& entry, const char* key) { return entry.value(key, std::string()); }
+
+std::string number_at(const json& entry, const char* key) {
+    return entry.contains(key) ? fmt::format("{:.3g}", entry[key].get<double>()) : std::string();
+}
+
+std::string key_text(const json& limit) { return text(limit, "key").empty() ? "" : fmt::format(" (`{}`)", text(limit, "key")); }
+
+}  // namespace
+
 std::string limits_markdown(const json& study) {
-    const auto text = [](const json& entry, const char* key) { return entry.value(key, std::string()); };
-    const auto number_at = [](const json& entry, const char* key) {
-        return entry.contains(key) ? fmt::format("{:.3g}", entry[key].get<double>()) : std::string();
-    };
     std::string s = fmt::format("## {}\n\n{}\n\n", text(study, "study"), text(study, "question"));
     s += "| | axis | method | last stable | theory | floor | what broke first | hard because |\n|---|---|---|---|---|---|---|---|\n";
     for (const auto& l : study["limits"]) {
         std::string theory = number_at(l, "theory");
         if (!theory.empty()) theory += fmt::format(" ({})", text(l, "theory_source"));
-        s += fmt::format("| {} | {} (`{}`) | {} | {} | {} | {} | {} | {} |\n", l["guarded"].get<bool>() ? "" : "**below its floor**",
-                         text(l, "axis"), text(l, "key"), text(l, "method"), text(l, "last_stable_text"), theory, number_at(l, "floor"),
+        s += fmt::format("| {} | {}{} | {} | {} | {} | {} | {} | {} |\n", l["guarded"].get<bool>() ? "" : "**below its floor**",
+                         text(l, "axis"), key_text(l), text(l, "method"), text(l, "last_stable_text"), theory, number_at(l, "floor"),
                          text(l, "broke"), text(l, "hard_because"));
     }
+    if (study.contains("maps"))
+        for (const auto& map : study["maps"])
+            s += fmt::format("\n![{}](svg/{})\n\n*Hard because* {}.\n", text(map, "name"), map_file(study, map), text(map, "hard_because"));
     return s + fmt::format("\nCommit {}, on {}.\n\n", study.value("commit", "unknown"), study.value("machine", "unknown"));
+}
+
+std::string all_limits_markdown(const std::vector<json>& studies) {
+    std::vector<std::pair<std::string, std::string>> rows;  // solver, row
+    for (const json& study : studies)
+        for (const auto& l : study["limits"]) {
+            const std::string solver = text(l, "solver");
+            const std::string method = text(l, "method");
+            rows.push_back({solver, fmt::format("| {} | {} | {} | {} | {} | {} | [{}](#{}) |\n", solver, text(l, "axis"), method,
+                                                text(l, "last_stable_text"), number_at(l, "theory"), text(l, "broke"), text(study, "study"),
+                                                text(study, "study"))});
+        }
+    std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::string s =
+        "## All limits, by solver\n\n| solver | axis | method | last stable | theory | what broke first | case |\n"
+        "|---|---|---|---|---|---|---|\n";
+    for (const auto& row : rows) s += row.second;
+    return s + "\n";
+}
+
+json map_json(const StressMap& map, const std::vector<std::vector<std::optional<Break>>>& cells, double seconds) {
+    json columns = json::array();
+    for (const auto& column : cells) {
+        columns.push_back(json::array());
+        for (const auto& broke : column) {
+            json cell = {{"stable", !broke}};
+            if (broke)
+                cell["kind"] = broke->kind, cell["what"] = first_line(broke->what), cell["step"] = broke->step, cell["time"] = broke->time;
+            columns.back().push_back(cell);
+        }
+    }
+    const auto axis = [](const MapAxis& a) { return json{{"key", a.key}, {"label", a.label}, {"values", a.values}}; };
+    return {{"name", map.stress.name},
+            {"method", map.stress.method},
+            {"solver", map.stress.solver},
+            {"hard_because", map.stress.hard_because},
+            {"x", axis(map.x)},
+            {"y", axis(map.y)},
+            {"cells", columns},
+            {"steps", map.stress.steps},
+            {"seconds", seconds}};
+}
+
+std::string maps_text(const json& study) {
+    std::string s;
+    for (const auto& map : study["maps"]) {
+        std::vector<std::string> kinds;
+        const auto letter = [&](const json& cell) {
+            if (cell["stable"].get<bool>()) return '.';
+            const std::string kind = text(cell, "kind");
+            auto at = std::find(kinds.begin(), kinds.end(), kind);
+            if (at == kinds.end()) at = kinds.insert(at, kind);
+            return static_cast<char>('a' + (at - kinds.begin()) % 26);
+        };
+        s += fmt::format("  {} {} [{:.1f} s]\n", text(map, "name"), text(map, "method"), map["seconds"].get<double>());
+        for (std::size_t j = map["y"]["values"].size(); j-- > 0;) {
+            s += fmt::format("    {:>10} ", map["y"]["values"][j].get<std::string>());
+            for (const auto& column : map["cells"]) s += fmt::format("{:>10}", letter(column[j]));
+            s += "\n";
+        }
+        s += fmt::format("    {:>10} ", "");
+        for (const auto& x : map["x"]["values"]) s += fmt::format("{:>10}", x.get<std::string>());
+        s += "\n";
+        for (std::size_t k = 0; k < kinds.size(); ++k) s += fmt::format("    {} {}\n", static_cast<char>('a' + k % 26), kinds[k]);
+    }
+    return s;
+}
+
+std::string map_file(const json& study, const json& map) {
+    std::string name = text(study, "study") + "-" + text(map, "name") + (text(map, "method").empty() ? "" : "-" + text(map, "method"));
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_'; }, '-');
+    return name + ".svg";
 }
 
 }  // namespace weir::validation

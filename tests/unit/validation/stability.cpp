@@ -47,7 +47,7 @@ std::string refusal(const std::string& text) {
 
 TEST("the bisection closes in on the limit within its factor, and says where neither end is a limit") {
     const auto breaks_above = [](real limit) {
-        return [limit](real value) { return value > limit ? std::optional<Break>({"it broke", 3, 0.5}) : std::nullopt; };
+        return [limit](real value) { return value > limit ? std::optional<Break>({"it broke", "it", 3, 0.5}) : std::nullopt; };
     };
     const Stress stress{.low = 0.1, .high = 100};
     const Limit found = bisect(stress, 1.1, breaks_above(7));
@@ -57,6 +57,67 @@ TEST("the bisection closes in on the limit within its factor, and says where nei
     EXPECT_EQ(found.broke.what, "it broke");
     EXPECT_FALSE(bisect(stress, 1.1, breaks_above(1000)).first_unstable) << "the high end is stable";
     EXPECT_FALSE(bisect(stress, 1.1, breaks_above(0.01)).last_stable) << "the low end is not";
+}
+
+TEST("an island of breaks below a stable end is found: the axis is climbed, not only tried at its ends") {
+    const auto island = [](real value) {
+        return value > 5 && value < 20 ? std::optional<Break>({"it broke", "it", 3, 0.5}) : std::nullopt;
+    };
+    const Limit found = bisect({.low = 0.25, .high = 50}, 1.1, island);
+    ASSERT_TRUE(found.first_unstable);
+    EXPECT_LE(*found.last_stable, 5);
+    EXPECT_LT(*found.first_unstable / *found.last_stable, 1.1);
+}
+
+TEST("an axis may set several keys by powers of its value; what cannot be read is refused") {
+    Stress stress{.key = "time.end"};
+    stress.base.overrides = {{"grid.cells", "[<8^-1 round>, <4 round>]"}, {"grid.size", "[<0.5>, 1]"}, {"stall_at", "3"}};
+    const Variant pushed = pushed_to(stress, 3);
+    EXPECT_EQ(pushed.overrides[0].value, "[3, 12]") << "8 / 3 and 4 x 3, as whole numbers";
+    EXPECT_EQ(pushed.overrides[1].value, "[1.5, 1]");
+    EXPECT_EQ(pushed.overrides[2].value, "3");
+    EXPECT_EQ(pushed.overrides[3].key, "time.end");
+    stress.base.overrides = {{"grid.size", "[<half>, 1]"}};
+    EXPECT_THROW(pushed_to(stress, 3), BadInput);
+    EXPECT_NE(
+        refusal("question = \"q\"\n[[axes]]\nname = \"n\"\nlow = 1\nhigh = 2\nhard_because = \"h\"\n").find("an axis needs a \"key\""),
+        std::string::npos);
+}
+
+TEST("an axis may be for some methods only and have steps of its own; a method that there is not is named") {
+    const std::string two = "question = \"q\"\n[[methods]]\nname = \"a\"\n[[methods]]\nname = \"b\"\n" + axis;
+    const auto read = [](const std::string& text) { return parse_stability(text, "stability.toml", "cases/sample", Size::ci); };
+    EXPECT_EQ(read(two).stresses.size(), 2u);
+    const StressStudy one = read(two + "methods = [\"b\"]\nsteps = 7\n");
+    ASSERT_EQ(one.stresses.size(), 1u);
+    EXPECT_EQ(one.stresses[0].method, "b");
+    EXPECT_EQ(one.stresses[0].steps, 7);
+    EXPECT_NE(refusal(two + "methods = [\"c\"]\n").find("no method is called \"c\""), std::string::npos);
+}
+
+TEST("a map holds one run a pair of values, with what broke first, in JSON, on the terminal, on the page and as a figure") {
+    const test::TemporaryFolder folder;
+    const std::string map =
+        "[[maps]]\nname = \"end against stall\"\nhard_because = \"h\"\nx = { key = \"stall_at\", values = [\"4\", \"1000\"] }\n"
+        "y = { key = \"time.end\", values = [\"0.05\", \"1\"] }\n";
+    StabilityOptions options;
+    options.names = {add(folder.path(), stalls + axis + map).string()}, options.quiet = true;
+    options.out = folder.path() / "out", options.publish = folder.path() / "page";
+    EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_success);
+    std::ifstream file(folder.path() / "out/study.json");
+    const auto json = nlohmann::json::parse(file);
+    const auto& cells = json["maps"][0]["cells"];
+    EXPECT_TRUE(cells[0][0]["stable"] && cells[1][0]["stable"] && cells[1][1]["stable"]);
+    EXPECT_FALSE(cells[0][1]["stable"]);
+    EXPECT_EQ(cells[0][1]["step"], 5);
+    EXPECT_EQ(cells[0][1]["kind"], "the step failed");
+    EXPECT_NE(maps_text(json).find("a the step failed"), std::string::npos);
+    EXPECT_TRUE(fs::exists(folder.path() / "page/svg/study-end-against-stall.svg"));
+    std::ifstream page(folder.path() / "page/index.md");
+    std::ostringstream text;
+    text << page.rdbuf();
+    EXPECT_NE(text.str().find("svg/study-end-against-stall.svg"), std::string::npos);
+    EXPECT_NE(text.str().find("| fake | end |"), std::string::npos) << "the table of all limits names the solver";
 }
 
 TEST("a run that fails is a break, with its step and time") {
@@ -83,8 +144,9 @@ TEST("each kind of invariant is watched after every step; an axis without its ow
     EXPECT_FALSE(breaks("drift = 1"));
     EXPECT_TRUE(breaks("drift = 0.001"));
     EXPECT_TRUE(breaks("never_rises = 0.001"));
-    EXPECT_FALSE(breaks("at_most = 4, times_value = true")) << "4 times 0.5";
-    EXPECT_TRUE(breaks("at_most = 2, times_value = true")) << "2 times 0.5";
+    EXPECT_FALSE(breaks("at_most = 4, power = 1")) << "4 times 0.5";
+    EXPECT_TRUE(breaks("at_most = 2, power = 1")) << "2 times 0.5";
+    EXPECT_FALSE(breaks("at_most = 1, power = -1")) << "1 over 0.5";
 }
 
 TEST("what is wrong in stability.toml is named") {
