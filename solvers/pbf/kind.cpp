@@ -51,7 +51,8 @@ Key scheme() {
              .min_open = true},
             {.name = "warm_start",
              .type = Type::number,
-             .doc = "Keep the constraints' multipliers and start the next step's iterations from this part of them.",
+             .doc = "Keep the constraints' multipliers and start the next step's iterations from this part of them, which divides what is "
+                    "left of compression by 1 - warm_start. From 0.5 on a liquid at rest trembles.",
              .fallback = usual.warm_start,
              .min = 0,
              .max = 1.0},

@@ -1,5 +1,6 @@
 #include "pbf/options.hpp"
 
+#include "particles/fastest_flow.hpp"
 #include "particles/passes.hpp"
 
 #include <algorithm>
@@ -70,6 +71,18 @@ Params pbf_params(const Options& o, real spacing) {
     return p;
 }
 
+template <int D>
+real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid) {
+    const real distance = scene.number("time.cfl") * fluid.domain.spacing, g = norm(fluid.gravity);
+    const real speed = particles::fastest_flow(scene, fluid);
+    const real longest = std::min({speed > 0 ? distance / speed : infinity, g > 0 ? std::sqrt(distance / g) : infinity,
+                                   scene.root().number_or("time.max_dt", infinity)});
+    const real frame = std::min(scene.root().number_or("output.every", infinity), scene.number("time.end"));
+    return frame / std::max<real>(1, std::ceil(frame / longest * (1 - 1e-9)));
+}
+
+template real even_step(const scene::Scene&, particles::Fluid<2>&);
+template real even_step(const scene::Scene&, particles::Fluid<3>&);
 template Kernel<2> density_kernel(const Options&, real);
 template Kernel<3> density_kernel(const Options&, real);
 template Kernel<2> gradient_kernel(const Options&, real);

@@ -17,7 +17,7 @@ constexpr std::int64_t steps_between_reorders = 16;
 template <int D>
 PbfSolver<D>::PbfSolver(const scene::Scene& scene)
     : options_(scene),
-      fluid_(scene),
+      fluid_(particles::initial_fluid<D>(scene)),
       emitters_(scene, fluid_.domain),
       params_(pbf_params<particles::single::PbfParams, D>(options_, fluid_.domain.spacing)),
       walls_(fluid_.domain.template walls<particles::single::WallParams>(density_kernel<D>(options_, fluid_.domain.spacing),
@@ -26,9 +26,7 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene)
       solids_(fluid_.domain, fluid_.domain.template walls<particles::plain::WallParams>(
                                  density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
       flow_{fluid_, pairs_, params_, {}, {}, static_cast<int>(options_.smoothing)},
-      cfl_(scene.number("time.cfl")),
-      max_dt_(scene.root().number_or("time.max_dt", infinity)) {
-    particles::set_initial_velocity(scene, fluid_);
+      step_(even_step(scene, fluid_)) {
     particles::add_effects(scene, effects_);
     settle();
 }
@@ -201,12 +199,9 @@ typename PbfSolver<D>::Compression PbfSolver<D>::compression() const {
     return n ? Compression{particles::block_sum(pairs_.size(), excess) / n, particles::block_max(pairs_.size(), excess)} : Compression{};
 }
 
-/// As far as the fastest particle goes in `cfl` spacings, where gravity may have made it faster by the end of the step.
 template <int D>
 real PbfSolver<D>::advised_dt() const {
-    const real d = fluid_.domain.spacing, g = norm(fluid_.gravity), speed = fluid_.max_speed();
-    const real by_speed = speed > 0 ? cfl_ * d / speed : infinity, by_gravity = g > 0 ? std::sqrt(cfl_ * d / g) : infinity;
-    return std::min({by_speed, by_gravity, max_dt_, effects_.max_dt(flow_)});
+    return std::min(step_, effects_.max_dt(flow_));
 }
 
 template <int D>

@@ -65,7 +65,7 @@ private:
     std::vector<float> density_;     // rho / rho0 of each sorted particle
     std::vector<float> multiplier_;  // sum of lambda of each sorted particle over this step, with warm start
     Passes passes_;
-    real cfl_ = 0.5, max_dt_ = infinity;
+    real step_ = infinity;  // advised [s]
 };
 
 }  // namespace weir::pbf

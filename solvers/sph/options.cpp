@@ -21,11 +21,11 @@ void Options::read_sides(const scene::Scene& scene) {
         }
 }
 
-Options::Options(const scene::Scene& scene) {
+Options::Options(const scene::Scene& scene, real fastest) {
     const std::string& name = scene.text("scheme.kernel");
     smoothing = name == "cubic" ? Smoothing::cubic : name == "wendland" ? Smoothing::wendland : Smoothing::muller;
     support = scene.number("scheme.support");
-    sound = scene.root().number_or("scheme.sound_speed", 0);
+    sound = scene.root().number_or("scheme.sound_speed", fastest > 0 ? 10 * fastest : sound);
     gamma = scene.text("scheme.state") == "tait" ? scene.number("scheme.gamma") : 1;
     tension = scene.flag("scheme.tension");
     const std::string& by = scene.text("scheme.density");
@@ -48,12 +48,6 @@ Options::Options(const scene::Scene& scene) {
         read_sides<2>(scene);
     else
         read_sides<3>(scene);
-}
-
-Options Options::with_sound(real fastest) const {
-    Options all = *this;
-    if (sound == 0) all.sound = fastest > 0 ? 10 * fastest : 10;
-    return all;
 }
 
 bool Options::wall_forces() const {

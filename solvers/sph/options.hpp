@@ -19,7 +19,7 @@ inline constexpr DeltaSph delta_sph{};
 struct Options {
     Smoothing smoothing = Smoothing::wendland;
     real support = 4;         // over the spacing
-    real sound = 0;           // speed of sound [m/s]; 0: not named
+    real sound = 10;          // speed of sound [m/s]
     real gamma = 1;           // 1: the linear equation of state of Müller et al.; else Tait's
     bool tension = false;     // whether pressure may be negative
     bool continuity = false;  // density by its rate, not by a sum
@@ -33,9 +33,9 @@ struct Options {
     std::array<real, 18> slide{};  // and the velocities of these walls
 
     Options() = default;
-    explicit Options(const scene::Scene& scene);
-    /// These options with a speed of sound: where none is named, ten times the fastest flow, or 10 m/s where there is none to tell.
-    Options with_sound(real fastest) const;
+    /// fastest: the fastest flow that the scene tells [m/s] (particles/fastest_flow.hpp). Where no speed of sound is named, it is ten times
+    /// that, or 10 m/s where there is none.
+    Options(const scene::Scene& scene, real fastest);
     /// p = c^2 (rho - rho0), or B ((rho / rho0)^gamma - 1) with B = c^2 rho0 / gamma (Monaghan 1994).
     real pressure(real rho, real rho0) const;
     /// The density that has this pressure.

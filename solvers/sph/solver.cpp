@@ -1,6 +1,6 @@
 #include "sph/solver.hpp"
 
-#include "sph/sound.hpp"
+#include "particles/fastest_flow.hpp"
 #include "sph/tension.hpp"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ real interpolate(const std::vector<double>& t, const std::vector<double>& value,
 template <int D>
 SphSolver<D>::SphSolver(const scene::Scene& scene)
     : fluid_(particles::initial_fluid<D>(scene)),
-      options_(Options(scene).with_sound(fastest_flow(scene, fluid_))),
+      options_(scene, particles::fastest_flow(scene, fluid_)),
       emitters_(scene, fluid_.domain),
       params_(sph_params<particles::single::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
       smooth_(smoothing_params<D>(params_, particles::cell_volume<D>(fluid_.domain.spacing), fluid_.mass)),

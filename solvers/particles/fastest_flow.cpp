@@ -1,8 +1,6 @@
-#include "sph/sound.hpp"
+#include "particles/fastest_flow.hpp"
 
-namespace weir::sph {
-
-using particles::Fluid;
+namespace weir::particles {
 
 namespace {
 
@@ -69,4 +67,4 @@ real fastest_flow(const scene::Scene& scene, Fluid<D>& fluid) {
 template real fastest_flow(const scene::Scene&, Fluid<2>&);
 template real fastest_flow(const scene::Scene&, Fluid<3>&);
 
-}  // namespace weir::sph
+}  // namespace weir::particles
