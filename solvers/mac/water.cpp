@@ -226,7 +226,8 @@ template <int D>
 real Water<D>::advised_dt() const {
     const real h = frame_.h_min(), g = norm(gravity_);
     real dt = infinity;
-    if (rate_ > 0 || g > 0) dt = options_.cfl / (rate_ + std::sqrt(options_.cfl * g / h));
+    const real rate = std::max(rate_, solids_.max_rate(state_));  // water at rest sees a body coming
+    if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
     if (g > 0) dt = std::min(dt, std::sqrt(h / (pi * g)));
     if (options_.sigma > 0) dt = std::min(dt, std::sqrt(state_.rho * h * h * h / (4 * pi * options_.sigma)));
     return std::min(dt, effects_.max_dt(state_));

@@ -16,8 +16,9 @@ namespace {
 /// Times closer than this are the same time: what rounding leaves of t + (T - t).
 real slack(real t) { return 16 * std::numeric_limits<real>::epsilon() * std::max(std::abs(t), std::numeric_limits<real>::min()); }
 
-/// A step may be this much longer than asked for, so that a sum of rounded steps leaves no sliver before a frame.
-constexpr real stretch = 1 + 1e-9;
+/// A step may be this much longer than asked for, so that a sum of rounded steps leaves no sliver before a frame: n steps round n times,
+/// by n ε t / 2 at most, which is n² ε / 2 of a step; 1e-6 is beyond what a hundred thousand leave.
+constexpr real stretch = 1 + 1e-6;
 
 void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
 

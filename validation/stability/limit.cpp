@@ -188,7 +188,8 @@ Limit bisect(const Stress& stress, real factor, const std::function<std::optiona
         return !broke;
     };
     // Climbed in equal steps of the logarithm: what is stable at the end of an axis need not be so below it.
-    bool holds = stable(stress.low);
+    const bool tried = stress.nested && stress.high < infinity;
+    bool holds = !(tried && stable(stress.high)) && stable(stress.low);
     for (int rung = 1; holds && stress.high < infinity && rung <= rungs; ++rung)
         holds = stable(rung == rungs ? stress.high : stress.low * std::pow(stress.high / stress.low, static_cast<real>(rung) / rungs));
     if (limit.last_stable && limit.first_unstable)

@@ -39,6 +39,7 @@ struct Stress {
     std::string theory_source{};
     std::optional<real> floor{};  // the least that must be stable
     std::string floor_why{};
+    bool nested = false;     // a run at one value contains those at all lesser ones: the end is tried first
     std::int64_t steps = 0;  // a run ends here if its scene has not ended before
     Variant base{};
     std::vector<Invariant> watch{};

@@ -26,6 +26,8 @@ Key tables(std::string name, std::string doc, std::vector<Key> keys, bool requir
     return {.name = std::move(name), .type = Type::tables, .doc = std::move(doc), .required = required, .keys = std::move(keys)};
 }
 
+Key methods_of_key() { return {.name = "methods", .type = Type::texts, .doc = "Only these of the study's methods; absent: all."}; }
+
 Key watch_key() {
     return tables("watch", "What must hold after every step.",
                   {text("series", "An integral, or divergence, density_error, iterations, dt; or a sum of two, a+b.", true),
@@ -37,20 +39,30 @@ Key watch_key() {
                     .doc = "at_most and at_least are for a key of 1, and grow with this power of it.",
                     .fallback = 0.0},
                    positive("drift", "|value - first| / |first| <= this"),
+                   methods_of_key(),
                    positive("never_rises", "No step raises the value by more than this part of the largest.")});
 }
 
 Key steps_key() { return {.name = "steps", .type = Type::integer, .doc = "Longest run.", .min = 1}; }
-Key methods_of_key() { return {.name = "methods", .type = Type::texts, .doc = "Only these of the study's methods; absent: all."}; }
 
 std::vector<Key> axis_keys() {
     std::vector<Key> axis = variant_keys();
     for (Key k : {text("name", "Its name.", true),
                   text("key", "The key of the scene that is raised; absent where changes hold the value as <a>, <a^p> or <a^p round>."),
-                  positive("low", "Where it begins.", true), positive("high", "How far it is tried.", true),
-                  text("hard_because", "Why this is hard.", true), positive("theory", "The limit that theory gives."),
-                  text("theory_source", "Where that limit comes from."), positive("floor", "The least that must be stable."),
-                  text("floor_why", "Why so much is asked."), steps_key(), methods_of_key(), watch_key()})
+                  positive("low", "Where it begins.", true),
+                  positive("high", "How far it is tried.", true),
+                  text("hard_because", "Why this is hard.", true),
+                  positive("theory", "The limit that theory gives."),
+                  text("theory_source", "Where that limit comes from."),
+                  positive("floor", "The least that must be stable."),
+                  text("floor_why", "Why so much is asked."),
+                  {.name = "nested",
+                  .type = Type::flag,
+                  .doc = "A run at one value contains those at all lesser ones (steps, time): the end is tried first.",
+                  .fallback = false},
+                  steps_key(),
+                  methods_of_key(),
+                  watch_key()})
         axis.push_back(std::move(k));
     return axis;
 }
@@ -86,9 +98,12 @@ std::vector<Key> make_keys() {
     return keys;
 }
 
-std::vector<Invariant> invariants(const Table& t, VariantReader& reader) {
+/// What a table watches of one method.
+std::vector<Invariant> invariants(const Table& t, const std::string& method, VariantReader& reader) {
     std::vector<Invariant> list;
     for (const Table& w : t.tables("watch")) {
+        const std::vector<std::string> of = w.has("methods") ? w.texts("methods") : std::vector<std::string>{method};
+        if (std::find(of.begin(), of.end(), method) == of.end()) continue;
         Invariant invariant{.series = reader.said(w, "series"), .power = w.number("power"), .why = reader.said(w, "why")};
         int given = 0;
         for (std::size_t i = 0; i < tests.size(); ++i)
@@ -115,6 +130,7 @@ Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader
              .theory_source = axis.text_or("theory_source", ""),
              .floor = optional_number(axis, "floor"),
              .floor_why = axis.text_or("floor_why", ""),
+             .nested = axis.flag("nested"),
              .base = method};
     if (s.low >= s.high) reader.problem(axis.place("low"), "\"low\" must be less than \"high\"");
     if (s.floor && s.floor_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
@@ -171,11 +187,10 @@ StressStudy parse_stability(std::string_view text, const std::string& file, cons
     const Table root = scene::parse_table(text, file, stability_keys());
     VariantReader reader(file, folder, size);
     StressStudy study{.name = folder.filename().string(), .folder = folder, .question = reader.said(root, "question")};
-    const auto common = invariants(root, reader);
     const auto methods = reader.read(root, "methods", nullptr);
     const auto watch_over = [&](Stress& s, const Table& t) {
         s.steps = t.has("steps") ? t.integer("steps") : root.integer("steps");
-        s.watch = t.tables("watch").empty() ? common : invariants(t, reader);
+        s.watch = invariants(t.tables("watch").empty() ? root : t, s.method, reader);
     };
     for (const Table& axis : root.tables("axes"))
         for (const Variant& method : methods_of(axis, methods, reader)) {

@@ -69,6 +69,30 @@ TEST("an island of breaks below a stable end is found: the axis is climbed, not 
     EXPECT_LT(*found.first_unstable / *found.last_stable, 1.1);
 }
 
+TEST("where runs are nested one run at the end of the axis is enough") {
+    const auto counted = [](real limit, int& runs) {
+        return [limit, &runs](real value) {
+            return ++runs, value > limit ? std::optional<Break>({"it broke", "it", 3, 0.5}) : std::nullopt;
+        };
+    };
+    int runs = 0;
+    EXPECT_FALSE(bisect({.low = 1, .high = 100, .nested = true}, 1.1, counted(1000, runs)).first_unstable);
+    EXPECT_EQ(runs, 1);
+    const Limit found = bisect({.low = 1, .high = 100, .nested = true}, 1.1, counted(7, runs));
+    EXPECT_LE(*found.last_stable, 7);
+    EXPECT_LT(*found.first_unstable / *found.last_stable, 1.1);
+}
+
+TEST("what is watched of some methods only is not asked of others") {
+    const std::string text =
+        "question = \"q\"\nwatch = [{ series = \"mass\", at_most = 2, why = \"w\", methods = [\"a\"] }]\n"
+        "[[methods]]\nname = \"a\"\n[[methods]]\nname = \"b\"\n" +
+        axis;
+    const StressStudy study = parse_stability(text, "stability.toml", "cases/sample", Size::ci);
+    EXPECT_EQ(study.stresses.at(0).watch.size(), 1u);
+    EXPECT_EQ(study.stresses.at(1).watch.size(), 0u);
+}
+
 TEST("an axis may set several keys by powers of its value; what cannot be read is refused") {
     Stress stress{.key = "time.end"};
     stress.base.overrides = {{"grid.cells", "[<8^-1 round>, <4 round>]"}, {"grid.size", "[<0.5>, 1]"}, {"stall_at", "3"}};
