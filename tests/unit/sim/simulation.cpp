@@ -47,6 +47,12 @@ TEST("sums of rounded fixed steps leave no sliver before the end: 1000 steps of 
     EXPECT_GT(smallest, 0.000999);
 }
 
+TEST("nor do a hundred thousand of them: what each rounds by adds up") {
+    auto simulation = fake_simulation("time = { end = 500.0, dt = 0.005 }");
+    while (!simulation.finished()) simulation.step();
+    EXPECT_EQ(simulation.steps(), 100000);
+}
+
 TEST("an advised step that would leave a sliver is halved with the rest, so no step is below half the advice") {
     auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.033 }");
     while (!simulation.finished()) {

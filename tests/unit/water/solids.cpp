@@ -123,6 +123,21 @@ TEST_IN_2D_AND_3D("water that a moving solid stirs stays as calm as the solid is
     }
 }
 
+TEST("water at rest sees a body coming: without gravity too it goes a cell a step at most") {
+    // cfl = 1: the body's own speed, 5 m/s, must not cross more than one of 32 cells of 1/32 m
+    mac::Water<2> water(water_scene(R"(solver = "mac_water"
+dim = 2
+grid = { cells = [32, 32], size = [1.0, 1.0] }
+time = { end = 0.1, cfl = 1.0 }
+fluid = { density = 1000.0 }
+liquid = [ { shape = "box", min = [0.0, 0.0], max = [1.0, 0.5] } ]
+solids = [ { shape = "sphere", centre = [0.2, 0.25], radius = 0.1, motion = { kind = "constant", velocity = [5.0, 0.0] } } ]
+)"));
+    EXPECT_LE(water.advised_dt(), 1.0 / 32 / 5.0 * (1 + 1e-9));
+    water.step(water.advised_dt());
+    EXPECT_GT(fastest_marker(water), 0) << "and it moves the water";
+}
+
 TEST("beside solids at rest and moving ones, one thread and three give the same bits") {
     for (const std::string& text : {pillar("flip", 0.08), swinging_ball<3>("flip"), swinging_ball<3>("apic")}) {
         mac::Water<3> one(water_scene(text)), three(water_scene(text));
