@@ -12,6 +12,7 @@ void add_cost(CLI::App& app, int& exit_code) {
     auto& options = arguments->options;
     CLI::App* command = app.add_subcommand("cost", "Measure error against computing time; failures stay in the table");
     arguments->add_to(*command, "Every ready study (cases/*/cost.toml)", "ci: minutes; full: as published", "Folder of tables and figures");
+    command->add_flag("--report-table", options.report_table, "The figures of the report that began this work, beside ours");
     command->add_option("--solver", options.solver, "Only methods that use this solver");
     command->add_option("--error", options.error, "Another metric as the error");
     command->add_option("--vary", options.vary, "key=value,value,...: settings to go through; may be given again")->allow_extra_args(false);

@@ -4,6 +4,7 @@
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
 #include "scene/names.hpp"
+#include "validation/cost/report_table.hpp"
 #include "validation/cost/tables.hpp"
 #include "validation/report/command.hpp"
 #include "validation/report/svg.hpp"
@@ -75,12 +76,28 @@ void publish_studies(const std::vector<json>& studies, const std::filesystem::pa
         "Computing time is wall-clock time of all steps but the first, the median of the repeats.\n\n";
     for (const auto& file : files)
         if (const json study = read_json(file); study.is_object()) page += cost_markdown(study);
+    if (const json table = read_json(folder / "report_table.json"); table.is_object()) page += report_table_markdown(table);
     output::write_file(folder / "index.md", page);
+}
+
+int report_table_command(const CostOptions& options, const Solvers& solvers) {
+    if (options.all || !options.names.empty()) throw BadInput("weir cost --report-table takes neither names nor --all");
+    const ReportTable table = read_report_table(case_root() / "report_table");
+    output::require_writable(options.out);
+    const json measured = measure_report_table(table, solvers);
+    fmt::print("{}", report_table_text(measured));
+    output::write_file(options.out / "report_table.json", measured.dump(1) + "\n");
+    if (options.publish.empty()) return exit_success;
+    std::filesystem::create_directories(options.publish);
+    output::write_file(options.publish / "report_table.json", measured.dump(1) + "\n");
+    publish_studies({}, options.out, options.publish);
+    return exit_success;
 }
 
 }  // namespace
 
 int cost_command(const CostOptions& options, const Solvers& solvers) {
+    if (options.report_table) return report_table_command(options, solvers);
     std::vector<Study> studies;
     std::string problems;
     const auto found = [] { return find_studies(case_root()); };

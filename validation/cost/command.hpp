@@ -13,6 +13,7 @@ struct CostOptions {
     std::vector<std::string> names{};  // cases by name, or folders
     bool all = false;                  // every case with a cost.toml
     bool list = false;                 // name and question of each, nothing is run
+    bool report_table = false;         // the table of cases/report_table, and nothing else
     std::string solver{};              // only methods whose scene names this solver
     std::string error{};               // another metric than the study's
     std::vector<std::string> vary{};   // "key=value,value,..."

@@ -82,6 +82,20 @@ std::string study_html(const json& study, const std::filesystem::path& results) 
     return s + "</p></article>\n";
 }
 
+/// The figures of the report that began this work beside ours.
+std::string report_table(const json& t) {
+    HtmlTable table({"problem", "the report", "on", "weir", "unit", "times as fast"},
+                    "Threads of weir: " + std::to_string(t.value("threads", 1)));
+    for (const json& row : t["rows"])
+        table.row({word(text_at(row, "what")), raw(escaped(text_at(row, "theirs")), number_at(row, "their_value")),
+                   word(text_at(row, "on")), value(number_at(row, "ours")), word(text_at(row, "unit")), value(number_at(row, "times"))});
+    return fmt::format(
+        "<article id=\"report-table\"><h3>{}</h3><p>{}</p>{}<p class=\"fine\"><code>./weir.sh cost --report-table</code> · the "
+        "report: {} · weir: commit {}, {}</p></article>\n",
+        escaped(text_at(t, "question")), escaped(text_at(t, "reading")), table.html(), escaped(text_at(t, "their_machine")),
+        escaped(text_at(t, "commit")), escaped(text_at(t, "machine")));
+}
+
 /// Water methods side by side first, then the others by name: the more methods, the more a newcomer learns.
 std::vector<const json*> in_reading_order(const std::vector<json>& studies) {
     std::vector<const json*> order;
@@ -105,6 +119,7 @@ Section cost_section(const std::vector<json>& studies, const std::filesystem::pa
         "<p>Nobody compares settings here, only error for time. Computing time is wall-clock time of all steps but the first, the "
         "median of the repeats; settings that fail stay in the tables.</p>\n";
     for (const json* study : order) section.html += study_html(*study, results);
+    if (const json table = json_of(results / "cost" / "report_table.json"); table.is_object()) section.html += report_table(table);
     return section;
 }
 

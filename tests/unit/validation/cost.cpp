@@ -1,5 +1,6 @@
 // From cost.toml to the table, the front, the sentences and the page, on a solver whose numbers are known.
 #include "validation/cost/command.hpp"
+#include "validation/cost/report_table.hpp"
 
 #include "core/error.hpp"
 #include "validation/cost/tables.hpp"
@@ -140,4 +141,23 @@ TEST("--vary replaces a sweep, multiplies methods by words, and refuses what no 
     EXPECT_EQ(study.methods[1].name, "a time.max_dt=0.02");
     EXPECT_THROW(vary(study, {"sheme=1"}, test::fake_kinds()), BadInput);
     EXPECT_THROW(vary(study, {"no values"}, test::fake_kinds()), BadInput);
+}
+
+TEST("the report's figures stand beside ours: frames a second of whole steps, milliseconds of passes that there are") {
+    const test::TemporaryFolder folder;
+    add(folder.path(), head + methods);  // for its scene
+    const std::string top =
+        "question = \"q\"\ntheir_machine = \"theirs\"\nreading = \"r\"\n[[rows]]\nwhat = \"w\"\ntheirs = \"over 30\"\nvalue = 30\non = "
+        "\"CPU\"\nset = [\"time.end = 100\"]\n";
+    const auto measured = [&](const std::string& row) {
+        return measure_report_table(parse_report_table(top + row, "table.toml", folder.path() / "study"), test::fake_kinds());
+    };
+    const auto steps = measured("")["rows"][0], pass = measured("passes = [\"fake\"]\n")["rows"][0];
+    EXPECT_NEAR(steps["times"].get<double>(), steps["ours"].get<double>() / 30, 1e-9);
+    EXPECT_EQ(pass["unit"], "ms");
+    EXPECT_NEAR(pass["times"].get<double>(), 30 / pass["ours"].get<double>(), 1e-6 * pass["times"].get<double>());
+    EXPECT_THROW(measured("passes = [\"none such\"]\n"), BadInput);
+    const std::string page = report_table_markdown(measured(""));
+    EXPECT_NE(page.find("The report: theirs. Weir: commit"), std::string::npos) << "both machines are named";
+    EXPECT_NO_THROW(read_report_table(fs::path(WEIR_SOURCE_DIR) / "cases/report_table"));
 }
