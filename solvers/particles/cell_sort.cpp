@@ -8,13 +8,9 @@ namespace weir::particles {
 
 namespace {
 
-struct Range {
-    real lo = infinity, hi = -infinity;
-    bool finite = true;
-};
-
-Range range_of(const real* x, int count) {
-    std::vector<Range> parts(static_cast<std::size_t>(threads()));
+/// parts: scratch, one range a thread.
+Range range_of(const real* x, int count, std::vector<Range>& parts) {
+    parts.resize(static_cast<std::size_t>(threads()));
     for_chunks(count, static_cast<int>(parts.size()), [&](int t, int begin, int end) {
         Range r;
         for (int i = begin; i < end; ++i) {
@@ -36,7 +32,7 @@ void CellSort::cover(const Coordinates& x, int count, real cell_size) {
     for (std::size_t a = 0; a < 3; ++a) {
         origin_[a] = 0;
         if (!x[a] || count == 0) continue;
-        const Range r = range_of(x[a], count);
+        const Range r = range_of(x[a], count, ranges_);
         if (!r.finite) throw NumericalFailure("position", "a particle's position is not finite");
         origin_[a] = r.lo;
         width[a] = r.hi - r.lo;
@@ -64,16 +60,16 @@ int CellSort::cell(const Coordinates& x, int i) const {
 /// Turns the chunks' histograms into the places where each chunk's particles of each cell begin, and fills the cell starts.
 void CellSort::place_starts(int chunks) {
     const int cells = n_[0] * n_[1] * n_[2];
-    std::vector<int> before(static_cast<std::size_t>(chunks) + 1, 0);
+    before_.assign(static_cast<std::size_t>(chunks) + 1, 0);
     for_chunks(cells, chunks, [&](int t, int begin, int end) {
         int sum = 0;
         for (const auto& h : histograms_)
             for (int c = begin; c < end; ++c) sum += h[static_cast<std::size_t>(c)];
-        before[static_cast<std::size_t>(t) + 1] = sum;
+        before_[static_cast<std::size_t>(t) + 1] = sum;
     });
-    for (std::size_t t = 0; t < static_cast<std::size_t>(chunks); ++t) before[t + 1] += before[t];
+    for (std::size_t t = 0; t < static_cast<std::size_t>(chunks); ++t) before_[t + 1] += before_[t];
     for_chunks(cells, chunks, [&](int t, int begin, int end) {
-        int at = before[static_cast<std::size_t>(t)];
+        int at = before_[static_cast<std::size_t>(t)];
         for (int c = begin; c < end; ++c) {
             start_[static_cast<std::size_t>(c)] = at;
             for (auto& h : histograms_) {
@@ -84,7 +80,7 @@ void CellSort::place_starts(int chunks) {
             }
         }
     });
-    start_[static_cast<std::size_t>(cells)] = before.back();
+    start_[static_cast<std::size_t>(cells)] = before_.back();
 }
 
 void CellSort::sort(const Coordinates& x, int count, real cell_size) {
@@ -95,10 +91,12 @@ void CellSort::sort(const Coordinates& x, int count, real cell_size) {
     order_.resize(static_cast<std::size_t>(count));
     cell_.resize(static_cast<std::size_t>(count));
     unsorted_.resize(static_cast<std::size_t>(count));
+    if (start_.capacity() <= cells) start_.reserve(cells + cells / 2 + 1);  // liquid that spreads asks ever more seldom
     start_.resize(cells + 1);
     histograms_.resize(static_cast<std::size_t>(chunks));
     for_chunks(count, chunks, [&](int t, int begin, int end) {
         auto& histogram = histograms_[static_cast<std::size_t>(t)];
+        if (histogram.capacity() < cells) histogram.reserve(cells + cells / 2);
         histogram.assign(cells, 0);
         for (int i = begin; i < end; ++i) {
             const int c = cell(x, i);

@@ -9,6 +9,12 @@
 
 namespace weir::particles {
 
+/// Of one coordinate.
+struct Range {
+    real lo = infinity, hi = -infinity;
+    bool finite = true;
+};
+
 class CellSort {
 public:
     /// Sorts `count` points into cells at least `cell_size` wide that cover their bounding box. Where points are so sparse that cells would
@@ -39,6 +45,8 @@ private:
     std::vector<int> order_, cell_, start_;
     std::vector<int> unsorted_;                 // cell of each particle before sorting
     std::vector<std::vector<int>> histograms_;  // one a chunk; later: where the chunk's next particle of the cell goes
+    std::vector<Range> ranges_;                 // scratch, one a thread
+    std::vector<int> before_;                   // scratch: particles in the cells before each chunk's
 };
 
 }  // namespace weir::particles

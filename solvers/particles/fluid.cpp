@@ -19,6 +19,7 @@ Fluid<D>::Fluid(const scene::Scene& scene) : domain(scene), rho0(scene.number("f
         if (wet && (domain.solids.empty() || domain.solids.distance(centre) > 0.25 * domain.spacing)) add(centre, Vec<D>{});
         for (int a = 0; a < D && ++at[a] == cells[a]; ++a) at[a] = 0;
     }
+    scratch_.reserve(id.size());  // of reorder(), which must not allocate in a step
 }
 
 template <int D>

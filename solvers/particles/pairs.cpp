@@ -71,12 +71,12 @@ void Pairs::find(const Coordinates& x, int count, real radius) {
     place_dummies(b_.data());
     links_.clear();
     if (total > count) {
-        std::vector<int> sorted(static_cast<std::size_t>(count));
+        sorted_.resize(static_cast<std::size_t>(count));
         for (int k = 0; k < total; ++k)
-            if (!is_image(k)) sorted[static_cast<std::size_t>(owner(k))] = k;
+            if (!is_image(k)) sorted_[static_cast<std::size_t>(owner(k))] = k;
         for (int k = 0; k < total; ++k)
             if (is_image(k))
-                links_.push_back({k, sorted[static_cast<std::size_t>(owner(k))], cells_.order()[static_cast<std::size_t>(k)] - count});
+                links_.push_back({k, sorted_[static_cast<std::size_t>(owner(k))], cells_.order()[static_cast<std::size_t>(k)] - count});
     }
     list_.build(table_, a_.data(), cells_, static_cast<float>(radius));
 }
@@ -89,12 +89,12 @@ void Pairs::refresh_images(float* four, bool moves) const {
         }
 }
 
-std::vector<int> Pairs::particle_order() const {
-    std::vector<int> order;
-    order.reserve(static_cast<std::size_t>(particles_));
+const std::vector<int>& Pairs::particle_order() {
+    if (images() == 0) return cells_.order();
+    sorted_.clear();  // as long as there are particles since find()
     for (const int i : cells_.order())
-        if (i < particles_) order.push_back(i);
-    return order;
+        if (i < particles_) sorted_.push_back(i);
+    return sorted_;
 }
 
 Pairs::NeighbourCounts Pairs::neighbour_counts() const {

@@ -32,7 +32,7 @@ public:
     bool is_image(int k) const { return images() > 0 && cells_.order()[static_cast<std::size_t>(k)] >= particles_; }
     int images() const { return size() - particles_; }
     /// State particles in sorted order.
-    std::vector<int> particle_order() const;
+    const std::vector<int>& particle_order();
     /// Two float4 arrays, and room for more; each has dummies behind the last particle.
     float* a() { return a_.data(); }
     float* b() { return b_.data(); }
@@ -75,6 +75,7 @@ private:
     std::vector<int> image_owner_;                   // state particle of each image
     std::vector<std::array<float, 3>> image_shift_;  // and where it stands from there
     std::vector<std::array<int, 3>> links_;          // (sorted image, sorted owner, image)
+    std::vector<int> sorted_;                        // scratch: where each particle went
 };
 
 }  // namespace weir::particles

@@ -4,6 +4,7 @@
 #include "particles/cell_sort.hpp"
 #include "particles/passes.hpp"
 
+#include <string>
 #include <vector>
 
 namespace weir::particles {
@@ -38,9 +39,11 @@ private:
         std::vector<std::uint32_t> entries, offset, hits;
         std::vector<float> x, y, z;
         int growths = 0;
+        std::string failure;
     };
     void prepare(Chunk& chunk, int t, int slices, int lanes);
     void grow(Chunk& chunk, Built why, int lanes) const;
+    void make_room_ahead(Chunk& chunk) const;
 
     std::vector<Chunk> chunks_;
     std::vector<std::size_t> first_;
