@@ -30,7 +30,7 @@ bool ordered(const VariantResult& v) { return v.plan.sweep && v.plan.sweep->key 
 std::vector<std::string> metrics_of(const VariantResult& v) {
     std::vector<std::string> names;
     for (const auto& [metric, value] : v.runs.front().measured)
-        if (std::all_of(v.runs.begin(), v.runs.end(), [&](const RunResult& r) { return r.measured.count(metric) != 0; }))
+        if (std::all_of(v.runs.begin(), v.runs.end(), [&name = metric](const RunResult& r) { return r.measured.count(name) != 0; }))
             names.push_back(metric);
     return names;
 }
