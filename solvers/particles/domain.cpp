@@ -77,6 +77,24 @@ Params Domain<D>::walls(const Kernel<D>& density, const Kernel<D>& gradient) con
     return w;
 }
 
+template <int D>
+void refuse_idle_walls(const scene::Scene& scene, const Domain<D>& domain, bool viscous, const std::string& instead) {
+    for (int a = 0; a < D; ++a)
+        for (int end = 0; end < 2; ++end) {
+            const auto& side = domain.sides.side(a, end);
+            const std::string path = std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max");
+            if (side.kind == geometry::SideKind::inflow)
+                scene.refuse(path, "particles do not enter through a side", "let in by emitters; a side of kind \"open\" lets them out");
+            if (side.no_slip && domain.walled(a, end) && !viscous)
+                scene.refuse(path, "without viscosity no liquid sticks to a wall", instead);
+        }
+    for (std::size_t i = 0; i < domain.solids.count(); ++i)
+        if (domain.solids[i].no_slip && !viscous)
+            scene.refuse("solids[" + std::to_string(i) + "]", "without viscosity no liquid sticks to a solid", instead);
+}
+
+template void refuse_idle_walls(const scene::Scene&, const Domain<2>&, bool, const std::string&);
+template void refuse_idle_walls(const scene::Scene&, const Domain<3>&, bool, const std::string&);
 template struct Domain<2>;
 template struct Domain<3>;
 template single::WallParams Domain<2>::walls(const Kernel<2>&, const Kernel<2>&) const;

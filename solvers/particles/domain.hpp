@@ -46,4 +46,9 @@ struct Domain {
     Params walls(const Kernel<D>& density, const Kernel<D>& gradient) const;
 };
 
+/// Refuses sides and solids that would not do what the scene says: an inflow (particles enter by emitters), and walls that the liquid
+/// sticks to where no viscosity makes it stick; `instead` says what to do about that.
+template <int D>
+void refuse_idle_walls(const scene::Scene& scene, const Domain<D>& domain, bool viscous, const std::string& instead);
+
 }  // namespace weir::particles

@@ -27,6 +27,7 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene)
                                  density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
       flow_{fluid_, pairs_, params_, {}, {}, static_cast<int>(options_.smoothing)},
       step_(even_step(scene, fluid_)) {
+    particles::refuse_idle_walls(scene, fluid_.domain, false, "PBF has none: take slip = \"free\", or solver = \"sph\" with its viscosity");
     particles::add_effects(scene, effects_);
     settle();
 }

@@ -52,7 +52,7 @@ std::vector<scene::Variant> effects() {
     auto list = particles::effect_schemas();
     list.push_back({"viscosity",
                     "Viscous forces with fluid.viscosity (Müller et al. 2003, eq. 14; with the other kernels Morris et al. 1997), and at "
-                    "walls with slip = \"no\".",
+                    "walls and solids with slip = \"no\".",
                     {}});
     list.push_back({"density_diffusion",
                     "Density spreads over neighbours, but for what it varies by at rest (delta-SPH: Molteni & Colagrossi 2009; Fourtakas "

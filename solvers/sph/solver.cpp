@@ -62,8 +62,10 @@ SphSolver<D>::SphSolver(const scene::Scene& scene)
       flow_{fluid_, pairs_, smooth_, {}, {}, static_cast<int>(options_.smoothing)},
       rho_rest_(fluid_.rho0),
       max_dt_(scene.root().number_or("time.max_dt", infinity)) {
+    particles::refuse_idle_walls(scene, fluid_.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
     particles::add_effects(scene, effects_);
     if (scene.effect("surface_tension")) effects_.add(std::make_unique<SurfaceTension<D>>(options_, params_, walls_, solids_));
+    for (std::size_t i = 0; i < fluid_.domain.solids.count(); ++i) sticky_solids_ = sticky_solids_ || fluid_.domain.solids[i].no_slip;
     start_pressure(scene);
     if (const auto* e = scene.effect("rest_density")) {
         rest_times_ = e->numbers("times");
@@ -208,6 +210,23 @@ void SphSolver<D>::find_forces() {
     const SphPass job = pass();
     const auto force = options_.continuity ? table.force : table.force_summed;
     pairs_.list().each_chunk([&](const ListChunk& chunk) { force(job, chunk); });
+    if (sticky_solids_) drag_at_solids();
+}
+
+/// A solid that is stuck to drags as a wall does: 2 nu plane / phi along its surface (Morris et al. 1997, sec. 3.2; kernels/sph_pair.inl).
+template <int D>
+void SphSolver<D>::drag_at_solids() {
+    const auto& solids = fluid_.domain.solids;
+    solids_.each_near(pairs_.a(), [&](int k, const Vec<D>& at, const float* term) {
+        if (pairs_.is_image(k) || !solids[solids.nearest(at)].no_slip) return;
+        Vec<D> pull{};  // against the surface's normal, as long as the integral over its plane
+        for (int a = 0; a < D; ++a) pull[a] = static_cast<real>(term[a]);
+        const real plane = norm(pull);
+        if (plane == 0) return;
+        const Vec<D> slip = solids.velocity(at) - fluid_.velocity(pairs_.owner(k)), along = slip - dot(slip, pull) / (plane * plane) * pull;
+        const real drag = 2 * options_.viscosity * plane / std::max(solids.distance(at), static_cast<real>(params_.closest));
+        for (int a = 0; a < D; ++a) acceleration_[static_cast<std::size_t>(4 * k + a)] += static_cast<float>(drag * along[a]);
+    });
 }
 
 /// v += dt a.

@@ -45,6 +45,7 @@ private:
     template <class F>
     void load(F&& more);
     void find_forces();
+    void drag_at_solids();
     void kick(real dt);
     void drift(real dt);
     particles::SphPass pass();
@@ -61,6 +62,7 @@ private:
     Effects<particles::Flow<D>> effects_;
     std::vector<float> velocity_, acceleration_, density_;
     std::vector<double> rest_times_, rest_values_;  // of the effect rest_density
+    bool sticky_solids_ = false;                    // whether the liquid sticks to any
     real rho_rest_ = 1;
     real max_acceleration_ = 0;
     Passes passes_;

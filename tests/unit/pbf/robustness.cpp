@@ -75,6 +75,13 @@ TEST_IN_2D_AND_3D("a block twice too dense spreads without leaving the box") {
     stays_inside(*solver, 200, 0.008);
 }
 
+TEST("walls that would do nothing are refused: an inflow, and what sticks") {
+    for (const char* more : {"sides.x_min = { kind = \"inflow\", velocity = [1, 0] }", "sides.x_min = { kind = \"wall\", slip = \"no\" }",
+                             "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1] }",
+                             "solids = [ { shape = \"sphere\", centre = [0.8, 0.8], radius = 0.1, slip = \"no\" } ]"})
+        EXPECT_THROW(test::pbf_solver<2>(test::pbf_scene<2>(test::box<2>(0.5, 0.5, 0.5), "", more)), scene::BadScene) << more;
+}
+
 TEST("the advised step divides a frame evenly, is that of the fastest flow, and never changes") {
     const auto scene = test::pbf_scene<2>(test::box<2>(1, 1, 1), "", "output.every = 0.1");
     auto solver = test::pbf_solver<2>(scene);
