@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace weir::validation {
@@ -29,7 +30,8 @@ void add_rows(HtmlTable& table, const json& study) {
     for (const json& l : study["limits"]) {
         const bool guarded = l.value("guarded", true);
         std::string theory = number_at(l, "theory") ? number_text(*number_at(l, "theory")) : "–";
-        if (!text_at(l, "theory_source").empty()) theory += "<br><small>" + escaped(text_at(l, "theory_source")) + "</small>";
+        if (!text_at(l, "theory_source").empty())
+            theory = "<span class=\"theory\">" + theory + ": " + escaped(text_at(l, "theory_source")) + "</span>";
         table.row({word(text_at(l, "solver").empty() ? text_at(study, "study") : text_at(l, "solver")),
                    word(axis_of(l)),
                    last_stable(l),
@@ -39,20 +41,42 @@ void add_rows(HtmlTable& table, const json& study) {
                     .key = number_at(l, "floor"),
                     .number = true},
                    raw("<span class=\"why\">" + escaped(text_at(l, "broke")) + "</span>"),
-                   raw("<span class=\"why\">" + escaped(text_at(l, "hard_because")) + "</span>"),
                    word(text_at(study, "study"))},
                   guarded ? "" : "fail");
     }
 }
 
-/// Limits that theory has a word on: what was found beside what was foretold.
-std::string beside_theory(const std::vector<json>& studies) {
+/// Each axis once, with what makes it hard.
+std::string reasons(const std::vector<json>& studies) {
     std::string list;
+    std::set<std::string> told;
     for (const json& study : studies)
-        for (const json& l : study["limits"])
-            if (l.contains("theory") && l.contains("first_unstable") && l.contains("last_stable"))
-                list += fmt::format("<li>{}, {}: stable up to {}, theory {}</li>", escaped(text_at(study, "study")), escaped(axis_of(l)),
-                                    number_text(*number_at(l, "last_stable")), number_text(*number_at(l, "theory")));
+        for (const json& l : study["limits"]) {
+            const std::string one = fmt::format("<li><b>{}</b> ({}): {}</li>", escaped(text_at(l, "axis")),
+                                                escaped(text_at(study, "study")), escaped(text_at(l, "hard_because")));
+            if (told.insert(one).second) list += one;
+        }
+    return "<details><summary>Why each axis is hard</summary><ul class=\"reasons\">" + list + "</ul></details>\n";
+}
+
+/// Limits that theory has a word on, one line an axis: what was found, over all methods, beside what was foretold.
+std::string beside_theory(const std::vector<json>& studies) {
+    struct Found {
+        double least, most, theory;
+    };
+    std::map<std::string, Found> axes;
+    for (const json& study : studies)
+        for (const json& l : study["limits"]) {
+            if (!l.contains("theory") || !l.contains("first_unstable") || !l.contains("last_stable")) continue;
+            const double found = *number_at(l, "last_stable"), theory = *number_at(l, "theory");
+            const std::string name = fmt::format("{}, {} ({:.3g})", text_at(l, "solver"), text_at(l, "axis"), theory);
+            auto& axis = axes.try_emplace(name, Found{found, found, theory}).first->second;
+            axis.least = std::min(axis.least, found), axis.most = std::max(axis.most, found);
+        }
+    std::string list;
+    for (const auto& [name, f] : axes)
+        list += fmt::format("<li>{}: stable up to {}{}, theory {}</li>", escaped(name.substr(0, name.find(" ("))), number_text(f.least),
+                            f.most > f.least ? " to " + number_text(f.most) : std::string(), number_text(f.theory));
     return list.empty() ? "" : "<ul>" + list + "</ul>";
 }
 
@@ -61,7 +85,10 @@ std::string beside_theory(const std::vector<json>& studies) {
 Map drawing_of_map(const json& m) {
     const auto texts = [](const json& list) {
         std::vector<std::string> words;
-        for (const json& text : list) words.push_back(text.get<std::string>());
+        for (const json& text : list) {
+            words.push_back(text.get<std::string>());
+            std::erase(words.back(), '"');  // as TOML writes words
+        }
         return words;
     };
     const std::string method = text_at(m, "method");
@@ -94,7 +121,7 @@ Map drawing_of_map(const json& m) {
 
 Section limits_section(const std::vector<json>& studies) {
     if (studies.empty()) return {.summary = "<p>No limit is published: <code>./weir.sh stability --all --publish</code></p>", .html = ""};
-    HtmlTable table({"solver", "pushed along", "last stable", "theory", "floor", "what broke first", "hard because", "case"},
+    HtmlTable table({"solver", "pushed along", "last stable", "theory", "floor", "what broke first", "case"},
                     "Each key is raised until something that must hold does not; the last value at which all held is the limit");
     std::size_t limits = 0, unbroken = 0, below = 0;
     std::set<std::string> machines;
@@ -121,7 +148,7 @@ Section limits_section(const std::vector<json>& studies) {
                     fmt::format("<figure><div class=\"scroll\">{}</div><figcaption>{}: hard because {}</figcaption></figure>\n",
                                 map_svg(drawing_of_map(map)), escaped(text_at(study, "study")), escaped(text_at(map, "hard_because")));
     if (!section.html.empty()) section.html = "<h3>Two axes at once</h3><div class=\"maps\">" + section.html + "</div>";
-    section.html = table.html() + section.html;
+    section.html += "<h3>All limits</h3>" + table.html() + reasons(studies);
     std::string footer;
     for (const std::string& m : machines) footer += "<li>" + escaped(m) + "</li>";
     section.html += "<details class=\"fine\"><summary><code>./weir.sh stability --all</code></summary><ul>" + footer + "</ul></details>\n";

@@ -129,7 +129,11 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
     } catch (const NumericalFailure& failure) {
         return failed(failure, 0, 0);
     } catch (const BadInput& refusal) {
-        return Break{fmt::format("refused: {}", refusal.what()), "refused", 0, 0};
+        std::string_view why = refusal.what();
+        for (const scene::Override& change : variant.overrides)  // which change it was the axis says
+            if (const std::string prefix = fmt::format("--set {}={}: ", change.key, change.value); why.starts_with(prefix))
+                why.remove_prefix(prefix.size());
+        return Break{fmt::format("refused: {}", why), "refused", 0, 0};
     }
     std::vector<Watch> watches;
     for (const Invariant& invariant : stress.watch) watches.emplace_back(invariant, value);

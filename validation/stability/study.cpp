@@ -197,11 +197,14 @@ StressStudy parse_stability(std::string_view text, const std::string& file, cons
             study.stresses.push_back(stress_of(axis, method, reader));
             watch_over(study.stresses.back(), axis);
         }
-    for (const Table& map : root.tables("maps"))
-        for (const Variant& method : methods_of(map, methods, reader)) {
+    for (const Table& map : root.tables("maps")) {
+        const auto chosen = methods_of(map, methods, reader);
+        for (const Variant& method : chosen) {
             study.maps.push_back(map_of(map, method, reader));
             watch_over(study.maps.back().stress, map);
+            if (chosen.size() == 1) study.maps.back().stress.method.clear();  // nothing to tell apart
         }
+    }
     if (!reader.problems().empty()) throw scene::BadScene(reader.problems(), text);
     return study;
 }
