@@ -125,6 +125,13 @@ TEST_IN_2D_AND_3D("particles thrown at 100 m/s at a corner stay finite and insid
     }
 }
 
+TEST("a million particles make a few steps, inside and finite") {
+    sph::SphSolver<3> solver(test::sph_box<3>(1, 1, 1, "support = 2.0", "", "[100, 150, 100]", "[1, 1.5, 1]"));
+    ASSERT_EQ(solver.fluid().count(), 1000000);
+    stays_inside(solver, 3);
+    EXPECT_EQ(integral(solver, "particles"), 1e6);
+}
+
 TEST("a velocity that is not finite is caught at the step in which it appears") {
     sph::SphSolver<2> solver(test::sph_box<2>(0.5, 0.5, 0.5));
     solver.step(solver.advised_dt());
