@@ -9,6 +9,7 @@ void add_picture(CLI::App& app, int& exit_code);
 void add_describe(CLI::App& app, int& exit_code);
 void add_list(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
+void add_plan(CLI::App& app, int& exit_code);
 void add_cost(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 namespace weir::app {
 
@@ -41,6 +42,46 @@ std::string fields_text(const Simulation& simulation) {
            fmt::format("  {:22} {:9} {:>12}         {:>10}\n", "all state and scratch", "", "", megabytes(simulation.solver().bytes()));
 }
 
+std::string called(const EffectPlan& effect) {
+    std::string text = effect.pass.empty() ? fmt::format("a term of pass \"{}\"", effect.inside) : fmt::format("pass \"{}\"", effect.pass);
+    if (!effect.fields.empty()) text += fmt::format("; fields {}", fmt::join(effect.fields, ", "));
+    if (!effect.scratch.empty()) text += fmt::format("; scratch {}", fmt::join(effect.scratch, ", "));
+    if (effect.bytes > 0) text += fmt::format("; {} of its own", megabytes(effect.bytes));
+    return text;
+}
+
+/// What a step costs with the effect and without it: medians over rounds in which both take turns, so that what else the machine does
+/// meets both. Used for effects that have no pass of their own to be timed by.
+double share_by_difference(const scene::Scene& scene, const std::string& effect) {
+    Simulation with(scene), without(scene.without_effect(effect));
+    std::vector<double> ratios;
+    const auto seconds = [](Simulation& s) {
+        const auto start = std::chrono::steady_clock::now();
+        if (!s.finished()) s.step();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    for (int i = 0; i < warm_up_steps + measured_steps && !with.finished() && !without.finished(); ++i) {
+        const double a = seconds(with), b = seconds(without);
+        if (i >= warm_up_steps) ratios.push_back(1 - b / a);
+    }
+    if (ratios.empty()) return 0;
+    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+    return ratios[ratios.size() / 2];
+}
+
+/// Each effect of the scene: what was built for it, and its part of a step.
+std::string effects_text(const Simulation& simulation, const std::vector<Pass>& passes, double total, int steps) {
+    std::string text;
+    for (const EffectPlan& effect : simulation.solver().effects()) {
+        const auto own = std::find_if(passes.begin(), passes.end(), [&](const Pass& p) { return p.name == effect.pass; });
+        const bool timed = own != passes.end();
+        const double share = timed ? own->seconds / total : share_by_difference(simulation.scene(), effect.name);
+        text += fmt::format("  {:22} {:9.3f} ms {:5.1f}%{}  {}\n", effect.name, 1e3 * share * total / steps, 100 * share,
+                            timed ? "" : " by difference", called(effect));
+    }
+    return text.empty() ? "" : "effects, of a step's time\n" + text;
+}
+
 /// Milliseconds a step of each pass, and its share.
 std::string passes_text(Simulation& simulation) {
     for (int i = 0; i < warm_up_steps && !simulation.finished(); ++i) simulation.step();
@@ -55,7 +96,8 @@ std::string passes_text(Simulation& simulation) {
     if (steps == 0) return "the scene ends before a step can be measured\n";
     for (const Pass& pass : passes)
         text += fmt::format("  {:22} {:9.3f} ms {:5.1f}%\n", pass.name, 1e3 * pass.seconds / steps, 100 * pass.seconds / total);
-    return text + fmt::format("  {:22} {:9.3f} ms\n", "all passes", 1e3 * total / steps);
+    text += fmt::format("  {:22} {:9.3f} ms\n", "all passes", 1e3 * total / steps);
+    return text + effects_text(simulation, passes, total, steps);
 }
 
 std::string left_out(const scene::Scene& scene, const scene::SolverSchema& schema) {

@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
     weir::app::add_run(app, exit_code);
     weir::app::add_validate(app, exit_code);
     weir::app::add_cost(app, exit_code);
+    weir::app::add_plan(app, exit_code);
     weir::app::add_stability(app, exit_code);
     weir::app::add_report(app, exit_code);
     weir::app::add_picture(app, exit_code);

@@ -133,6 +133,9 @@ int simulate(const RunArguments& arguments) {
     Simulation simulation(arguments.scene.empty() ? scene_of(*checkpoint, overrides)
                                                   : scene::read(arguments.scene, sim::schemas(), overrides));
     if (checkpoint) simulation.restore(*checkpoint);
+    for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
+        std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it may cost, and does nothing\n", simulation.scene().file().c_str(),
+                     effect.c_str());
     if (arguments.explain) {
         std::fputs(explain(simulation).c_str(), stdout);
         return exit_success;

@@ -1,5 +1,6 @@
 // Effects: one term of one paper each, chosen by the scene by name. What the scene does not name allocates no field, runs no pass.
 #pragma once
+#include "core/passes.hpp"
 #include "core/types.hpp"
 
 #include <algorithm>
@@ -34,6 +35,19 @@ private:
     std::vector<std::string> advected_, scratch_;
 };
 
+/// What a solver built for one effect that its scene names.
+struct EffectPlan {
+    std::string name;
+    std::string pass{};  // timed by this name; empty: it is a term of the pass `inside`
+    std::string inside{};
+    std::vector<std::string> fields{};   // cell fields carried by the flow, shared with every other effect that asks for them
+    std::vector<std::string> scratch{};  // others, shared too
+    std::size_t bytes = 0;               // that it holds for itself alone
+};
+
+/// The pass by whose name an effect is timed.
+inline std::string effect_pass(std::string_view name) { return "effect " + std::string(name); }
+
 /// One physical term acting on a solver's State.
 template <class State>
 struct Effect {
@@ -42,35 +56,70 @@ struct Effect {
     virtual void needs(FieldPlan&) const {}                       // names fields; allocates nothing
     virtual void apply(State& s, real dt) = 0;                    // one pass: one virtual call a pass, none a cell
     virtual real max_dt(const State&) const { return infinity; }  // its own stability limit [s]
+    virtual std::size_t bytes() const { return 0; }               // that it holds for itself, beyond the fields it needs
 };
 
 /// The effects of one scene, in registry order, so that the scene's order never matters.
 template <class State>
 class Effects {
 public:
-    void add(std::unique_ptr<Effect<State>> effect) {
+    void add(std::string_view name, std::unique_ptr<Effect<State>> effect) {
         auto& list = at_[static_cast<std::size_t>(effect->stage())];
-        list.push_back(std::move(effect));
+        list.push_back({std::string(name), effect_pass(name), std::move(effect)});
     }
+    /// An effect that the solver applies itself: as a pass of its own, or as a term of one that runs anyway.
+    void declare(EffectPlan plan) { declared_.push_back(std::move(plan)); }
+
     FieldPlan plan() const {
         FieldPlan fields;
-        for (const auto& list : at_)
-            for (const auto& effect : list) effect->needs(fields);
+        each([&](const Entry& e) { e.effect->needs(fields); });
         return fields;
     }
+    /// One entry an effect.
+    std::vector<EffectPlan> plans() const {
+        std::vector<EffectPlan> list = declared_;
+        each([&](const Entry& e) {
+            FieldPlan fields;
+            e.effect->needs(fields);
+            list.push_back({.name = e.name,
+                            .pass = e.pass,
+                            .fields = fields.advected_fields(),
+                            .scratch = fields.scratch_fields(),
+                            .bytes = e.effect->bytes()});
+        });
+        return list;
+    }
+    std::size_t bytes() const {
+        std::size_t total = 0;
+        each([&](const Entry& e) { total += e.effect->bytes(); });
+        return total;
+    }
     bool empty(Stage stage) const { return at_[static_cast<std::size_t>(stage)].empty(); }
-    void apply(Stage stage, State& s, real dt) const {
-        for (const auto& effect : at_[static_cast<std::size_t>(stage)]) effect->apply(s, dt);
+    /// Each effect of the stage, timed by its own name.
+    void apply(Stage stage, State& s, real dt, Passes& passes) const {
+        for (const Entry& e : at_[static_cast<std::size_t>(stage)]) {
+            const auto timed = passes.time(e.pass);
+            e.effect->apply(s, dt);
+        }
     }
     real max_dt(const State& s) const {
         real smallest = infinity;
-        for (const auto& list : at_)
-            for (const auto& effect : list) smallest = std::min(smallest, effect->max_dt(s));
+        each([&](const Entry& e) { smallest = std::min(smallest, e.effect->max_dt(s)); });
         return smallest;
     }
 
 private:
-    std::array<std::vector<std::unique_ptr<Effect<State>>>, stage_count> at_;
+    struct Entry {
+        std::string name, pass;
+        std::unique_ptr<Effect<State>> effect;
+    };
+    template <class F>
+    void each(F&& f) const {
+        for (const auto& list : at_)
+            for (const Entry& e : list) f(e);
+    }
+    std::array<std::vector<Entry>, stage_count> at_;
+    std::vector<EffectPlan> declared_;
 };
 
 }  // namespace weir

@@ -1,6 +1,7 @@
 // What the time loop, the output and the validation see of any solver: steps, views of fields, integrals, checkpoints.
 #pragma once
 #include "core/checkpoint.hpp"
+#include "core/effects.hpp"
 #include "core/passes.hpp"
 #include "core/types.hpp"
 
@@ -90,6 +91,8 @@ public:
     virtual const Passes& passes() const = 0;
     /// Bytes of all state and scratch that the solver holds.
     virtual std::size_t bytes() const = 0;
+    /// What was built for each effect that the scene names.
+    virtual std::vector<EffectPlan> effects() const { return {}; }
     /// Passes may be reset between frames, so that reports speak of the interval.
     virtual Passes& passes() = 0;
 };

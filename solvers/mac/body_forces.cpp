@@ -80,7 +80,8 @@ EffectKind gravity() {
                                    .unit = "m/s^2",
                                    .required = true,
                                    .length = -1,
-                                   .example = "g = [0.0, -9.81]"}}});
+                                   .example = "g = [0.0, -9.81]"}},
+                                 {"g"}});
 }
 
 EffectKind buoyancy() {
@@ -89,7 +90,8 @@ EffectKind buoyancy() {
          "Warm fluid rises and smoke sinks along y: beta (T - ambient) - alpha smoke (Fedkiw et al. 2001).",
          {{.name = "alpha", .type = Type::number, .doc = "Weight of smoke.", .unit = "m/s^2", .fallback = 0.0},
           {.name = "beta", .type = Type::number, .doc = "Lift a kelvin.", .unit = "m/(s^2 K)", .fallback = 0.0},
-          {.name = "ambient", .type = Type::number, .doc = "Temperature without lift.", .unit = "K", .fallback = 0.0}}});
+          {.name = "ambient", .type = Type::number, .doc = "Temperature without lift.", .unit = "K", .fallback = 0.0}},
+         {"alpha", "beta"}});
 }
 
 }  // namespace weir::mac

@@ -23,9 +23,9 @@ Effects<MacState<D>> make_effects(const scene::Scene& scene) {
         const scene::Table* table = scene.effect(kind.schema.name);
         if (!table) continue;
         if constexpr (D == 2)
-            effects.add(kind.make_2d(*table, scene));
+            effects.add(kind.schema.name, kind.make_2d(*table, scene));
         else
-            effects.add(kind.make_3d(*table, scene));
+            effects.add(kind.schema.name, kind.make_3d(*table, scene));
     }
     return effects;
 }

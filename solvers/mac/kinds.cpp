@@ -59,7 +59,8 @@ scene::SolverKind smoke_kind() {
     schema.doc = "Incompressible fluid that fills the domain, on a staggered grid: laminar flows, smoke, heat, moving obstacles.";
     schema.keys = {scheme_key(with_poisson(AdvectionOptions::keys())), sides_key(), initial_keys()};
     for (const auto& kind : effect_kinds()) schema.effects.push_back(kind.schema);
-    return {schema, make<SmokeSolver>};
+    return {
+        schema, make<SmokeSolver>, {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""}};
 }
 
 scene::SolverKind transport_kind() {

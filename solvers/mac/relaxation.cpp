@@ -47,9 +47,10 @@ EffectKind cooling() {
     return effect_kind<Cooling>(
         {"cooling",
          "Temperature relaxes to its surroundings (Newton's law).",
-         {rate_key(), {.name = "ambient", .type = Type::number, .doc = "What it relaxes to.", .unit = "K", .fallback = 0.0}}});
+         {rate_key(), {.name = "ambient", .type = Type::number, .doc = "What it relaxes to.", .unit = "K", .fallback = 0.0}},
+         {"rate"}});
 }
 
-EffectKind decay() { return effect_kind<Decay>({"decay", "Smoke fades exponentially.", {rate_key()}}); }
+EffectKind decay() { return effect_kind<Decay>({"decay", "Smoke fades exponentially.", {rate_key()}, {"rate"}}); }
 
 }  // namespace weir::mac

@@ -84,7 +84,7 @@ SmokeSolver<D>::SmokeSolver(const scene::Scene& scene)
     const auto& cells = state_.cells.values();
     if (std::none_of(cells.begin(), cells.end(), [](poisson::Cell c) { return c == poisson::Cell::fluid; }))
         scene.refuse("solids", "the solids leave no cell for the fluid");
-    if (Emitters<D>::any(scene)) effects_.add(std::make_unique<Emitters<D>>(scene, state_.u));
+    if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_.u));
     state_.before = PaddedVelocity<D>(state_.u);
     if (options_.scheme == Scheme::maccormack) carried_ = PaddedVelocity<D>(state_.u);
     set_initial_velocity(state_, scene);
@@ -95,15 +95,13 @@ SmokeSolver<D>::SmokeSolver(const scene::Scene& scene)
     }
     solids_.set_faces(state_);
     clear_solids();
-    effects_.apply(Stage::source, state_, 0);  // what is emitted from the start is there at the start: the first step knows its forces
+    apply(Stage::source, 0);  // what is emitted from the start is there at the start: the first step knows its forces
+    passes_.reset();
 }
 
 template <int D>
 void SmokeSolver<D>::apply(Stage stage, real dt) {
-    static constexpr std::array<const char*, stage_count> names{"sources", "forces", "implicit", "finish"};
-    if (effects_.empty(stage)) return;
-    const auto timed = passes_.time(names[static_cast<std::size_t>(stage)]);
-    effects_.apply(stage, state_, dt);
+    effects_.apply(stage, state_, dt, passes_);
 }
 
 template <int D>
@@ -263,7 +261,7 @@ void SmokeSolver<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t SmokeSolver<D>::bytes() const {
-    std::size_t total = state_.bytes() + characteristics_.bytes() + projection_.bytes() + solids_.bytes();
+    std::size_t total = state_.bytes() + characteristics_.bytes() + projection_.bytes() + solids_.bytes() + effects_.bytes();
     for (const auto& blend : velocity_blend_) total += blend.bytes();
     for (const auto& blend : field_blend_) total += blend.bytes();
     for (const auto& component : carried_.face) total += component.bytes();

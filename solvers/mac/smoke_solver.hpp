@@ -29,6 +29,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override;
+    std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
     const MacState<D>& state() const { return state_; }
     MacState<D>& state() { return state_; }

@@ -44,6 +44,7 @@ public:
     Diffuser(const Nodes<D>& nodes, const MacState<D>& s, const Boundary<D>& boundary, Beyond beyond, const Index<D>& extent)
         : nodes_(nodes), h_(s.u.h), beyond_(beyond), mask_(), rhs_(extent), solver_(nodes, h_, boundary, beyond, extent) {}
     Mask<D>& mask() { return mask_; }
+    std::size_t bytes() const { return mask_.bytes() + rhs_.size() * sizeof(real) + solver_.bytes(); }
 
     void add(const Padded<D>& before, real dt_nu, Grid<real, D>& q) {
         laplacian(before, h_, nodes_, mask_, beyond_, rhs_);
@@ -100,6 +101,11 @@ struct Viscosity final : MacEffect<D> {
         if (time != Time::explicit_) add_gradient(s.u, s, dt / s.rho);
     }
     real max_dt(const MacState<D>& s) const override { return time == Time::explicit_ ? explicit_limit<D>(s.nu, s.u.h) : infinity; }
+    std::size_t bytes() const override {
+        std::size_t total = 0;
+        for (const auto& axis : axes) total += axis.bytes();
+        return total;
+    }
 
 private:
     void prepare(const MacState<D>& s) {
@@ -147,6 +153,11 @@ struct Diffusion final : MacEffect<D> {
             if (time == Time::explicit_) limit = std::min(limit, explicit_limit<D>(carried.kappa, s.u.h));
         return limit;
     }
+    std::size_t bytes() const override {
+        std::size_t total = 0;
+        for (const auto& carried : list) total += carried.diffuser ? carried.diffuser->bytes() : 0;
+        return total;
+    }
 };
 
 scene::Key diffusivity(const char* name) {
@@ -155,11 +166,15 @@ scene::Key diffusivity(const char* name) {
 
 }  // namespace
 
-EffectKind viscosity() { return effect_kind<Viscosity>({"viscosity", "Friction inside the fluid, with fluid.viscosity.", {time_key()}}); }
+EffectKind viscosity() {
+    return effect_kind<Viscosity>({"viscosity", "Friction inside the fluid, with fluid.viscosity.", {time_key()}, {"fluid.viscosity"}});
+}
 
 EffectKind diffusion() {
-    return effect_kind<Diffusion>(
-        {"diffusion", "Temperature or smoke spreads by itself.", {time_key(), diffusivity("temperature"), diffusivity("smoke")}});
+    return effect_kind<Diffusion>({"diffusion",
+                                   "Temperature or smoke spreads by itself.",
+                                   {time_key(), diffusivity("temperature"), diffusivity("smoke")},
+                                   {"temperature", "smoke"}});
 }
 
 }  // namespace weir::mac

@@ -39,11 +39,14 @@ void Water<D>::move_surface(real dt) {
 
 template <int D>
 void Water<D>::correct_surface() {
-    const auto timed = passes_.time("level set");
-    escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
-    surface_.redistance();
-    control_volume();
+    {
+        const auto timed = passes_.time("level set");
+        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
+        surface_.redistance();
+        control_volume();
+    }
     curvature();
+    const auto timed = passes_.time("level set");
     pressure_.set_surface(surface_, closed_, state_);
 }
 
@@ -67,10 +70,14 @@ void Water<D>::momentum_to_faces(real dt) {
 
 template <int D>
 void Water<D>::forces(real dt) {
-    const auto timed = passes_.time("forces");
-    effects_.apply(Stage::force, state_, dt);
-    set_fixed_faces();
-    if (viscosity_) viscosity_->apply(state_, surface_, closed_, dt);
+    effects_.apply(Stage::force, state_, dt, passes_);
+    {
+        const auto timed = passes_.time("walls");
+        set_fixed_faces();
+    }
+    if (!viscosity_) return;
+    const auto timed = passes_.time("effect viscosity");
+    viscosity_->apply(state_, surface_, closed_, dt);
 }
 
 template <int D>
@@ -176,6 +183,7 @@ void Water<D>::control_volume() {
 template <int D>
 void Water<D>::curvature() {
     if (options_.sigma == 0) return;
+    const auto timed = passes_.time("effect surface_tension");
     const auto& phi = surface_.phi;
     for_each_cell(frame_.cells, [&](const Index<D>& I) {
         curvature_(I) = 0;

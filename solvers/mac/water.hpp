@@ -75,6 +75,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override;
+    std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
     /// For tests and studies.
     const MacState<D>& state() const { return state_; }

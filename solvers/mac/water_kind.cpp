@@ -70,18 +70,25 @@ scene::SolverKind water_kind() {
         gravity().schema,
         {"surface_tension",
          "p = sigma kappa on the surface (ghost-fluid jump).",
-         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .min_open = true}}},
+         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .min_open = true}},
+         {"sigma"}},
         {"viscosity",
          "Friction inside the liquid, with fluid.viscosity; none on the free surface.",
          {{.name = "scheme",
            .type = Type::choice,
            .doc = "In time.",
            .fallback = std::string("crank-nicolson"),
-           .choices = {"crank-nicolson", "implicit"}}}}};
-    return {schema, [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
+           .choices = {"crank-nicolson", "implicit"}}},
+         {"fluid.viscosity"}}};
+    return {schema,
+            [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
                 if (scene.dim() == 2) return std::make_unique<Water<2>>(scene);
                 return std::make_unique<Water<3>>(scene);
-            }};
+            },
+            {{"velocity", "pressure", "level_set", "position", "velocity"},
+             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
+              "faces to markers"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""}};
 }
 
 }  // namespace weir::mac

@@ -81,9 +81,9 @@ Effects<MacState<D>> body_forces(const scene::Scene& scene) {
     Effects<MacState<D>> effects;
     if (const auto* table = scene.effect("gravity")) {
         if constexpr (D == 2)
-            effects.add(gravity().make_2d(*table, scene));
+            effects.add("gravity", gravity().make_2d(*table, scene));
         else
-            effects.add(gravity().make_3d(*table, scene));
+            effects.add("gravity", gravity().make_3d(*table, scene));
     }
     return effects;
 }
@@ -120,9 +120,15 @@ Water<D>::Water(const scene::Scene& scene)
     sums_ = FaceSums<D>(frame_.cells);
     for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
     before_ = state_.u;
-    if (options_.sigma > 0) curvature_ = Grid<real, D>(frame_.cells);
-    if (options_.viscosity > 0 && state_.nu > 0)
+    if (options_.sigma > 0) {
+        curvature_ = Grid<real, D>(frame_.cells);
+        effects_.declare(
+            {.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = product(frame_.cells) * sizeof(real)});
+    }
+    if (options_.viscosity > 0 && state_.nu > 0) {
         viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));
+        effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes()});
+    }
     read_emitters(scene);
     if (solids_.any()) {
         closed_ = near_solid_ = Grid<std::uint8_t, D>(frame_.cells);

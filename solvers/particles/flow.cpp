@@ -37,6 +37,8 @@ void Flow<D>::add_change(real factor) {
 
 namespace {
 
+constexpr const char *pair_velocity = "velocity of pairs", *pair_change = "change of pairs";  // Flow's scratch
+
 /// v += dt g.
 template <int D>
 struct Gravity final : Effect<Flow<D>> {
@@ -70,6 +72,7 @@ template <int D>
 struct Xsph final : Effect<Flow<D>> {
     real c = 0;
     Stage stage() const override { return Stage::finish; }
+    void needs(FieldPlan& plan) const override { plan.scratch(pair_velocity).scratch(pair_change); }
     void apply(Flow<D>& f, real) override {
         f.load_velocity();
         const FinishPass job = f.pass(f.velocity, f.change);
@@ -85,6 +88,8 @@ struct Confinement final : Effect<Flow<D>> {
     real epsilon = 0;
     std::vector<float> omega;
     Stage stage() const override { return Stage::finish; }
+    std::size_t bytes() const override { return omega.capacity() * sizeof(float); }
+    void needs(FieldPlan& plan) const override { plan.scratch(pair_velocity).scratch(pair_change); }
     void apply(Flow<D>& f, real dt) override {
         f.load_velocity();
         f.pairs.fit(omega, 4);
@@ -109,10 +114,12 @@ std::vector<scene::Variant> effect_schemas() {
     omega.min = 0;
     return {{"gravity",
              "A constant acceleration.",
-             {{.name = "g", .type = Type::numbers, .doc = "The acceleration.", .unit = "m/s^2", .required = true, .length = -1}}},
+             {{.name = "g", .type = Type::numbers, .doc = "The acceleration.", .unit = "m/s^2", .required = true, .length = -1}},
+             {"g"}},
             {"central_force",
              "An acceleration -omega^2 (x - centre).",
-             {omega, {.name = "centre", .type = Type::numbers, .doc = "Where it vanishes.", .unit = "m", .required = true, .length = -1}}},
+             {omega, {.name = "centre", .type = Type::numbers, .doc = "Where it vanishes.", .unit = "m", .required = true, .length = -1}},
+             {"omega"}},
             {"xsph",
              "Velocities are smoothed over neighbours (Schechter & Bridson 2012).",
              {{.name = "c",
@@ -120,10 +127,12 @@ std::vector<scene::Variant> effect_schemas() {
                .doc = "How much of the mean is taken in each step.",
                .fallback = 0.01,
                .min = 0.0,
-               .max = 1.0}}},
+               .max = 1.0}},
+             {"c"}},
             {"vorticity",
              "Vorticity confinement (Macklin & Müller 2013, eq. 16).",
-             {{.name = "epsilon", .type = Type::number, .doc = "Its strength.", .unit = "m/s", .required = true, .min = 0}}}};
+             {{.name = "epsilon", .type = Type::number, .doc = "Its strength.", .unit = "m/s", .required = true, .min = 0}},
+             {"epsilon"}}};
 }
 
 template <int D>
@@ -131,23 +140,23 @@ void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects) {
     if (const auto* t = scene.effect("gravity")) {
         auto e = std::make_unique<Gravity<D>>();
         e->g = t->template vec<D>("g");
-        effects.add(std::move(e));
+        effects.add("gravity", std::move(e));
     }
     if (const auto* t = scene.effect("central_force")) {
         auto e = std::make_unique<CentralForce<D>>();
         e->omega = t->number("omega");
         e->centre = t->template vec<D>("centre");
-        effects.add(std::move(e));
+        effects.add("central_force", std::move(e));
     }
     if (const auto* t = scene.effect("xsph")) {
         auto e = std::make_unique<Xsph<D>>();
         e->c = t->number("c");
-        effects.add(std::move(e));
+        effects.add("xsph", std::move(e));
     }
     if (const auto* t = scene.effect("vorticity")) {
         auto e = std::make_unique<Confinement<D>>();
         e->epsilon = t->number("epsilon");
-        effects.add(std::move(e));
+        effects.add("vorticity", std::move(e));
     }
 }
 

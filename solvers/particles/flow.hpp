@@ -22,6 +22,7 @@ struct Flow {
     FinishPass pass(const std::vector<float>& values, std::vector<float>& to);
     /// v += factor * change.
     void add_change(real factor);
+    std::size_t bytes() const { return (velocity.capacity() + change.capacity()) * sizeof(float); }
 };
 
 /// gravity, central_force, xsph, vorticity: what both particle solvers can be asked for.

@@ -76,7 +76,8 @@ std::vector<scene::Variant> effects() {
                       .doc = "Distance, over the support, at which it has this strength.",
                       .fallback = usual.pressure_dq,
                       .min = 0,
-                      .max = 0.9}}});
+                      .max = 0.9}},
+                    {"k"}});
     return list;
 }
 
@@ -88,10 +89,15 @@ scene::SolverKind kind() {
     schema.doc = "Position Based Fluids (Macklin & Müller 2013): liquid particles kept at rest density by constraints.";
     schema.keys = {scheme(), particles::initial_key(), particles::sinks_key()};
     schema.effects = effects();
-    return {schema, [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
+    return {schema,
+            [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
                 if (scene.dim() == 2) return std::make_unique<PbfSolver<2>>(scene);
                 return std::make_unique<PbfSolver<3>>(scene);
-            }};
+            },
+            {{"position", "velocity", "density", "id"},
+             {"predict", "neighbours", "warm start", "lambda", "correct", "update"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = { name = \"rotation\", omega = 1.0, centre = "
+             "<0.25> }"}};
 }
 
 }  // namespace weir::pbf

@@ -29,6 +29,7 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene)
       step_(even_step(scene, fluid_)) {
     particles::refuse_idle_walls(scene, fluid_.domain, false, "PBF has none: take slip = \"free\", or solver = \"sph\" with its viscosity");
     particles::add_effects(scene, effects_);
+    if (scene.effect("artificial_pressure")) effects_.declare({.name = "artificial_pressure", .inside = "correct"});
     settle();
 }
 
@@ -36,7 +37,7 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene)
 template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     emitters_.apply(fluid_, dt);
-    effects_.apply(Stage::force, flow_, dt);
+    effects_.apply(Stage::force, flow_, dt, passes_);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
     warm_start(dt);
@@ -49,8 +50,8 @@ StepReport PbfSolver<D>::step(real dt) {
         collide();  // 16-19
     }
     keep_multipliers(dt);
-    update(dt);                                // 20-21, 23-24
-    effects_.apply(Stage::finish, flow_, dt);  // 22
+    update(dt);                                         // 20-21, 23-24
+    effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
     const real speed = fluid_.max_speed();
     const Compression c = compression();
     if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
@@ -237,7 +238,8 @@ void PbfSolver<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t PbfSolver<D>::bytes() const {
-    return fluid_.bytes() + pairs_.bytes() + D * x_star_[0].capacity() * sizeof(real) + density_.capacity() * sizeof(float);
+    return fluid_.bytes() + pairs_.bytes() + D * x_star_[0].capacity() * sizeof(real) +
+           (density_.capacity() + multiplier_.capacity()) * sizeof(float) + flow_.bytes() + effects_.bytes();
 }
 
 template class PbfSolver<2>;

@@ -30,6 +30,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override;
+    std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
     particles::Fluid<D>& fluid() { return fluid_; }
     const particles::Pairs& pairs() const { return pairs_; }

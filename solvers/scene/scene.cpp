@@ -5,6 +5,7 @@
 #include "scene/names.hpp"
 #include "scene/reader.hpp"
 #include "scene/rules.hpp"
+#include "scene/solver_kind.hpp"
 
 #include <fmt/format.h>
 
@@ -122,6 +123,51 @@ const Table* Scene::effect(std::string_view name) const {
     const Value* effects = root_.find("effects");
     const Value* found = effects ? std::get<Table>(*effects).find(name) : nullptr;
     return found ? &std::get<Table>(*found) : nullptr;
+}
+
+Scene Scene::without_effect(std::string_view name) const {
+    Scene other = *this;
+    if (Table* effects = other.root_.find_table("effects")) effects->erase(name);
+    return other;
+}
+
+namespace {
+
+/// Whether the number, or any of the list, is not zero. What is absent is.
+bool acts(const Table& table, const std::string& key) {
+    const Value* value = table.find(key);
+    if (!value) return false;
+    if (const auto* list = std::get_if<std::vector<double>>(value))
+        return std::any_of(list->begin(), list->end(), [](double v) { return v != 0; });
+    return table.number(key) != 0;
+}
+
+/// Whether the scene says what goes along with the effect. Where it does not, the effect may take the place of what a scheme has built in,
+/// and zero switches that off.
+bool says(const Scene& scene, const std::string& along_with) {
+    const auto equals = along_with.find(" = ");
+    if (equals == std::string::npos) return true;
+    const Value* value = scene.root().find(along_with.substr(0, equals));
+    const std::string wanted = along_with.substr(equals + 3);
+    if (const auto* text = value ? std::get_if<std::string>(value) : nullptr) return quote(*text) == wanted;
+    const auto* flag = value ? std::get_if<bool>(value) : nullptr;
+    return flag && wanted == (*flag ? "true" : "false");
+}
+
+}  // namespace
+
+std::vector<std::string> idle_effects(const Scene& scene, const SolverSchema& schema) {
+    std::vector<std::string> idle;
+    for (const Variant& effect : schema.effects) {
+        const Table* table = scene.effect(effect.name);
+        const auto& keys = effect.strength;
+        const auto acts_by = [&](const std::string& key) {
+            return key.find('.') == std::string::npos ? acts(*table, key) : acts(scene.root(), key);
+        };
+        if (table && says(scene, effect.along_with) && !keys.empty() && std::none_of(keys.begin(), keys.end(), acts_by))
+            idle.push_back(effect.name);
+    }
+    return idle;
 }
 
 Problem Scene::problem(std::string_view path, const std::string& message, const std::string& hint) const {

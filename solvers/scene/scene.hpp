@@ -78,6 +78,7 @@ public:
     void set(const std::string& key, Value value, Place place = {});
     const Value* find(std::string_view path) const;
     Table* find_table(std::string_view path);  // nullptr where there is none
+    void erase(std::string_view key);          // of this table itself
 
 private:
     struct Entry;
@@ -108,6 +109,8 @@ public:
     int dim() const { return dim_; }
     /// Parameters of an effect that the scene names; nullptr where it does not.
     const Table* effect(std::string_view name) const;
+    /// The same scene as if it did not name the effect.
+    Scene without_effect(std::string_view name) const;
     /// A problem at a key of this scene ("solids[0].centre"), for checks that need more than the schema, such as geometry. Where the
     /// key is a default, the problem stands at the nearest table around it. `refuse` throws BadScene.
     Problem problem(std::string_view path, const std::string& message, const std::string& hint = "") const;

@@ -34,6 +34,9 @@ struct Variant {
     std::string name{};
     std::string doc{};
     std::vector<Key> keys;
+    // Of effects:
+    std::vector<std::string> strength{};  // numbers without which it does nothing: its own keys, or with a dot the scene's
+    std::string along_with{};             // what else a scene must say for it, as TOML
 };
 
 /// One key of a scene. Only `name` and `type` are obligatory.

@@ -9,9 +9,20 @@
 
 namespace weir::scene {
 
+/// What a scene without effects, solids, emitters and sinks gets, and nothing beside it: fields and passes by name.
+struct PlainStep {
+    std::vector<std::string> fields{};
+    std::vector<std::string> passes{};
+    std::string scene{};  // what a small scene of its kind says beside its grid, as TOML; "<x>" stands for a list of x for each axis
+};
+
 struct SolverKind {
     SolverSchema schema;
     std::function<std::unique_ptr<Solver>(const Scene&)> make;
+    PlainStep plain{};
 };
+
+/// The effects that a scene names with a strength of zero: they may cost, and do nothing.
+std::vector<std::string> idle_effects(const Scene& scene, const SolverSchema& schema);
 
 }  // namespace weir::scene

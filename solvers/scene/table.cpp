@@ -60,6 +60,10 @@ Table* Table::find_table(std::string_view path) {
     return value ? const_cast<Table*>(std::get_if<Table>(value)) : nullptr;
 }
 
+void Table::erase(std::string_view key) {
+    std::erase_if(entries_, [&](const Entry& e) { return e.key == key; });
+}
+
 bool Table::has(std::string_view path) const { return find(path) != nullptr; }
 bool Table::flag(std::string_view path) const { return get<bool>(*this, path, "true or false"); }
 std::int64_t Table::integer(std::string_view path) const { return get<std::int64_t>(*this, path, "an integer"); }

@@ -53,22 +53,34 @@ std::vector<scene::Variant> effects() {
     list.push_back({"viscosity",
                     "Viscous forces with fluid.viscosity (Müller et al. 2003, eq. 14; with the other kernels Morris et al. 1997), and at "
                     "walls and solids with slip = \"no\".",
-                    {}});
+                    {},
+                    {"fluid.viscosity"}});
     list.push_back({"density_diffusion",
                     "Density spreads over neighbours, but for what it varies by at rest (delta-SPH: Molteni & Colagrossi 2009; Fourtakas "
                     "et al. 2019).",
-                    {{.name = "delta", .type = Type::number, .doc = "Its strength.", .fallback = 0.1, .min = 0, .max = 1}}});
+                    {{.name = "delta", .type = Type::number, .doc = "Its strength.", .fallback = 0.1, .min = 0, .max = 1}},
+                    {"delta"},
+                    "scheme.density = \"continuity\""});
     list.push_back({"surface_tension",
                     "Stress of the colour's gradient (Müller et al. 2003, eq. 15; Lafaurie et al. 1994); keeps momentum.",
-                    {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0}}});
+                    {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0}},
+                    {"sigma"},
+                    "scheme.tension = true"});
     list.push_back({"artificial_viscosity",
                     "Viscosity of approaching pairs only (Monaghan 1992).",
-                    {{.name = "alpha", .type = Type::number, .doc = "Its strength.", .fallback = 0.05, .min = 0}}});
-    list.push_back(
-        {"rest_density",
-         "The rest density over time: lowered, the liquid becomes a gas that fills its container.",
-         {{.name = "times", .type = Type::numbers, .doc = "When.", .unit = "s", .required = true},
-          {.name = "values", .type = Type::numbers, .doc = "How much; linear in between.", .unit = "kg/m^3", .required = true, .min = 0}}});
+                    {{.name = "alpha", .type = Type::number, .doc = "Its strength.", .fallback = 0.05, .min = 0}},
+                    {"alpha"},
+                    "scheme.density = \"continuity\""});
+    list.push_back({"rest_density",
+                    "The rest density over time: lowered, the liquid becomes a gas that fills its container.",
+                    {{.name = "times", .type = Type::numbers, .doc = "When.", .unit = "s", .required = true, .example = "times = [0.0]"},
+                     {.name = "values",
+                      .type = Type::numbers,
+                      .doc = "How much; linear in between.",
+                      .unit = "kg/m^3",
+                      .required = true,
+                      .min = 0,
+                      .example = "values = [1000.0]"}}});
     return list;
 }
 
@@ -91,10 +103,15 @@ scene::SolverKind kind() {
     schema.doc = "Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003), weakly compressible.";
     schema.keys = {scheme(), initial(), particles::sinks_key()};
     schema.effects = effects();
-    return {schema, [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
+    return {schema,
+            [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
                 if (scene.dim() == 2) return std::make_unique<SphSolver<2>>(scene);
                 return std::make_unique<SphSolver<3>>(scene);
-            }};
+            },
+            {{"position", "velocity", "density", "id", "pressure"},
+             {"neighbours", "density", "forces", "integrate"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = { name = \"rotation\", omega = 1.0, centre = "
+             "<0.25> }"}};
 }
 
 }  // namespace weir::sph

@@ -64,7 +64,13 @@ SphSolver<D>::SphSolver(const scene::Scene& scene)
       max_dt_(scene.root().number_or("time.max_dt", infinity)) {
     particles::refuse_idle_walls(scene, fluid_.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
     particles::add_effects(scene, effects_);
-    if (scene.effect("surface_tension")) effects_.add(std::make_unique<SurfaceTension<D>>(options_, params_, walls_, solids_));
+    if (scene.effect("surface_tension"))
+        effects_.add("surface_tension", std::make_unique<SurfaceTension<D>>(options_, params_, walls_, solids_));
+    for (const auto& [name, pass] : {std::pair{"viscosity", "forces"},
+                                     {"artificial_viscosity", "forces"},
+                                     {"density_diffusion", "density"},
+                                     {"rest_density", "neighbours"}})
+        if (scene.effect(name)) effects_.declare({.name = name, .inside = pass});
     for (std::size_t i = 0; i < fluid_.domain.solids.count(); ++i) sticky_solids_ = sticky_solids_ || fluid_.domain.solids[i].no_slip;
     start_pressure(scene);
     if (const auto* e = scene.effect("rest_density")) {
@@ -94,14 +100,14 @@ template <int D>
 StepReport SphSolver<D>::step(real dt) {
     emitters_.apply(fluid_, dt);
     find_neighbours();
-    if (!options_.continuity) find_densities();  // eq. 3
-    find_pressures();                            // eq. 12
-    find_forces();                               // eq. 10 and 14
-    effects_.apply(Stage::force, flow_, dt);     // gravity and other fields
+    if (!options_.continuity) find_densities();        // eq. 3
+    find_pressures();                                  // eq. 12
+    find_forces();                                     // eq. 10 and 14
+    effects_.apply(Stage::force, flow_, dt, passes_);  // gravity and other fields
     kick(dt);
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
-    effects_.apply(Stage::finish, flow_, dt);  // XSPH, vorticity
+    effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     const real speed = fluid_.max_speed();
     const real rest = rho_rest_;
     const int n = fluid_.count();
@@ -310,7 +316,8 @@ void SphSolver<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t SphSolver<D>::bytes() const {
-    return fluid_.bytes() + pairs_.bytes() + (velocity_.capacity() + acceleration_.capacity() + density_.capacity()) * sizeof(float);
+    return fluid_.bytes() + pairs_.bytes() + (velocity_.capacity() + acceleration_.capacity() + density_.capacity()) * sizeof(float) +
+           flow_.bytes() + effects_.bytes();
 }
 
 template class SphSolver<2>;

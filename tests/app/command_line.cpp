@@ -55,8 +55,43 @@ TEST("--explain tells what was called for, what was built and what was left out,
     const auto at = [&](const char* what) { return answer.text.find(what); };
     EXPECT_NE(at("effects     buoyancy"), std::string::npos) << answer.text;
     EXPECT_LT(at("temperature [K]"), at("project")) << "fields, then passes";
+    EXPECT_NE(at("pass \"effect confinement\"; scratch vorticity_magnitude"), std::string::npos) << answer.text;
     EXPECT_LT(at("not called for"), at("cooling")) << answer.text;
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST("an effect of strength zero is remarked: it may cost, and does nothing") {
+    TemporaryFolder folder;
+    const auto said = [&](const std::string& epsilon) {
+        return weir_says({"run", smoke, "--quiet", "--set", "time.end=0.01", "--set", "effects.confinement.epsilon=" + epsilon, "--out",
+                          folder.path() / "out"})
+            .text;
+    };
+    EXPECT_NE(said("0.0").find("effect \"confinement\" has strength zero"), std::string::npos);
+    EXPECT_EQ(said("0.2").find("strength zero"), std::string::npos);
+}
+
+TEST("run.json times each effect by its name") {
+    TemporaryFolder folder;
+    weir_says({"run", smoke, "--quiet", "--set", "time.end=0.01", "--out", folder.path() / "out"});
+    const std::string log = weir::test::text_of(folder.path() / "out" / "run.json");
+    for (const char* pass : {"\"effect buoyancy\":", "\"effect confinement\":", "\"effect emitters\":"})
+        EXPECT_NE(log.find(pass), std::string::npos) << pass;
+}
+
+TEST("weir cost --plan tells what a scene will cost and writes nothing; weir plan chooses, or says that nothing reaches it") {
+    const auto forecast = weir_says({"cost", "--plan", smoke});
+    EXPECT_EQ(forecast.code, 0) << forecast.text;
+    for (const char* what : {"temperature [K]", "bytes as it starts", "effect buoyancy", "all", "ns a cell", "rates measured now"})
+        EXPECT_NE(forecast.text.find(what), std::string::npos) << what << "\n" << forecast.text;
+    const std::string tables = std::string(WEIR_SOURCE_DIR) + "/results/cost", study = std::string(WEIR_SOURCE_DIR) + "/cases/taylor_green";
+    const auto chosen = weir_says({"plan", study, "--tables", tables, "--error", "20%", "--budget", "10s"});
+    EXPECT_EQ(chosen.code, 0) << chosen.text;
+    EXPECT_NE(chosen.text.find("take "), std::string::npos) << chosen.text;
+    const auto none = weir_says({"plan", study, "--tables", tables, "--error", "1e-9", "--budget", "10s"});
+    EXPECT_EQ(none.code, 1) << none.text;
+    EXPECT_NE(none.text.find("the nearest two"), std::string::npos) << none.text;
+    EXPECT_EQ(weir_says({"plan", study, "--tables", tables, "--error", "2%", "--budget", "16"}).code, 2) << "a time has a unit";
 }
 
 TEST("an output folder that cannot be written is refused before the run") {

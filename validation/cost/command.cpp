@@ -74,6 +74,7 @@ void publish_studies(const std::vector<json>& studies, const std::filesystem::pa
     std::string page =
         "# What accuracy costs\n\nThis page is written by `weir cost --publish`; nothing in it is typed by hand. "
         "Computing time is wall-clock time of all steps but the first, the median of the repeats.\n\n";
+    if (std::filesystem::exists(folder / "effects.md")) page += "What each effect of each solver costs: [effects.md](effects.md).\n\n";
     for (const auto& file : files)
         if (const json study = read_json(file); study.is_object()) page += cost_markdown(study);
     if (const json table = read_json(folder / "report_table.json"); table.is_object()) page += report_table_markdown(table);

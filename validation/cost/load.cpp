@@ -1,11 +1,14 @@
 #include "validation/cost/load.hpp"
 
+#include "core/parallel.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <string>
 
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 namespace weir::validation {
@@ -22,6 +25,12 @@ Work work_so_far() {
     w.ours = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     w.wall = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     return w;
+}
+
+double computing_seconds() {
+    timespec now{};
+    clock_gettime(threads() == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 double others_between(const Work& from, const Work& to) {

@@ -14,4 +14,8 @@ Work work_so_far();
 /// Cores that others used between two readings, on average; never negative.
 double others_between(const Work& from, const Work& to);
 
+/// Seconds of computing, from some start: of this thread where it is the only one, which others do not lengthen; else by the clock on the
+/// wall.
+double computing_seconds();
+
 }  // namespace weir::validation

@@ -74,8 +74,9 @@ TEST_IN_2D_AND_3D("an effect brings the passes that it needs and no others") {
         for (const auto& pass : s->passes().list()) names.push_back(pass.name);
         return names;
     };
-    EXPECT_EQ(passes("sph", ""), (std::vector<std::string>{"neighbours", "forces", "integrate", "density"}));
-    EXPECT_EQ(passes("pbf", ""), (std::vector<std::string>{"predict", "neighbours", "lambda", "correct", "update", "warm start"}));
+    EXPECT_EQ(passes("sph", ""), (std::vector<std::string>{"neighbours", "forces", "effect gravity", "integrate", "density"}));
+    EXPECT_EQ(passes("pbf", ""),
+              (std::vector<std::string>{"predict", "neighbours", "lambda", "correct", "update", "effect gravity", "warm start"}));
 }
 
 TEST_IN_2D_AND_3D("memory grows only with what is named") {

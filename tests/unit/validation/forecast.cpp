@@ -1,0 +1,63 @@
+// What `weir cost --plan` says before a scene runs, against what the scene then does. For every solver that registers a plain scene.
+// Blind to what a scene becomes later, and to machines that are disturbed by more than a factor between two measurements of a second each.
+#include "validation/cost/forecast.hpp"
+
+#include "core/parallel.hpp"
+#include "sim/simulation.hpp"
+#include "support/test.hpp"
+#include "validation/cost/effect_scene.hpp"
+
+#include <algorithm>
+
+namespace weir::validation {
+namespace {
+
+scene::Scene scene_of(const scene::SolverKind& kind, int dim) { return plain_scene(kind, dim, dim == 2 ? 96 : 32); }
+
+}  // namespace
+
+TEST_IN_2D_AND_3D("memory is foretold to the byte, as a run starts and after its first step") {
+    for (const auto& kind : sim::registry()) {
+        if (kind.plain.scene.empty()) continue;
+        const scene::Scene scene = scene_of(kind, D);
+        const Forecast f = forecast(scene);
+        Simulation run(scene);
+        EXPECT_EQ(f.bytes, run.solver().bytes()) << kind.schema.name;
+        std::size_t shown = 0;
+        for (const auto& field : f.fields) shown += field.bytes;
+        EXPECT_LE(shown, f.bytes) << kind.schema.name << ": fields are part of what is held";
+        run.step();
+        EXPECT_EQ(f.bytes_moving, run.solver().bytes()) << kind.schema.name;
+    }
+}
+
+// The bar is 30 per cent. The forecast and the run are measured one after the other, three times, and the median of their ratio counts: a
+// disturbance that is over within a second spoils one of them.
+TEST_IN_2D_AND_3D("a step takes within 30 per cent of the time foretold") {
+    set_threads(1);
+    for (const auto& kind : sim::registry()) {
+        if (kind.plain.scene.empty()) continue;
+        const scene::Scene scene = scene_of(kind, D);
+        std::vector<double> ratios;
+        for (int round = 0; round < 3; ++round) {
+            const double foretold = forecast(scene).ms;
+            ratios.push_back(foretold / measure_rates(scene, sim::registry(), 0.5).ms);
+        }
+        std::sort(ratios.begin(), ratios.end());
+        EXPECT_NEAR(ratios[1], 1, 0.3) << kind.schema.name;
+    }
+}
+
+TEST("passes are foretold by name, and together are the step") {
+    const auto& kind = sim::kind_named("mac");
+    const Forecast f = forecast(scene_with(kind, 2, 48, {"buoyancy", "confinement"}, 0.1));
+    double ms = 0;
+    std::vector<std::string> names;
+    for (const Pass& p : f.passes) ms += 1e3 * p.seconds, names.push_back(p.name);
+    EXPECT_NEAR(ms, f.ms, 1e-9 * f.ms);
+    for (const char* name : {"effect buoyancy", "effect confinement", "advect fields", "advect velocity", "project"})
+        EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+    EXPECT_EQ(f.measured.size(), 2u);
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,93 @@
+// What `weir plan` reads between the entries of the published tables: an entry that is left out is predicted by its neighbours.
+#include "validation/cost/recommend.hpp"
+#include "core/error.hpp"
+#include "support/test.hpp"
+
+#include <cmath>
+
+namespace weir::validation {
+namespace {
+
+CostCurve line(const std::string& name, std::vector<Priced> points, bool iterations = false) {
+    return {name, iterations, std::move(points)};
+}
+
+double factor(double a, double b) { return std::max(a / b, b / a); }
+
+}  // namespace
+
+TEST("a power of the resolution, and a constant factor an iteration, are read exactly") {
+    const CostCurve grid = line("grid", {{16, 0.16, 1, 10}, {64, 0.01, 16, 160}});
+    const auto half = predict(grid, 32);
+    ASSERT_TRUE(half);
+    EXPECT_NEAR(half->error, 0.04, 1e-12);  // second order: a quarter of 0.16
+    EXPECT_NEAR(half->ms_per_step, 40, 1e-9);
+    EXPECT_NEAR(half->seconds_per_second, 4, 1e-9);
+    const CostCurve solve = line("solve", {{2, 1, 1, 3}, {6, 1.0 / 16, 1, 7}}, true);
+    const auto four = predict(solve, 4);
+    ASSERT_TRUE(four);
+    EXPECT_NEAR(four->error, 0.25, 1e-12);  // half an iteration
+    EXPECT_NEAR(four->ms_per_step, 5, 1e-12);
+}
+
+TEST("nothing is said of what lies beyond the table, nor across a fall to round-off") {
+    const CostCurve curve = line("m", {{1, 1, 1, 1}, {4, 1e-3, 1, 1}, {16, 1e-14, 1, 1}}, true);
+    EXPECT_FALSE(predict(curve, 0.5));
+    EXPECT_FALSE(predict(curve, 17));
+    EXPECT_TRUE(predict(curve, 2));
+    EXPECT_FALSE(predict(curve, 8));
+}
+
+TEST("of what is good enough and within the budget the cheapest is taken; where nothing is, the nearest two are named") {
+    const std::vector<CostCurve> curves{line("coarse", {{10, 0.1, 0.1, 1}, {20, 0.05, 0.4, 2}}), line("fine", {{10, 0.01, 2, 4}})};
+    const Budget budget{.seconds = 0.016, .error = 0.06, .frame = 1.0 / 60};
+    const auto r = recommend(curves, Price::second, budget);
+    ASSERT_TRUE(r.take);
+    EXPECT_EQ(r.take->curve->method, "coarse");
+    EXPECT_LE(r.take->at.error, 0.06);
+    EXPECT_FALSE(r.take->measured) << "17 or 18 cells are enough, and cheaper than 20";
+    const auto none = recommend(curves, Price::second, {.seconds = 0.016, .error = 0.02, .frame = 1.0 / 60});
+    EXPECT_FALSE(none.take) << "fine takes 33 ms a frame";
+    ASSERT_EQ(none.nearest.size(), 2u);
+    EXPECT_EQ(none.nearest[0].at.setting, 20) << "the most accurate within the budget";
+    EXPECT_EQ(none.nearest[1].curve->method, "fine") << "the cheapest that is good enough";
+    EXPECT_NEAR(seconds_of({10, 0, 0.001, 50}, Price::second, budget), 0.05, 1e-12) << "a frame takes at least a step";
+}
+
+TEST("a budget and an error are read with their units, or refused") {
+    EXPECT_DOUBLE_EQ(parse_seconds("16ms"), 0.016);
+    EXPECT_DOUBLE_EQ(parse_seconds("0.5 s"), 0.5);
+    EXPECT_DOUBLE_EQ(parse_error("2%"), 0.02);
+    EXPECT_DOUBLE_EQ(parse_error("0.03"), 0.03);
+    for (const char* wrong : {"16", "ms", "-1ms", "16 apples"}) EXPECT_THROW((void)parse_seconds(wrong), BadInput) << wrong;
+    for (const char* wrong : {"", "two", "0", "2 apples"}) EXPECT_THROW((void)parse_error(wrong), BadInput) << wrong;
+}
+
+// Factors 1.5 in time and 2 in error: what a recommendation may be off by and still be of use. A power or a factor between two entries
+// cannot be worse than the root of what separates them; a table with wide steps fails here, and wants more entries.
+TEST("an entry left out of a published table is predicted within a factor 1.5 in time and 2 in error") {
+    const std::filesystem::path tables = std::filesystem::path(WEIR_SOURCE_DIR) / "results" / "cost", cases = WEIR_SOURCE_DIR "/cases";
+    int predicted = 0, declined = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(tables / "csv")) {
+        const Study study = read_study(cases / entry.path().stem(), Size::ci);
+        for (const CostCurve& curve : read_cost_table(study, tables))
+            for (std::size_t i = 1; i + 1 < curve.points.size(); ++i) {
+                CostCurve rest = curve;
+                const Priced left_out = rest.points[i];
+                rest.points.erase(rest.points.begin() + static_cast<std::ptrdiff_t>(i));
+                const auto found = predict(rest, left_out.setting);
+                if (!found) {
+                    ++declined;
+                    continue;
+                }
+                ++predicted;
+                const std::string name = study.name + " " + curve.method + " " + std::to_string(left_out.setting);
+                EXPECT_LT(factor(found->ms_per_step, left_out.ms_per_step), 1.5) << name;
+                EXPECT_LT(factor(found->seconds_per_second, left_out.seconds_per_second), 1.5) << name;
+                EXPECT_LT(factor(found->error, left_out.error), 2) << name;
+            }
+    }
+    EXPECT_GT(predicted, declined) << "a table that declines most of its own entries recommends nothing";
+}
+
+}  // namespace weir::validation
