@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "core/error.hpp"
 #include "validation/page/page.hpp"
+#include "validation/page/readme.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -10,11 +11,13 @@
 namespace weir::app {
 
 void add_report(CLI::App& app, int& exit_code) {
-    auto results = std::make_shared<std::string>("results");
+    auto results = std::make_shared<std::string>("results"), readme = std::make_shared<std::string>();
     CLI::App* command = app.add_subcommand("report", "Write index.html from what is published; nothing is run");
     command->add_option("results", *results, "Folder of published results (default: results)");
-    command->callback([results, &exit_code] {
+    command->add_option("--readme", *readme, "Write the results between the markers of this file too");
+    command->callback([results, readme, &exit_code] {
         std::printf("%s\n", validation::write_page(*results).c_str());
+        if (!readme->empty()) validation::update_readme(*readme, *results);
         exit_code = exit_success;
     });
 }

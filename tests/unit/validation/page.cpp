@@ -3,6 +3,7 @@
 
 #include "core/error.hpp"
 #include "validation/page/chart.hpp"
+#include "validation/page/readme.hpp"
 #include "validation/page/sections.hpp"
 #include "validation/page/text.hpp"
 #include "validation/page/thin.hpp"
@@ -132,4 +133,21 @@ TEST("a diagram holds every point that its axes can show, and a map one cell a r
                   .kinds = {"volume"}};
     EXPECT_EQ(count(map_svg(map), "class=\"cell held\"><rect x"), 2u) << "one cell and its entry in the legend";
     EXPECT_EQ(count(map_svg(map), "class=\"cell k0\"><rect x"), 2u);
+}
+
+TEST("the README's results are written between its markers, the rest stays, and a second time changes nothing") {
+    const weir::test::TemporaryFolder folder;
+    results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2"), claim(false, 3, 2, "<= 2")}));
+    const fs::path readme = folder.path() / "README.md";
+    std::ofstream(readme) << "before\n" << readme_begins << "\nold\n" << readme_ends << "\nafter\n";
+    update_readme(readme, folder.path());
+    const std::string once = bytes_of(readme);
+    EXPECT_EQ(once.substr(0, 7), "before\n");
+    EXPECT_EQ(once.substr(once.size() - 7), "\nafter\n");
+    EXPECT_EQ(once.find("\nold\n"), std::string::npos);
+    EXPECT_NE(once.find("| Are the equations solved right? | 1 of 2 | [tank]("), std::string::npos) << once;
+    update_readme(readme, folder.path());
+    EXPECT_EQ(bytes_of(readme), once);
+    std::ofstream(readme) << "no markers";
+    EXPECT_THROW(update_readme(readme, folder.path()), weir::BadInput);
 }

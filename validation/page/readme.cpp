@@ -1,0 +1,92 @@
+#include "validation/page/readme.hpp"
+
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "validation/page/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <set>
+
+namespace weir::validation {
+namespace {
+
+using nlohmann::json;
+
+std::string side_by_side(const std::filesystem::path& results, const std::string& prefix) {
+    const json study = json_of(results / "cost" / "json" / "dam_break_martin_moyce.json");
+    if (!study.is_object()) return "";
+    std::string s = fmt::format(
+        "### {}\n![Error of the front against the real-time factor, for every water method]({}/cost/svg/dam_break_martin_moyce.svg)\n\n",
+        text_at(study, "question"), prefix);
+    for (const json& sentence : study["advice"]) s += "- " + sentence.get<std::string>() + "\n";
+    return s + fmt::format("\n{}, {} thread(s), {} size; every setting and the other studies: [{}/cost]({}/cost/index.md).\n\n",
+                           text_at(study, "machine"), study.value("threads", 1), text_at(study, "size"), prefix, prefix);
+}
+
+struct Asked {
+    const char* title;
+    std::set<std::string> kinds;
+};
+
+std::string claims_table(const json& verdicts, const std::string& prefix) {
+    const Asked parts[] = {{"Are the equations solved right?", {"exact", "convergence"}},
+                           {"Are they the right equations?", {"benchmark"}},
+                           {"What does accuracy cost a solver?", {"iterations"}}};
+    std::string s = "### What is claimed\n| question | claims that hold | cases |\n|---|---|---|\n";
+    for (const Asked& part : parts) {
+        std::size_t held = 0, all = 0;
+        std::set<std::string> cases;
+        for (const json& v : verdicts) {
+            if (!part.kinds.count(text_at(v, "kind"))) continue;
+            held += v.value("pass", false) ? 1 : 0, ++all;
+            cases.insert(text_at(v, "case"));
+        }
+        std::string links;
+        for (const std::string& name : cases) links += fmt::format("{}[{}]({}/index.md#{})", links.empty() ? "" : ", ", name, prefix, name);
+        s += fmt::format("| {} | {} of {} | {} |\n", part.title, held, all, links);
+    }
+    return s;
+}
+
+std::string limits_line(const std::filesystem::path& results, const std::string& prefix) {
+    std::size_t limits = 0, unbroken = 0, below = 0;
+    std::error_code missing;
+    for (const auto& entry : std::filesystem::directory_iterator(results / "stability", missing)) {
+        const json study = json_of(entry.path());
+        if (!study.is_object() || !study.contains("limits")) continue;
+        for (const json& l : study["limits"]) {
+            ++limits;
+            unbroken += l.contains("first_unstable") ? 0 : 1;
+            below += l.value("guarded", true) ? 0 : 1;
+        }
+    }
+    if (limits == 0) return "";
+    return fmt::format(
+        "\n**Where it breaks:** {} limits measured, {} of them not reached however far the solver was pushed; {}: "
+        "[{}/stability]({}/stability/index.md).\n",
+        limits, unbroken, below == 0 ? "every guarded floor holds" : fmt::format("{} below the floor that is guarded", below), prefix,
+        prefix);
+}
+
+}  // namespace
+
+std::string readme_part(const std::filesystem::path& results, const std::string& prefix) {
+    const json verdicts = json_of(results / "verdicts.json");
+    if (!verdicts.is_array()) throw BadInput(results.string() + " holds no readable verdicts.json");
+    return side_by_side(results, prefix) + claims_table(verdicts, prefix) + limits_line(results, prefix) +
+           fmt::format("\nAll of it on one page, to open in a browser: `{}/index.html`.\n", prefix);
+}
+
+void update_readme(const std::filesystem::path& readme, const std::filesystem::path& results) {
+    const std::string text = bytes_of(readme);
+    const auto begin = text.find(readme_begins), end = text.find(readme_ends);
+    if (begin == std::string::npos || end == std::string::npos || end < begin)
+        throw BadInput(fmt::format("{} has no \"{}\" followed by \"{}\"", readme.string(), readme_begins, readme_ends));
+    const std::string prefix = std::filesystem::relative(results, std::filesystem::absolute(readme).parent_path()).generic_string();
+    output::write_file(readme, text.substr(0, begin) + readme_begins + "\n" + readme_part(results, prefix) + text.substr(end));
+}
+
+}  // namespace weir::validation
