@@ -49,9 +49,11 @@ StepReport PbfSolver<D>::step(real dt) {
         correct();  // 12-15
         collide();  // 16-19
     }
-    keep_multipliers(dt);
-    update(dt);                                         // 20-21, 23-24
+    const real slow = std::max(dt, last_dt_);
+    keep_multipliers(slow);
+    update(dt, slow);                                   // 20-21, 23-24
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
+    last_dt_ = dt;
     const real speed = fluid_.max_speed();
     const Compression c = compression();
     if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
@@ -78,7 +80,7 @@ void PbfSolver<D>::settle() {
         find_lambdas();
         correct();
         collide();
-        if ((i + 1) % between_lists == 0 || i + 1 == options_.settle) update(0);
+        if ((i + 1) % between_lists == 0 || i + 1 == options_.settle) update(0, 0);
     }
 }
 
@@ -173,20 +175,24 @@ void PbfSolver<D>::collide() {
 
 /// v = (x* - x) / dt, x = x*; with dt = 0 only the latter. The move that the iterations made in single precision is added to the prediction
 /// in double precision, so that rounding does not depend on how far a particle is from the origin.
+/// slow: the longer of this step and the last. What the last one left of compression goes with its dt^2; corrected in a step that is
+/// shorter, to meet a frame, it must not become speed over that.
 template <int D>
-void PbfSolver<D>::update(real dt) {
+void PbfSolver<D>::update(real dt, real slow) {
     const auto timed = passes_.time("update");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const PbfPass job = pass(pairs_.a(), nullptr);
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
     const float* now = pairs_.a();
+    const real too_fast = dt > 0 ? 1 / dt - 1 / slow : 0;
     pairs_.each([&](int k) {
         if (pairs_.is_image(k)) return;
         const int i = pairs_.owner(k);
-        Vec<D> x = particles::Fluid<D>::get(x_star_, i);
+        const Vec<D> predicted = particles::Fluid<D>::get(x_star_, i);
+        Vec<D> x = predicted;
         for (int a = 0; a < D; ++a) x[a] += static_cast<real>(now[4 * k + a]) - static_cast<real>(pairs_.local(x[a], a));
         x = fluid_.domain.kept(x);
-        if (dt > 0) particles::Fluid<D>::put(fluid_.v, i, (x - fluid_.position(i)) / dt);
+        if (dt > 0) particles::Fluid<D>::put(fluid_.v, i, (x - fluid_.position(i)) / dt - too_fast * (x - predicted));
         particles::Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[static_cast<std::size_t>(i)] = fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
     });
@@ -229,11 +235,13 @@ template <int D>
 void PbfSolver<D>::save(Checkpoint& to) const {
     fluid_.save(to);
     emitters_.save(to);
+    to.put_value("pbf.last_dt", last_dt_);
 }
 template <int D>
 void PbfSolver<D>::restore(const Checkpoint& from) {
     fluid_.restore(from);
     emitters_.restore(from);
+    last_dt_ = from.get_value<real>("pbf.last_dt");
 }
 
 template <int D>

@@ -49,7 +49,7 @@ private:
     void find_lambdas();
     void correct();
     void collide();
-    void update(real dt);
+    void update(real dt, real slow);
     Compression compression() const;
     particles::PbfPass pass(const float* from, float* to);
 
@@ -67,6 +67,7 @@ private:
     std::vector<float> multiplier_;  // sum of lambda of each sorted particle over this step, with warm start
     Passes passes_;
     real step_ = infinity;  // advised [s]
+    real last_dt_ = 0;      // [s]
 };
 
 }  // namespace weir::pbf
