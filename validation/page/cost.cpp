@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <sstream>
 
 namespace weir::validation {
 namespace {
@@ -96,6 +99,46 @@ std::string report_table(const json& t) {
         escaped(text_at(t, "commit")), escaped(text_at(t, "machine")));
 }
 
+/// The cells of a line of CSV that quotes nothing.
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells(1);
+    for (const char c : line)
+        if (c == ',')
+            cells.emplace_back();
+        else
+            cells.back() += c;
+    return cells;
+}
+
+/// What each effect adds to a step, from what `weir cost --effects --publish` wrote; empty where it has not.
+std::string effects_table(const std::filesystem::path& results) {
+    std::istringstream csv(bytes_of(results / "cost" / "effects.csv"));
+    HtmlTable table({"solver", "dim", "effect", "a term of", "ms without", "ms with", "times the step", "more kB"},
+                    "A step with the effect and one without it, taken in turns; medians");
+    std::map<std::string, std::size_t> column;
+    std::size_t rows = 0;
+    for (std::string line; std::getline(csv, line);) {
+        if (line.empty() || line.front() == '#') continue;
+        const auto cells = cells_of(line);
+        if (column.empty()) {
+            for (std::size_t i = 0; i < cells.size(); ++i) column[cells[i]] = i;
+            continue;
+        }
+        const auto at = [&](const char* name) { return column.count(name) && column[name] < cells.size() ? cells[column[name]] : ""; };
+        const auto number = [&](const char* name) { return std::atof(at(name).c_str()); };
+        table.row({word(at("solver")), word(at("dim") + "D"), word(at("effect")), word(at("inside")), value(number("ms_without")),
+                   value(number("ms_with")), value(number("ratio")), value((number("bytes_with") - number("bytes_without")) / 1e3)},
+                  at("failure").empty() ? "" : "fail");
+        ++rows;
+    }
+    if (rows == 0) return "";
+    return "<article id=\"effects\"><h3>What does each effect cost that a scene may call for?</h3><p>What a scene does not name allocates "
+           "no "
+           "field and runs no pass.</p>" +
+           table.html() +
+           "<p class=\"fine\"><code>./weir.sh cost --effects</code> · <a href=\"cost/effects.csv\">every number (CSV)</a></p></article>\n";
+}
+
 /// Water methods side by side first, then the others by name: the more methods, the more a newcomer learns.
 std::vector<const json*> in_reading_order(const std::vector<json>& studies) {
     std::vector<const json*> order;
@@ -109,17 +152,19 @@ std::vector<const json*> in_reading_order(const std::vector<json>& studies) {
 }  // namespace
 
 Section cost_section(const std::vector<json>& studies, const std::filesystem::path& results) {
-    if (studies.empty()) return {.summary = "<p>No study is published: <code>./weir.sh cost --all --publish</code></p>", .html = ""};
+    Section section{.summary = "<p>No study is published: <code>./weir.sh cost --all --publish</code></p>"};
     const auto order = in_reading_order(studies);
-    Section section;
-    section.summary = fmt::format("<p class=\"asks\">{}</p><ul>", escaped(text_at(*order.front(), "question")));
-    for (const json& sentence : (*order.front())["advice"]) section.summary += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
-    section.summary += fmt::format("</ul><p><a href=\"#cost-{}\">Figure and table</a></p>", escaped(text_at(*order.front(), "study")));
-    section.html =
-        "<p>Nobody compares settings here, only error for time. Computing time is wall-clock time of all steps but the first, the "
-        "median of the repeats; settings that fail stay in the tables.</p>\n";
+    if (!order.empty()) {
+        section.summary = fmt::format("<p class=\"asks\">{}</p><ul>", escaped(text_at(*order.front(), "question")));
+        for (const json& sentence : (*order.front())["advice"]) section.summary += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
+        section.summary += fmt::format("</ul><p><a href=\"#cost-{}\">Figure and table</a></p>", escaped(text_at(*order.front(), "study")));
+        section.html =
+            "<p>Nobody compares settings here, only error for time. Computing time is wall-clock time of all steps but the first, the "
+            "median of the repeats; settings that fail stay in the tables.</p>\n";
+    }
     for (const json* study : order) section.html += study_html(*study, results);
     if (const json table = json_of(results / "cost" / "report_table.json"); table.is_object()) section.html += report_table(table);
+    section.html += effects_table(results);
     return section;
 }
 

@@ -111,6 +111,18 @@ TEST("texts are quoted, every claim carries its reason and blind spot, and the p
     EXPECT_EQ(page.find("href=\"http"), std::string::npos);
 }
 
+TEST("what effects cost stands on the page where it is published: one row an effect, a failure marked") {
+    const weir::test::TemporaryFolder folder;
+    fs::create_directories(folder.path() / "cost");
+    std::ofstream(folder.path() / "cost/effects.csv")
+        << "# medians\nsolver,dim,effect,inside,ms_without,ms_with,ratio,bytes_without,bytes_with,failure\n"
+           "mac,2,buoyancy,,1,1.5,1.5,1000,3000,\nmac,2,gravity,forces,1,0,0,0,0,it broke\n";
+    const std::string page = page_html(results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2")})));
+    EXPECT_NE(page.find("<td>buoyancy</td><td></td><td class=\"n\" data-key=\"1\">1</td><td class=\"n\" data-key=\"1.5\">1.5</td>"),
+              std::string::npos);
+    EXPECT_NE(page.find("<tr class=\"fail\"><td>mac</td><td>2D</td><td>gravity</td>"), std::string::npos);
+}
+
 TEST("a folder without verdicts is refused by name") {
     const weir::test::TemporaryFolder folder;
     try {
