@@ -59,7 +59,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 
 nlohmann::json json_of(const std::filesystem::path& file) {
     std::ifstream stream(file);
-    if (!stream) return nullptr;
+    if (!stream || !std::filesystem::is_regular_file(file)) return nullptr;  // a folder opens, and throws when it is read
     auto parsed = nlohmann::json::parse(stream, nullptr, false);
     return parsed.is_discarded() ? nlohmann::json(nullptr) : parsed;
 }
