@@ -39,6 +39,12 @@ public:
 
     /// `const auto timed = passes.time("project");` as the first line of a pass.
     [[nodiscard]] Timer time(std::string_view name) { return Timer(*this, find(name)); }
+    /// Calls that something else has timed: a device, by its own clock.
+    void add(std::string_view name, double seconds, std::int64_t calls) {
+        Pass& p = list_[find(name)];
+        p.calls += calls;
+        p.seconds += seconds;
+    }
     const std::vector<Pass>& list() const { return list_; }
     void reset() {
         for (Pass& p : list_) p.calls = 0, p.seconds = 0;

@@ -82,6 +82,9 @@ public:
     /// The largest step that the solver and every effect in the scene advise now [s]; infinity where nothing limits.
     virtual real advised_dt() const = 0;
     virtual FieldSet fields() const = 0;
+    /// Whether step() itself throws NumericalFailure where a field is no longer finite, so that nobody needs to look at all fields after
+    /// every step: they may be far away, on a device.
+    virtual bool checks_itself() const { return false; }
     virtual std::vector<Integral> integrals() const = 0;
     /// Simulated time [s].
     virtual real time() const = 0;
