@@ -1,5 +1,6 @@
 // weir list WHAT: the names that scenes and commands may use.
 #include "app/commands.hpp"
+#include "backend/device.hpp"
 #include "core/error.hpp"
 #include "sim/registry.hpp"
 
@@ -34,19 +35,35 @@ void list_cases(const std::filesystem::path& folder) {
     for (const auto& path : cases) std::printf("%s%s\n", path.filename().c_str(), std::filesystem::exists(path / "case.toml") ? " *" : "");
 }
 
+/// OpenCL devices, numbered as scheme.backend = "opencl:N" counts them.
+void list_devices() {
+    const auto devices = backend::devices();
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const auto& d = devices[i];
+        std::printf("opencl:%zu  %s (%s), %d units, %zu MiB%s\n          %s; %s, driver %s\n", i, d.name.c_str(), d.kind.c_str(), d.units,
+                    d.memory >> 20, d.doubles ? "" : ", no double precision: not usable", d.platform.c_str(), d.version.c_str(),
+                    d.driver.c_str());
+    }
+    if (devices.empty()) backend::open_device(0);  // throws, and says what is missing
+}
+
 }  // namespace
 
 void add_list(CLI::App& app, int& exit_code) {
     auto what = std::make_shared<std::string>();
     auto folder = std::make_shared<std::string>("cases");
-    CLI::App* list = app.add_subcommand("list", "List the solvers, the effects of each, or the cases (* where they are validated)");
-    list->add_option("what", *what, "solvers, effects or cases")->required()->check(CLI::IsMember({"solvers", "effects", "cases"}));
+    CLI::App* list =
+        app.add_subcommand("list", "List the solvers, the effects of each, the cases (* where they are validated), or the devices");
+    list->add_option("what", *what, "solvers, effects, cases or devices")
+        ->required()
+        ->check(CLI::IsMember({"solvers", "effects", "cases", "devices"}));
     list->add_option("--cases", *folder, "Folder of the cases");
     list->callback([what, folder, &exit_code] {
         exit_code = exit_success;
         if (*what == "solvers") list_solvers();
         if (*what == "effects") list_effects();
         if (*what == "cases") list_cases(*folder);
+        if (*what == "devices") list_devices();
     });
 }
 

@@ -21,7 +21,7 @@ namespace weir::app {
 namespace {
 
 struct RunArguments {
-    std::string scene, restart, out;
+    std::string scene, restart, out, backend;
     std::vector<std::string> set;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
@@ -125,6 +125,7 @@ int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
     for (const auto& text : arguments.set) overrides.push_back(scene::to_override(text));
+    if (!arguments.backend.empty()) overrides.push_back({"scheme.backend", '"' + arguments.backend + '"'});
     std::optional<Checkpoint> checkpoint;
     if (!arguments.restart.empty()) checkpoint = Checkpoint::read(find_checkpoint(arguments.restart));
     if (arguments.scene.empty() && !checkpoint)
@@ -179,6 +180,7 @@ void add_run(CLI::App& app, int& exit_code) {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
     run->add_option("--threads", arguments->threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
+    run->add_option("--backend", arguments->backend, "threads, or opencl[:N] (weir list devices): the same as --set scheme.backend=...");
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");

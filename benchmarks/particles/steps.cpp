@@ -45,11 +45,12 @@ scene::Scene scene_of(const Job& job) {
     } else {
         set.push_back(
             {"scheme",
-             fmt::format("{{ kernel = \"muller\", support = 2.0, density = \"summation\", sound_speed = 12.0, isa = \"{}\" }}", job.isa)});
+             fmt::format("{{ kernel = \"muller\", support = 2.0, density = \"summation\", sound_speed = 12.0, backend = \"threads:{}\" }}",
+                         job.isa)});
         set.push_back({"effects", "{ gravity = { g = [0, -9.81, 0] }, artificial_viscosity = { alpha = 0.1 } }"});
     }
     if (job.solver == "pbf")
-        set.push_back({"scheme.isa", "\"" + job.isa + "\""}), set.push_back({"scheme.kernel", "\"" + job.kernel + "\""});
+        set.push_back({"scheme.backend", "\"threads:" + job.isa + "\""}), set.push_back({"scheme.kernel", "\"" + job.kernel + "\""});
     for (const auto& entry : job.set) set.push_back({entry.substr(0, entry.find('=')), entry.substr(entry.find('=') + 1)});
     return scene::read(WEIR_SOURCE_DIR "/cases/dam_break_particles", schemas, set);
 }

@@ -27,25 +27,33 @@ Range range_of(const real* x, int count, std::vector<Range>& parts) {
 
 }  // namespace
 
+CellGrid cover_box(const std::array<real, 3>& lo, const std::array<real, 3>& hi, int count, real cell_size) {
+    const real most = 1e6 + 8.0 * count;  // cells: more than this costs more memory than the particles themselves
+    CellGrid grid;
+    grid.origin = lo;
+    for (real size = cell_size;; size *= 1.26) {
+        real cells = 1;
+        for (std::size_t a = 0; a < 3; ++a) cells *= std::floor((hi[a] - lo[a]) / size) + 1;
+        if (cells > most) continue;
+        grid.per_cell = 1 / size;
+        for (std::size_t a = 0; a < 3; ++a) grid.cells[a] = static_cast<int>(std::floor((hi[a] - lo[a]) * grid.per_cell)) + 1;
+        return grid;
+    }
+}
+
 void CellSort::cover(const Coordinates& x, int count, real cell_size) {
-    std::array<real, 3> width{0, 0, 0};
+    std::array<real, 3> lo{0, 0, 0}, hi{0, 0, 0};
     for (std::size_t a = 0; a < 3; ++a) {
-        origin_[a] = 0;
         if (!x[a] || count == 0) continue;
         const Range r = range_of(x[a], count, ranges_);
         if (!r.finite) throw NumericalFailure("position", "a particle's position is not finite");
-        origin_[a] = r.lo;
-        width[a] = r.hi - r.lo;
+        lo[a] = r.lo;
+        hi[a] = r.hi;
     }
-    const real most = 1e6 + 8.0 * count;  // cells: more than this costs more memory than the particles themselves
-    for (real size = cell_size;; size *= 1.26) {
-        real cells = 1;
-        for (std::size_t a = 0; a < 3; ++a) cells *= std::floor(width[a] / size) + 1;
-        if (cells > most) continue;
-        per_cell_ = 1 / size;
-        for (std::size_t a = 0; a < 3; ++a) n_[a] = static_cast<int>(std::floor(width[a] * per_cell_)) + 1;
-        return;
-    }
+    const CellGrid grid = cover_box(lo, hi, count, cell_size);
+    n_ = grid.cells;
+    origin_ = grid.origin;
+    per_cell_ = grid.per_cell;
 }
 
 int CellSort::cell(const Coordinates& x, int i) const {

@@ -15,10 +15,20 @@ struct Range {
     bool finite = true;
 };
 
+/// Cells over a box: cell (i, j, k) has number (k n_y + j) n_x + i.
+struct CellGrid {
+    std::array<int, 3> cells{1, 1, 1};
+    std::array<real, 3> origin{0, 0, 0};
+    real per_cell = 1;  // 1 / cell size
+};
+/// Cells at least `cell_size` wide over the box of `count` points. Where points are so sparse that cells would outnumber them by far, cells
+/// are wider.
+CellGrid cover_box(const std::array<real, 3>& lo, const std::array<real, 3>& hi, int count, real cell_size);
+
 class CellSort {
 public:
-    /// Sorts `count` points into cells at least `cell_size` wide that cover their bounding box. Where points are so sparse that cells would
-    /// outnumber them by far, cells are wider. Throws NumericalFailure when a coordinate is not finite.
+    /// Sorts `count` points into cells at least `cell_size` wide that cover their bounding box (cover_box). Throws NumericalFailure when a
+    /// coordinate is not finite.
     void sort(const Coordinates& x, int count, real cell_size);
 
     int count() const { return count_; }

@@ -186,14 +186,6 @@ Key support_key(real usual) {
             .max = 4.0};
 }
 
-Key isa_key() {
-    return {.name = "isa",
-            .type = Type::choice,
-            .doc = "Instruction set of the pair passes.",
-            .fallback = std::string("auto"),
-            .choices = {"auto", "sse2", "avx2", "avx512"}};
-}
-
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid) {
     if (!scene.has("initial.velocity")) return;

@@ -34,9 +34,8 @@ void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects);
 scene::Key initial_key();
 /// "sinks": shapes that take particles out.
 scene::Key sinks_key();
-/// scheme.support and scheme.isa, which every particle solver has.
+/// scheme.support, which every particle solver has.
 scene::Key support_key(real usual);
-scene::Key isa_key();
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid);
 /// The scene's liquid with its initial velocity.

@@ -1,4 +1,6 @@
 // The registration of "pbf": its keys, its effects, its maker.
+#include "particles/isa.hpp"
+#include "pbf/device_solver.hpp"
 #include "pbf/solver.hpp"
 
 namespace weir::pbf {
@@ -62,7 +64,7 @@ Key scheme() {
                     "so that it does not become speed.",
              .fallback = std::int64_t{usual.settle},
              .min = 0},
-            particles::isa_key()}};
+            particles::backend_key()}};
 }
 
 std::vector<scene::Variant> effects() {
@@ -91,6 +93,10 @@ scene::SolverKind kind() {
     schema.effects = effects();
     return {schema,
             [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
+                if (particles::backend_of(scene).kind == backend::Choice::Kind::opencl) {
+                    if (scene.dim() == 2) return std::make_unique<DevicePbfSolver<2>>(scene);
+                    return std::make_unique<DevicePbfSolver<3>>(scene);
+                }
                 if (scene.dim() == 2) return std::make_unique<PbfSolver<2>>(scene);
                 return std::make_unique<PbfSolver<3>>(scene);
             },

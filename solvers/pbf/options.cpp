@@ -1,6 +1,7 @@
 #include "pbf/options.hpp"
 
 #include "particles/fastest_flow.hpp"
+#include "particles/isa.hpp"
 #include "particles/passes.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ Options::Options(const scene::Scene& scene) {
     relaxation = scene.number("scheme.relaxation");
     warm_start = scene.number("scheme.warm_start");
     settle = static_cast<int>(scene.integer("scheme.settle"));
-    isa = scene.text("scheme.isa");
+    backend = particles::backend_of(scene);
     if (const auto* p = scene.effect("artificial_pressure")) {
         pressure_k = p->number("k");
         pressure_dq = p->number("dq");

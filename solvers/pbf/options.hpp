@@ -1,5 +1,6 @@
 // The choices of a PBF scene ("scheme" and two effects), and the numbers that the pair physics reads, made from them.
 #pragma once
+#include "backend/device.hpp"
 #include "particles/fluid.hpp"
 #include "particles/kernels.hpp"
 #include "scene/scene.hpp"
@@ -23,7 +24,7 @@ struct Options {
     int settle = 300;       // at most so many iterations that take the initial density error out of the positions
     real pressure_k = 0;    // artificial pressure (eq. 13): k in units of support^2, 0: none
     real pressure_dq = 0.2;  // delta q over the support
-    std::string isa = "auto";
+    backend::Choice backend;
 
     Options() = default;
     explicit Options(const scene::Scene& scene);
@@ -33,6 +34,14 @@ struct Options {
 /// compression goes with dt^2, and a step that is shorter than the last would turn the difference into speed. So it never changes.
 template <int D>
 real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid);
+
+/// What a scene is told whose walls are stuck to.
+inline constexpr const char* instead_of_sticking = "PBF has none: take slip = \"free\", or solver = \"sph\" with its viscosity";
+
+/// Of the iterations that settle the first state: after so many a particle may have got new neighbours, and a compression of the densest
+/// particle of a tenth of what a step leaves is good enough.
+inline constexpr int settle_between_lists = 5;
+inline constexpr real settle_good_enough = 1e-3;
 
 template <int D>
 particles::Kernel<D> density_kernel(const Options& options, real spacing);

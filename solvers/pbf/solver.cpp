@@ -22,12 +22,12 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene)
       params_(pbf_params<particles::single::PbfParams, D>(options_, fluid_.domain.spacing)),
       walls_(fluid_.domain.template walls<particles::single::WallParams>(density_kernel<D>(options_, fluid_.domain.spacing),
                                                                          gradient_kernel<D>(options_, fluid_.domain.spacing))),
-      pairs_(particles::passes_for(options_.isa), fluid_.domain.frame()),
+      pairs_(particles::passes_for(options_.backend.isa), fluid_.domain.frame()),
       solids_(fluid_.domain, fluid_.domain.template walls<particles::plain::WallParams>(
                                  density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
       flow_{fluid_, pairs_, params_, {}, {}, static_cast<int>(options_.smoothing)},
       step_(even_step(scene, fluid_)) {
-    particles::refuse_idle_walls(scene, fluid_.domain, false, "PBF has none: take slip = \"free\", or solver = \"sph\" with its viscosity");
+    particles::refuse_idle_walls(scene, fluid_.domain, false, instead_of_sticking);
     particles::add_effects(scene, effects_);
     if (scene.effect("artificial_pressure")) effects_.declare({.name = "artificial_pressure", .inside = "correct"});
     settle();
@@ -69,18 +69,16 @@ StepReport PbfSolver<D>::step(real dt) {
 /// it would become speed, error / dt, the more the better that step is solved. Stabilisation of Macklin et al. 2014, section 4.4.
 template <int D>
 void PbfSolver<D>::settle() {
-    constexpr int between_lists = 5;    // by then a particle may have got new neighbours
-    constexpr real good_enough = 1e-3;  // of the densest particle: a tenth of what a step leaves
     for (int i = 0; i < options_.settle; ++i) {
-        if (i % between_lists == 0) {
-            if (i > 0 && compression().worst <= good_enough) break;
+        if (i % settle_between_lists == 0) {
+            if (i > 0 && compression().worst <= settle_good_enough) break;
             predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
         }
         std::fill(multiplier_.begin(), multiplier_.end(), 0.0f);
         find_lambdas();
         correct();
         collide();
-        if ((i + 1) % between_lists == 0 || i + 1 == options_.settle) update(0, 0);
+        if ((i + 1) % settle_between_lists == 0 || i + 1 == options_.settle) update(0, 0);
     }
 }
 

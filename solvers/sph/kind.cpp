@@ -1,4 +1,6 @@
 // The registration of "sph": its keys, its effects, its maker.
+#include "particles/isa.hpp"
+#include "sph/device_solver.hpp"
 #include "sph/solver.hpp"
 
 namespace weir::sph {
@@ -45,7 +47,7 @@ Key scheme() {
                   .fallback = std::string("delta"),
                   .choices = {"delta", "continuity", "summation"}},
                  {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension},
-                 particles::isa_key()}};
+                 particles::backend_key()}};
 }
 
 std::vector<scene::Variant> effects() {
@@ -105,6 +107,10 @@ scene::SolverKind kind() {
     schema.effects = effects();
     return {schema,
             [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
+                if (particles::backend_of(scene).kind == backend::Choice::Kind::opencl) {
+                    if (scene.dim() == 2) return std::make_unique<DeviceSphSolver<2>>(scene);
+                    return std::make_unique<DeviceSphSolver<3>>(scene);
+                }
                 if (scene.dim() == 2) return std::make_unique<SphSolver<2>>(scene);
                 return std::make_unique<SphSolver<3>>(scene);
             },

@@ -1,5 +1,6 @@
 #include "sph/options.hpp"
 
+#include "particles/isa.hpp"
 #include "particles/passes.hpp"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ Options::Options(const scene::Scene& scene, real fastest) {
     const std::string& by = scene.text("scheme.density");
     continuity = by != "summation";
     if (by == "delta") diffusion = delta_sph.diffusion, artificial = delta_sph.viscosity;
-    isa = scene.text("scheme.isa");
+    backend = particles::backend_of(scene);
     if (scene.effect("viscosity")) viscosity = scene.number("fluid.viscosity");
     if (const auto* a = scene.effect("artificial_viscosity")) artificial = a->number("alpha");
     if (const auto* d = scene.effect("density_diffusion")) diffusion = d->number("delta");

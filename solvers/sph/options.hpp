@@ -1,5 +1,6 @@
 // The choices of an SPH scene, and the numbers that the pair physics reads, made from them.
 #pragma once
+#include "backend/device.hpp"
 #include "geometry/sides.hpp"
 #include "particles/kernels.hpp"
 #include "scene/scene.hpp"
@@ -23,7 +24,7 @@ struct Options {
     real gamma = 1;           // 1: the linear equation of state of Müller et al.; else Tait's
     bool tension = false;     // whether pressure may be negative
     bool continuity = false;  // density by its rate, not by a sum
-    std::string isa = "auto";
+    backend::Choice backend;
     real viscosity = 0;   // kinematic, acts only where the effect is named [m^2/s]
     real artificial = 0;  // alpha
     real diffusion = 0;   // delta of the density's diffusion

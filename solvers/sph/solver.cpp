@@ -15,35 +15,8 @@ namespace {
 
 constexpr std::int64_t steps_between_reorders = 16;
 
-/// The kernels of SPH in the form of the passes over velocities.
-template <int D>
-particles::single::PbfParams smoothing_params(const particles::single::SphParams& p, real mass_over_rho0, real mass) {
-    const real scale = mass_over_rho0 / mass;
-    particles::single::PbfParams s{};
-    s.h = p.h, s.h2 = p.h2, s.guard = p.guard;
-    s.self = static_cast<float>(static_cast<real>(p.self) * scale);
-    s.density = static_cast<float>(static_cast<real>(p.density) * scale);
-    s.gradient = static_cast<float>(static_cast<real>(p.gradient) * scale);
-    return s;
-}
-
-/// Far beyond what any equation of state here means; where particles are thrown faster than sound, densities must not run away.
-constexpr real most_compression = 8;
-
-/// exp(x) to second order, always positive: growth(x) growth(-x) = 1, so that what expands and shrinks again is what it was.
-/// A step in which density would change by more than a factor e is not resolved: it is held back, and stays finite.
-real growth(real x) {
-    const real u = std::min<real>(std::abs(x), 1), grown = 1 + u + 0.5 * u * u;
-    return x >= 0 ? grown : 1 / grown;
-}
-
-/// Linear between the given times, constant outside.
-real interpolate(const std::vector<double>& t, const std::vector<double>& value, real at) {
-    if (at <= t.front()) return value.front();
-    for (std::size_t k = 1; k < t.size(); ++k)
-        if (at < t[k]) return value[k - 1] + (value[k] - value[k - 1]) * (at - t[k - 1]) / (t[k] - t[k - 1]);
-    return value.back();
-}
+#define WEIR_FN inline
+#include "particles/kernels/sph_state.inl"
 
 }  // namespace
 
@@ -53,13 +26,14 @@ SphSolver<D>::SphSolver(const scene::Scene& scene)
       options_(scene, particles::fastest_flow(scene, fluid_)),
       emitters_(scene, fluid_.domain),
       params_(sph_params<particles::single::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
-      smooth_(smoothing_params<D>(params_, particles::cell_volume<D>(fluid_.domain.spacing), fluid_.mass)),
+      smooth_(smoothing_params<D>(params_, fluid_)),
       walls_(fluid_.domain.template walls<particles::single::WallParams>(density_kernel<D>(options_, fluid_.domain.spacing),
                                                                          gradient_kernel<D>(options_, fluid_.domain.spacing))),
-      pairs_(particles::passes_for(options_.isa), fluid_.domain.frame()),
+      pairs_(particles::passes_for(options_.backend.isa), fluid_.domain.frame()),
       solids_(fluid_.domain, fluid_.domain.template walls<particles::plain::WallParams>(
                                  density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
       flow_{fluid_, pairs_, smooth_, {}, {}, static_cast<int>(options_.smoothing)},
+      rest_density_(scene, fluid_.rho0),
       rho_rest_(fluid_.rho0),
       max_dt_(scene.root().number_or("time.max_dt", infinity)) {
     particles::refuse_idle_walls(scene, fluid_.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
@@ -72,27 +46,7 @@ SphSolver<D>::SphSolver(const scene::Scene& scene)
                                      {"rest_density", "neighbours"}})
         if (scene.effect(name)) effects_.declare({.name = name, .inside = pass});
     for (std::size_t i = 0; i < fluid_.domain.solids.count(); ++i) sticky_solids_ = sticky_solids_ || fluid_.domain.solids[i].no_slip;
-    start_pressure(scene);
-    if (const auto* e = scene.effect("rest_density")) {
-        rest_times_ = e->numbers("times");
-        rest_values_ = e->numbers("values");
-        if (rest_times_.size() != rest_values_.size() || rest_times_.empty())
-            scene.refuse("effects.rest_density", "times and values must be lists of the same length, at least one");
-    }
-}
-
-template <int D>
-void SphSolver<D>::start_pressure(const scene::Scene& scene) {
-    if (!scene.has("initial.surface")) return;
-    if (!options_.continuity)
-        scene.refuse("initial.surface", "a density that is summed has the pressure of its particles",
-                     "set scheme.density = \"continuity\"");
-    const Vec<D> surface = scene.vec<D>("initial.surface");
-    for (int i = 0; i < fluid_.count(); ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        fluid_.carried[at] = std::max<real>(0, fluid_.rho0 * dot(fluid_.gravity, fluid_.position(i) - surface));
-        fluid_.density[at] = options_.density(fluid_.carried[at], fluid_.rho0);
-    }
+    start_pressure(scene, options_, fluid_);
 }
 
 /// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
@@ -126,7 +80,7 @@ void SphSolver<D>::find_neighbours() {
     pairs_.fit(velocity_, 4);
     pairs_.fit(acceleration_, 4);
     solids_.mark(pairs_);
-    if (!rest_times_.empty()) rho_rest_ = interpolate(rest_times_, rest_values_, fluid_.time);
+    rho_rest_ = rest_density_.at(fluid_.time);
     params_.wall_rho = static_cast<float>(std::min(rho_rest_, fluid_.rho0));
 }
 
@@ -178,8 +132,7 @@ void SphSolver<D>::advance_densities(real dt) {
     pairs_.each([&](int k) {
         if (pairs_.is_image(k)) return;
         real& rho = fluid_.density[static_cast<std::size_t>(pairs_.owner(k))];
-        rho *= growth(dt * static_cast<real>(density_[static_cast<std::size_t>(k)]) / rho);
-        rho = std::clamp(rho, fluid_.rho0 / most_compression, fluid_.rho0 * most_compression);
+        rho = density_kept(rho * density_growth(dt * static_cast<real>(density_[static_cast<std::size_t>(k)]) / rho), fluid_.rho0);
     });
 }
 
@@ -273,15 +226,9 @@ void SphSolver<D>::drift(real dt) {
     });
 }
 
-/// The limits of Monaghan 1992 and Morris 1997 with the smoothing length s = support / 2: sound, viscosity, force.
 template <int D>
 real SphSolver<D>::advised_dt() const {
-    const real s = 0.5 * options_.support * fluid_.domain.spacing, g = norm(fluid_.gravity);
-    const real acoustic = 0.4 * s / ((options_.sound + fluid_.max_speed()) * (1 + 0.6 * options_.artificial));
-    const real viscous = options_.viscosity > 0 ? 0.125 * s * s / options_.viscosity : infinity;
-    const real strongest = max_acceleration_ + g;
-    const real force = strongest > 0 ? 0.25 * std::sqrt(s / strongest) : infinity;
-    return std::min({acoustic, viscous, force, max_dt_, effects_.max_dt(flow_)});
+    return std::min({step_limit<D>(options_, fluid_, fluid_.max_speed(), max_acceleration_), max_dt_, effects_.max_dt(flow_)});
 }
 
 template <int D>

@@ -10,6 +10,7 @@
 #include "particles/solid_terms.hpp"
 #include "scene/solver_kind.hpp"
 #include "sph/options.hpp"
+#include "sph/state.hpp"
 
 namespace weir::sph {
 
@@ -39,7 +40,6 @@ public:
 
 private:
     void find_neighbours();
-    void start_pressure(const scene::Scene& scene);
     void find_densities();
     void advance_densities(real dt);
     void find_pressures();
@@ -62,8 +62,8 @@ private:
     particles::Flow<D> flow_;
     Effects<particles::Flow<D>> effects_;
     std::vector<float> velocity_, acceleration_, density_;
-    std::vector<double> rest_times_, rest_values_;  // of the effect rest_density
-    bool sticky_solids_ = false;                    // whether the liquid sticks to any
+    RestDensity rest_density_;
+    bool sticky_solids_ = false;  // whether the liquid sticks to any
     real rho_rest_ = 1;
     real max_acceleration_ = 0;
     Passes passes_;

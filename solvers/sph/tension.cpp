@@ -1,5 +1,7 @@
 #include "sph/tension.hpp"
 
+#include "sph/state.hpp"
+
 namespace weir::sph {
 
 using particles::ListChunk;
@@ -27,8 +29,7 @@ void SurfaceTension<D>::apply(particles::Flow<D>& flow, real dt) {
 
 template <int D>
 real SurfaceTension<D>::max_dt(const particles::Flow<D>& flow) const {
-    const real s = 0.5 * options_.support * flow.fluid.domain.spacing;
-    return options_.sigma > 0 ? 0.25 * std::sqrt(flow.fluid.rho0 * s * s * s / (2 * pi * options_.sigma)) : infinity;
+    return tension_limit(options_, flow.fluid);
 }
 
 template class SurfaceTension<2>;

@@ -1,4 +1,5 @@
-// Tests named by sentences: TEST("what is true") { ... } and TEST_IN_2D_AND_3D("...") { uses D }. The suite is the file's name.
+// Tests named by sentences: TEST("what is true") { ... } and TEST_IN_2D_AND_3D("...") { uses D }. The suite is the name of
+// the file that is compiled, also for bodies in a header that several such files share.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -37,14 +38,14 @@ inline int add(const char* file, int line, const std::string& sentence, void (*b
 #define TEST(sentence)                                                                        \
     static void WEIR_JOIN(weir_test_body_, __LINE__)();                                       \
     [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                 \
-        weir::test::add(__FILE__, __LINE__, sentence, &WEIR_JOIN(weir_test_body_, __LINE__)); \
+        weir::test::add(__BASE_FILE__, __LINE__, sentence, &WEIR_JOIN(weir_test_body_, __LINE__)); \
     static void WEIR_JOIN(weir_test_body_, __LINE__)()
 
 #define TEST_IN_2D_AND_3D(sentence)                                                                                         \
     template <int D>                                                                                                        \
     static void WEIR_JOIN(weir_test_body_, __LINE__)();                                                                     \
     [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                                               \
-        weir::test::add(__FILE__, __LINE__, std::string(sentence) + " [2D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 2 >) + \
-        weir::test::add(__FILE__, __LINE__, std::string(sentence) + " [3D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 3 >);  \
+        weir::test::add(__BASE_FILE__, __LINE__, std::string(sentence) + " [2D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 2 >) + \
+        weir::test::add(__BASE_FILE__, __LINE__, std::string(sentence) + " [3D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 3 >);  \
     template <int D>                                                                                                        \
     static void WEIR_JOIN(weir_test_body_, __LINE__)()

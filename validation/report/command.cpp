@@ -31,6 +31,8 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
     const auto found = [] { return find_cases(case_root()); };
     for (const auto& folder : chosen_folders("validate", options.names, options.all, options.list, found)) try {
             cases.push_back(read_case(folder, options.size));
+            for (Variant& variant : cases.back().variants)
+                variant.overrides.insert(variant.overrides.end(), options.set.begin(), options.set.end());
             if (!options.list) check_case(cases.back(), solvers);
         } catch (const BadInput& wrong) {
             problems += (problems.empty() ? "" : "\n") + std::string(wrong.what());

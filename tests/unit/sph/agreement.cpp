@@ -1,121 +1,30 @@
 // SPH on the fast path against the double reference over all pairs; threads; momentum; the time-step limits.
 #include "core/parallel.hpp"
-#include "particles/reference.hpp"
-#include "scene/scene.hpp"
+#include "shared/sph_reference.hpp"
 #include "sph/solver.hpp"
 
 #include "support/test.hpp"
 
-#include <fmt/core.h>
-
-#include <random>
-
 using namespace weir;
 using particles::Fluid;
-using particles::Point;
-
-namespace {
-
-/// A block of liquid in a box of 8 x 12 [x 8] spacings of 1/8 m.
-template <int D>
-scene::Scene sph_scene(const std::string& scheme, const std::string& effects) {
-    const std::string text = fmt::format(
-        "title = \"test\"\nsolver = \"sph\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime = {{ end = 10.0, dt = 0.002 }}\n"
-        "fluid = {{ density = 1000.0, viscosity = 0.01 }}\nliquid = [{{ shape = \"box\", min = {}, max = {} }}]\nscheme = {{ {} }}\n{}\n",
-        D, D == 2 ? "[8, 12]" : "[8, 12, 8]", D == 2 ? "[1, 1.5]" : "[1, 1.5, 1]", D == 2 ? "[0.25, 0.25]" : "[0.25, 0.25, 0.25]",
-        D == 2 ? "[1, 1]" : "[1, 1, 1]", scheme, effects);
-    return scene::parse(text, "test.toml", {sph::kind().schema});
-}
-
-template <int D>
-void disturb(Fluid<D>& fluid, real shake) {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<real> jitter(-1, 1);
-    for (int i = 0; i < fluid.count(); ++i) {
-        Vec<D> x = fluid.position(i), u{};
-        for (int a = 0; a < D; ++a) x[a] += shake * fluid.domain.spacing * jitter(random), u[a] = 0.2 * jitter(random);
-        Fluid<D>::put(fluid.x, i, fluid.domain.kept(x));
-        Fluid<D>::put(fluid.v, i, u);
-        fluid.density[static_cast<std::size_t>(i)] = fluid.rho0 * (1 + 0.02 * jitter(random));  // continuity starts from it
-    }
-}
-
-/// The state in the reference's coordinates.
-template <int D>
-std::pair<std::vector<Point>, std::vector<Point>> points_of(const Fluid<D>& fluid) {
-    std::vector<Point> x, v;
-    for (int i = 0; i < fluid.count(); ++i) {
-        x.push_back({0, 0, 0}), v.push_back({0, 0, 0});
-        for (int a = 0; a < D; ++a) {
-            x.back()[static_cast<std::size_t>(a)] = fluid.position(i)[a] - fluid.domain.centre()[a];
-            v.back()[static_cast<std::size_t>(a)] = fluid.velocity(i)[a];
-        }
-    }
-    return {x, v};
-}
-
-/// One step by the double reference: densities, and positions before walls keep them.
-template <int D>
-std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::SphSolver<D>& solver, const Fluid<D>& before, real dt) {
-    const auto& o = solver.options();
-    const real d = before.domain.spacing;
-    particles::ReferenceSph reference;
-    reference.p = sph::sph_params<particles::plain::SphParams, D>(o, d, before.rho0);
-    reference.walls =
-        before.domain.template walls<particles::plain::WallParams>(sph::density_kernel<D>(o, d), sph::gradient_kernel<D>(o, d));
-    reference.kernel = static_cast<int>(o.smoothing);
-    reference.summed = !o.continuity;
-    const auto [x, v] = points_of(before);
-    std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
-    for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
-    const auto acceleration = reference.accelerations(x, v, rho, pressure);
-    const auto tension = reference.tensions(x, rho);
-    std::vector<Point> moved = v;
-    std::vector<Vec<D>> after;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        after.push_back(before.position(static_cast<int>(i)));
-        for (std::size_t a = 0; a < D; ++a) {
-            moved[i][a] += dt * (acceleration[i][a] + tension[i][a] + o.gravity[a]);
-            after.back()[static_cast<int>(a)] += dt * moved[i][a];
-        }
-    }
-    if (o.continuity) {
-        const auto rate = reference.rates(x, moved, before.density, before.rho0);
-        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] += dt * rate[i];
-    }
-    return {rho, after};
-}
-
-/// Each pair term, and each wall term, in some scene.
-struct Physics {
-    const char *scheme, *effects;
-};
-template <int D>
-std::vector<Physics> all_physics() {
-    const bool flat = D == 2;
-    return {{"density = \"summation\"", "effects.viscosity = {}\neffects.artificial_viscosity = { alpha = 0.1 }"},
-            {"density = \"continuity\", tension = true",
-             "effects.density_diffusion = { delta = 0.5 }\neffects.surface_tension = { sigma = 50 }"},
-            {"density = \"continuity\"",
-             flat ? "effects.gravity = { g = [3, -9.81] }\neffects.density_diffusion = {}\neffects.viscosity = {}\n"
-                    "sides.x_max = { kind = \"wall\", slip = \"no\" }\nsides.y_max = { kind = \"moving_wall\", velocity = [2, 0] }"
-                  : "effects.gravity = { g = [3, -9.81, 1] }\neffects.density_diffusion = {}\neffects.viscosity = {}\n"
-                    "sides.z_max = { kind = \"wall\", slip = \"no\" }\nsides.x_max = { kind = \"moving_wall\", velocity = [0, 2, 1] }"}};
-}
-
-}  // namespace
+using test::all_physics;
+using test::Physics;
+using test::reference_step;
+using test::shake;
+using test::sph_scene;
 
 TEST_IN_2D_AND_3D("every instruction set agrees with the double reference to 1e-5 of the support after one step") {
     const real dt = 0.002;
     for (const auto* table : particles::available_passes())
         for (const char* kernel : {"muller", "cubic", "wendland"})
             for (const Physics& physics : all_physics<D>()) {
-                sph::SphSolver<D> solver(sph_scene<D>(
-                    fmt::format("kernel = \"{}\", support = 2.0, sound_speed = 10, isa = \"{}\", {}", kernel, table->name, physics.scheme),
-                    physics.effects));
-                disturb(solver.fluid(), 0.2);
+                sph::SphSolver<D> solver(
+                    sph_scene<D>(fmt::format("kernel = \"{}\", support = 2.0, sound_speed = 10, backend = \"threads:{}\", {}", kernel,
+                                             table->name, physics.scheme),
+                                 physics.effects));
+                shake(solver.fluid(), 0.2);
                 const Fluid<D> before = solver.fluid();
-                const auto [rho, free] = reference_step(solver, before, dt);
+                const auto [rho, free] = reference_step<D>(solver.options(), before, dt);
                 const real h = solver.options().support * before.domain.spacing;
                 solver.step(dt);
                 real worst = 0, farthest = 0, densest = 0;
@@ -134,7 +43,7 @@ TEST_IN_2D_AND_3D("every instruction set agrees with the double reference to 1e-
 TEST("each effect on pairs and walls does something in the scenes of the comparison") {
     const auto after = [](const Physics& physics, const std::string& scheme) {
         sph::SphSolver<2> solver(sph_scene<2>(scheme, physics.effects));
-        disturb(solver.fluid(), 0.2);
+        shake(solver.fluid(), 0.2);
         solver.step(0.002);
         return std::pair{solver.fluid().v, solver.fluid().density};
     };
@@ -149,7 +58,7 @@ TEST("each effect on pairs and walls does something in the scenes of the compari
 
 TEST_IN_2D_AND_3D("a free drop keeps its momentum to round-off, whatever its particles do to each other") {
     sph::SphSolver<D> solver(sph_scene<D>("support = 2.0, tension = true", "effects.viscosity = {}\neffects.artificial_viscosity = {}"));
-    disturb(solver.fluid(), 0.1);
+    shake(solver.fluid(), 0.1);
     for (int i = 0; i < solver.fluid().count(); ++i)  // away from the walls
         for (int a = 0; a < D; ++a) {
             auto& xa = solver.fluid().x[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)];
@@ -205,7 +114,7 @@ TEST("a scene that names no speed of sound gets ten times the fastest flow that 
 TEST("delta-SPH is continuity with its published constants, and effects of the same names set others") {
     const auto run = [](const std::string& scheme, const std::string& effects) {
         sph::SphSolver<2> solver(sph_scene<2>(scheme, effects));
-        disturb(solver.fluid(), 0.2);
+        shake(solver.fluid(), 0.2);
         for (int s = 0; s < 5; ++s) solver.step(0.001);
         return std::pair{solver.fluid().x, solver.fluid().density};
     };
@@ -220,7 +129,7 @@ TEST("an effect without strength changes no bit: what is not named is not there"
     const std::string scheme = "density = \"continuity\", tension = true";
     const auto run = [&](const std::string& effects) {
         sph::SphSolver<2> solver(sph_scene<2>(scheme, effects));
-        disturb(solver.fluid(), 0.2);
+        shake(solver.fluid(), 0.2);
         for (int s = 0; s < 10; ++s) solver.step(0.001);
         return std::pair{solver.fluid().x, solver.fluid().density};
     };

@@ -1,0 +1,317 @@
+#include "particles/device_fluid.hpp"
+
+#include "core/error.hpp"
+#include "particles/kernel_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::particles {
+
+namespace {
+#include "particles/kernels/state_params.h"
+
+constexpr std::size_t reduction_groups = 256;
+constexpr std::size_t usual_group = 256, pair_group = 128;
+constexpr int scan_items = 8;  // SCAN_ITEMS of sort.cl
+constexpr std::int64_t steps_between_reorders = 16;
+
+template <int D>
+StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& domain) {
+    StateParams p{};
+    for (int a = 0; a < D; ++a) {
+        p.centre[a] = domain.centre()[a];
+        p.keep_lo[a] = domain.keep_lo[a];
+        p.keep_hi[a] = domain.keep_hi[a];
+        p.gravity[a] = effects.g[a];
+        p.field_centre[a] = effects.centre[a];
+    }
+    return p;
+}
+
+/// How many neighbours there is room for at first: half as many again as a lattice has.
+template <int D>
+int usual_neighbours(real support_in_spacings) {
+    const real ball = D == 2 ? pi * std::pow(support_in_spacings, 2) : 4 * pi / 3 * std::pow(support_in_spacings, 3);
+    return static_cast<int>(1.5 * ball) + 8;
+}
+
+}  // namespace
+
+template <int D>
+DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, const DeviceSetup& setup)
+    : device_(backend::open_device(setup.device)), host_(std::move(start)), support_(setup.support), effects_(effects) {
+    if (!device_->info().doubles)
+        throw BadInput(device_->info().name +
+                       " has no double precision (cl_khr_fp64), in which the state of particles is kept: choose another "
+                       "device (weir list devices) or the backend threads");
+    for (group_ = static_cast<int>(usual_group); static_cast<std::size_t>(group_) > device_->info().group_limit;) group_ /= 2;
+    compile(setup);
+    room_ = usual_neighbours<D>(support_ / host_.domain.spacing);
+    for (Memory* numbers : {&x, &v, &x_star}) plan_.want(*numbers, D * sizeof(double));
+    for (Memory* number : {&density, &carried, &scratch_}) plan_.want(*number, sizeof(double));
+    for (Memory* integer : {&id_, &names_, &cell_, &sorted_cell_, &order, &neighbours}) plan_.want(*integer, sizeof(int));
+    for (Memory* four : {&a, &b}) plan_.want(*four, 4 * sizeof(float));
+    if (effects_.xsph || effects_.vorticity) plan_.want(velocities_, 4 * sizeof(float));
+    if (effects_.vorticity) plan_.want(omegas_, 4 * sizeof(float));
+    plan_.want(list, static_cast<std::size_t>(room_) * sizeof(int));
+    state_params = constant(state_params_of(effects, host_.domain));
+    wall_params = constant(setup.walls);
+    kernel_params = constant(setup.kernels);
+    parts_ = device_->alloc(reduction_groups * 2 * D * sizeof(double));
+    host_parts_.resize(reduction_groups * 2 * D);
+    needed_ = device_->alloc(sizeof(int));
+}
+
+template <int D>
+void DeviceFluid<D>::compile(const DeviceSetup& setup) {
+    std::vector<std::string> files{"prelude_opencl.h", "params.h", "state_params.h", "pair.inl", "pbf_pair.inl",
+                                   "state.cl",         "sort.cl",  "list.cl",        "finish.cl"};
+    files.insert(files.end(), setup.files.begin(), setup.files.end());
+    std::string defines = "-cl-std=CL1.2 -DWEIR_DIM=" + std::to_string(D) + " -DWEIR_KERNEL=" + std::to_string(setup.kernel) +
+                          " -DWEIR_GROUP=" + std::to_string(group_) + " " + setup.defines;
+    if (effects_.gravity) defines += " -DWEIR_GRAVITY";
+    if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
+    if (effects_.xsph) defines += " -DWEIR_XSPH";
+    if (effects_.vorticity) defines += " -DWEIR_VORTICITY";
+    device_->compile(program_of(files), defines);
+}
+
+template <int D>
+void DeviceFluid<D>::settle_in() {
+    const auto particles = static_cast<std::size_t>(host_.count());
+    plan_.check(device_->info(), particles);
+    plan_.allocate(*device_, particles);
+    stride_ = std::max(host_.count(), 1);
+    device_is_old_ = true;
+}
+
+template <int D>
+const Fluid<D>& DeviceFluid<D>::host() const {
+    if (host_is_old_) download();
+    return host_;
+}
+
+template <int D>
+Fluid<D>& DeviceFluid<D>::change() {
+    host();
+    device_is_old_ = true;
+    return host_;
+}
+
+template <int D>
+void DeviceFluid<D>::upload() {
+    if (host_.count() > stride_) settle_in();  // a restored state may have more particles
+    const auto n = host_.id.size(), row = static_cast<std::size_t>(stride_) * sizeof(real);
+    for (std::size_t axis = 0; axis < D; ++axis) {
+        device_->upload(x, host_.x[axis].data(), n * sizeof(real), axis * row);
+        device_->upload(v, host_.v[axis].data(), n * sizeof(real), axis * row);
+    }
+    device_->upload(density, host_.density.data(), n * sizeof(real));
+    device_->upload(carried, host_.carried.data(), n * sizeof(real));
+    const std::vector<int> ids(host_.id.begin(), host_.id.end());
+    device_->upload(id_, ids.data(), n * sizeof(int));
+    device_is_old_ = false;
+}
+
+template <int D>
+void DeviceFluid<D>::download() const {
+    const auto n = host_.id.size(), row = static_cast<std::size_t>(stride_) * sizeof(real);
+    for (std::size_t axis = 0; axis < D; ++axis) {
+        device_->download(host_.x[axis].data(), x, n * sizeof(real), axis * row);
+        device_->download(host_.v[axis].data(), v, n * sizeof(real), axis * row);
+    }
+    device_->download(host_.density.data(), density, n * sizeof(real));
+    device_->download(host_.carried.data(), carried, n * sizeof(real));
+    std::vector<int> ids(n);
+    device_->download(ids.data(), id_, n * sizeof(int));
+    std::copy(ids.begin(), ids.end(), host_.id.begin());
+    host_is_old_ = false;
+}
+
+template <int D>
+void DeviceFluid<D>::run(std::string_view kernel, std::initializer_list<backend::Argument> arguments) {
+    if (device_is_old_) upload();
+    host_is_old_ = true;
+    device_->launch(kernel, static_cast<std::size_t>(host_.count()), pair_group, arguments);
+}
+
+template <int D>
+void DeviceFluid<D>::clear(const Memory& numbers, std::size_t bytes_per_particle) {
+    device_->fill_zero(numbers, static_cast<std::size_t>(host_.count()) * bytes_per_particle);
+}
+
+template <int D>
+void DeviceFluid<D>::predict(real dt) {
+    pass_time(dt);
+    run("predict", {host_.count(), stride_, state_params, dt, pull(dt), x, v, x_star});
+}
+
+template <int D>
+void DeviceFluid<D>::find_neighbours(const Memory& positions) {
+    if (host_.count() == 0) return;
+    if (device_is_old_) upload();
+    const CellGrid grid = cover(positions);
+    sort(positions, grid);
+    run("load_sorted", {host_.count(), stride_, state_params, positions, order, cell_, a, sorted_cell_});
+    build_list(grid);
+}
+
+/// The box of all particles decides the cells, by the rule of the processor's path.
+template <int D>
+CellGrid DeviceFluid<D>::cover(const Memory& positions) {
+    const auto group = static_cast<std::size_t>(group_);
+    const std::size_t groups = std::min(reduction_groups, (static_cast<std::size_t>(host_.count()) + group - 1) / group);
+    device_->launch("range", groups * group, group, {host_.count(), stride_, positions, parts_});
+    device_->download(host_parts_.data(), parts_, groups * 2 * D * sizeof(double));
+    std::array<real, 3> lo{0, 0, 0}, hi{0, 0, 0};
+    for (std::size_t axis = 0; axis < D; ++axis) {
+        lo[axis] = infinity, hi[axis] = -infinity;
+        for (std::size_t g = 0; g < groups; ++g) {
+            lo[axis] = std::min(lo[axis], host_parts_[g * 2 * D + 2 * axis]);
+            hi[axis] = std::max(hi[axis], host_parts_[g * 2 * D + 2 * axis + 1]);
+        }
+        if (!std::isfinite(lo[axis]) || !std::isfinite(hi[axis])) throw NumericalFailure("position", "a particle's position is not finite");
+    }
+    return cover_box(lo, hi, host_.count(), support_ * 1.00001);  // a hair wider: cells are chosen in double, distances tested in float
+}
+
+template <int D>
+void DeviceFluid<D>::sort(const Memory& positions, const CellGrid& grid) {
+    const int cells = grid.cells[0] * grid.cells[1] * grid.cells[2];
+    const auto starts = static_cast<std::size_t>(cells) + 1, group = static_cast<std::size_t>(group_);
+    if (starts > cells_room_) {
+        cells_room_ = starts + starts / 4;
+        start_ = device_->alloc(cells_room_ * sizeof(int));
+        members_ = device_->alloc(cells_room_ * sizeof(int));
+        blocks_ = device_->alloc((cells_room_ / (group * scan_items) + 1) * sizeof(int));
+    }
+    const std::array<double, 4> corner{grid.origin[0], grid.origin[1], grid.origin[2], grid.per_cell};
+    const std::array<int, 4> n{grid.cells[0], grid.cells[1], grid.cells[2], 0};
+    device_->fill_zero(members_, starts * sizeof(int));
+    run("find_cells", {host_.count(), stride_, corner, n, positions, cell_, members_});
+    exclusive_sums(cells + 1, members_, start_);
+    run("scatter", {host_.count(), cell_, start_, members_, order});
+    device_->launch("sort_cells", static_cast<std::size_t>(cells), pair_group, {cells, start_, order});
+}
+
+template <int D>
+void DeviceFluid<D>::exclusive_sums(int count, const Memory& in, const Memory& out) {
+    const auto group = static_cast<std::size_t>(group_), entries = static_cast<std::size_t>(count);
+    const std::size_t blocks = (entries + group * scan_items - 1) / (group * scan_items);
+    device_->launch("scan_blocks", blocks * group, group, {count, in, out, blocks_});
+    if (blocks == 1) return;
+    device_->launch("scan_sums", group, group, {static_cast<int>(blocks), blocks_});
+    device_->launch("scan_add", entries, group, {count, out, blocks_});
+}
+
+template <int D>
+void DeviceFluid<D>::build_list(const CellGrid& grid) {
+    const std::array<int, 4> n{grid.cells[0], grid.cells[1], grid.cells[2], 0};
+    const auto radius = static_cast<float>(support_);
+    for (;;) {
+        int needed = 0;
+        device_->fill_zero(needed_, sizeof needed);
+        run("find_neighbours", {host_.count(), stride_, room_, radius * radius, n, a, sorted_cell_, start_, neighbours, list, needed_});
+        device_->download(&needed, needed_, sizeof needed);
+        if (needed == 0) return;
+        grow_list(needed);
+    }
+}
+
+template <int D>
+void DeviceFluid<D>::grow_list(int needed) {
+    const auto room = static_cast<std::size_t>(needed) + static_cast<std::size_t>(needed) / 4;
+    const std::size_t bytes = room * static_cast<std::size_t>(stride_) * sizeof(int);
+    const auto& info = device_->info();
+    if (bytes > info.largest || device_->allocated() - list.bytes + bytes > info.memory)
+        throw NumericalFailure("neighbours", "the neighbour list needs " + std::to_string(bytes >> 20) + " MiB, more than " + info.name +
+                                                 " has left: too many particles are closer than the support");
+    list = {};
+    list = device_->alloc(bytes);
+    room_ = static_cast<int>(room);
+    ++growths_;
+}
+
+template <int D>
+void DeviceFluid<D>::finish(real dt) {
+    if (effects_.xsph) {
+        run("load_velocities", {host_.count(), stride_, v, order, velocities_});
+        run("smooth", {host_.count(), stride_, kernel_params, effects_.smoothing, a, velocities_, neighbours, list, order, v});
+    }
+    if (effects_.vorticity) {
+        run("load_velocities", {host_.count(), stride_, v, order, velocities_});
+        run("curl", {host_.count(), stride_, kernel_params, a, velocities_, neighbours, list, omegas_});
+        run("confine", {host_.count(), stride_, kernel_params, dt * effects_.confinement, a, omegas_, neighbours, list, order, v});
+    }
+}
+
+template <int D>
+typename DeviceFluid<D>::Reduced DeviceFluid<D>::reduce(std::string_view kernel, std::initializer_list<backend::Argument> arguments) {
+    if (host_.count() == 0) return {};
+    if (device_is_old_) upload();
+    const auto group = static_cast<std::size_t>(group_);
+    const std::size_t groups = std::min(reduction_groups, (static_cast<std::size_t>(host_.count()) + group - 1) / group);
+    device_->launch(kernel, groups * group, group, arguments);
+    device_->download(host_parts_.data(), parts_, groups * 2 * sizeof(double));
+    Reduced all{-infinity, 0};
+    for (std::size_t g = 0; g < groups; ++g) {
+        const real largest = host_parts_[2 * g];
+        if (largest > all.largest || std::isnan(largest)) all.largest = largest;
+        if (std::isnan(all.largest)) break;
+        all.sum += host_parts_[2 * g + 1];
+    }
+    return all;
+}
+
+template <int D>
+real DeviceFluid<D>::max_speed() {
+    const real square = reduce("speeds", {host_.count(), stride_, x, v, parts_}).largest;
+    speed_ = std::isfinite(square) ? std::sqrt(square) : host().max_speed();  // which names what is not finite
+    return speed_;
+}
+
+template <int D>
+void DeviceFluid<D>::end_step() {
+    if (++host_.steps % steps_between_reorders == 0 && host_.count() > 0) reorder();
+}
+
+template <int D>
+void DeviceFluid<D>::reorder() {
+    const auto arrange = [&](Memory& numbers, Memory& scratch, int axes) {
+        run("gather_numbers", {host_.count(), stride_, axes, order, numbers, scratch});
+        std::swap(numbers, scratch);
+    };
+    arrange(x, x_star, D), arrange(v, x_star, D);  // x* is not needed any more
+    arrange(density, scratch_, 1), arrange(carried, scratch_, 1);
+    run("gather_names", {host_.count(), order, id_, names_});
+    std::swap(id_, names_);
+}
+
+template <int D>
+typename DeviceFluid<D>::NeighbourCounts DeviceFluid<D>::neighbour_counts() const {
+    const int n = host_.count();
+    if (n == 0 || host_.steps == 0) return {};
+    std::vector<int> counts(static_cast<std::size_t>(n));
+    device_->download(counts.data(), neighbours, counts.size() * sizeof(int));
+    const auto count_of = [&](int k) { return static_cast<real>(counts[static_cast<std::size_t>(k)]); };
+    return {block_sum(n, count_of) / n, block_max(n, count_of)};
+}
+
+template <int D>
+std::vector<int> DeviceFluid<D>::sorted_order() const {
+    std::vector<int> owners(host_.id.size());
+    device_->download(owners.data(), order, owners.size() * sizeof(int));
+    return owners;
+}
+
+template <int D>
+void DeviceFluid<D>::record(Passes& passes) {
+    for (const backend::Timing& t : device_->timings())
+        if (t.calls > 0) passes.add(t.kernel, t.seconds, t.calls);
+}
+
+template class DeviceFluid<2>;
+template class DeviceFluid<3>;
+
+}  // namespace weir::particles

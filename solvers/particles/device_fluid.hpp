@@ -1,0 +1,144 @@
+// The state of particles on a device, and what every solver does with it there: forces and prediction, sorting, the neighbour list, XSPH
+// and vorticity, reductions. The passes over pairs are the text that the processor's path compiles too (kernels/). The host keeps a copy
+// that follows when somebody looks.
+#pragma once
+#include "core/passes.hpp"
+#include "particles/cell_sort.hpp"
+#include "particles/device_memory.hpp"
+#include "particles/fluid.hpp"
+#include "particles/passes.hpp"
+
+#include <memory>
+
+namespace weir::particles {
+
+/// What a solver brings: its kernels, and the numbers that they read.
+struct DeviceSetup {
+    int device = 0;
+    int kernel = 0;                  // 0: Müller's, 1: cubic, 2: Wendland
+    std::vector<std::string> files;  // of kernels, beyond those of this class
+    std::string defines;             // "-DWEIR_KEEP ..."
+    single::PbfParams kernels{};     // as PBF, XSPH and vorticity read them
+    single::WallParams walls{};
+    real support = 0;  // [m]
+};
+
+/// The effects that act on a device; what is not named is not compiled.
+template <int D>
+struct DeviceEffects {
+    bool gravity = false, central_force = false, xsph = false, vorticity = false;
+    Vec<D> g{};            // [m/s^2]
+    real omega = 0;        // of the central force [1/s]
+    Vec<D> centre{};       // [m]
+    real smoothing = 0;    // c of XSPH
+    real confinement = 0;  // epsilon of vorticity [m/s]
+
+    DeviceEffects() = default;
+    explicit DeviceEffects(const scene::Scene& scene);
+};
+
+/// Everything of a scene that only the processor's path has, as problems at its keys: throws BadScene if there is any.
+void refuse_what_devices_lack(const scene::Scene& scene);
+
+template <int D>
+class DeviceFluid {
+public:
+    using Memory = backend::Memory;
+
+    /// Opens the device and compiles; the fluid's own arrays are planned. `settle_in` takes the memory.
+    DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, const DeviceSetup& setup);
+    /// Memory for the planned arrays, the solver's included, and the state into it. Throws BadInput where it does not fit.
+    void settle_in();
+
+    /// The state as it is now, brought here where the device has gone on.
+    const Fluid<D>& host() const;
+    /// The same to be changed: the device follows before its next pass.
+    Fluid<D>& change();
+    real time() const { return host_.time; }
+    int count() const { return host_.count(); }
+    int stride() const { return stride_; }
+    /// The fluid's constants; its particles may be old.
+    const Fluid<D>& setting() const { return host_; }
+    const Domain<D>& domain() const { return host_.domain; }
+    const Vec<D>& gravity() const { return host_.gravity; }
+    real rest_density() const { return host_.rho0; }
+
+    /// Numbers that a solver's kernels read, kept on the device.
+    template <class T>
+    Memory constant(const T& value) {
+        Memory memory = device_->alloc(sizeof value);
+        device_->upload(memory, &value, sizeof value);
+        return memory;
+    }
+    /// v += dt f of the scene's forces; x* = x + dt v.
+    void predict(real dt);
+    void pass_time(real dt) { host_.time += dt; }
+    /// What "central_force" pulls in dt, over the distance.
+    real pull(real dt) const { return dt * effects_.omega * effects_.omega; }
+    /// Sorts particles by these positions (x or x*), loads them into a, finds neighbours closer than the support.
+    void find_neighbours(const Memory& positions);
+    /// XSPH and vorticity, where the scene names them.
+    void finish(real dt);
+    /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory.
+    void end_step();
+
+    /// Zeroes a number of so many bytes of each particle.
+    void clear(const Memory& numbers, std::size_t bytes_per_particle);
+    /// A kernel over all particles.
+    void run(std::string_view kernel, std::initializer_list<backend::Argument> arguments);
+    /// A kernel that leaves (largest, sum) of each group in parts(), and their whole.
+    struct Reduced {
+        real largest = 0, sum = 0;
+    };
+    Reduced reduce(std::string_view kernel, std::initializer_list<backend::Argument> arguments);
+    /// Finds the largest speed [m/s]. Throws NumericalFailure naming the quantity that is not finite.
+    real max_speed();
+    /// The one found last, or the host's where the state was changed there.
+    real speed() const { return device_is_old_ ? host_.max_speed() : speed_; }
+    real max_dt() const { return effects_.omega > 0 ? 0.5 / effects_.omega : infinity; }  // of the forces
+
+    struct NeighbourCounts {
+        real mean = 0, most = 0;
+    };
+    NeighbourCounts neighbour_counts() const;
+    /// State particles in sorted order.
+    std::vector<int> sorted_order() const;
+    int growths() const { return growths_; }
+    /// Kernel times since the last call, as passes.
+    void record(Passes& passes);
+    std::size_t bytes() const { return host_.bytes() + device_->allocated(); }
+    const backend::Device& device() const { return *device_; }
+    DevicePlan& plan() { return plan_; }
+    const DevicePlan& plan() const { return plan_; }
+
+    Memory x, v, x_star, density, carried;            // state, double precision
+    Memory order, a, b, neighbours, list;             // sorted particles: owners, float4, their neighbours
+    Memory state_params, wall_params, kernel_params;  // constants
+    const Memory& parts() const { return parts_; }
+
+private:
+    void compile(const DeviceSetup& setup);
+    void upload();
+    void download() const;
+    CellGrid cover(const Memory& positions);
+    void sort(const Memory& positions, const CellGrid& grid);
+    void exclusive_sums(int count, const Memory& in, const Memory& out);
+    void build_list(const CellGrid& grid);
+    void grow_list(int needed);
+    void reorder();
+
+    std::unique_ptr<backend::Device> device_;
+    mutable Fluid<D> host_;
+    mutable bool host_is_old_ = false, device_is_old_ = true;
+    DevicePlan plan_;
+    int stride_ = 1, room_ = 0, growths_ = 0, group_ = 1;
+    real support_ = 0;
+    DeviceEffects<D> effects_;
+    real speed_ = 0;
+    Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;
+    Memory start_, members_, blocks_, parts_, needed_;
+    std::size_t cells_room_ = 0;
+    std::vector<double> host_parts_;
+};
+
+}  // namespace weir::particles

@@ -1,0 +1,17 @@
+// The kernels as text, embedded by CMake from particles/kernels: a device compiles at run time what the processor's path was compiled from.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace weir::particles {
+
+struct KernelText {
+    const char* name;  // of the file
+    const char* text;
+};
+const std::vector<KernelText>& kernel_texts();
+
+/// The named files one after the other, each with its name for the compiler's messages.
+std::string program_of(const std::vector<std::string>& files);
+
+}  // namespace weir::particles

@@ -1,0 +1,29 @@
+/* Compiles the pair physics as OpenCL C 1.2, one particle a work item. Defines from the host: WEIR_DIM, WEIR_KERNEL (0: Mueller's, 1: cubic,
+   2: Wendland), WEIR_GROUP (work items of a group that reduces or scans), and one for each effect that the scene names. */
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#define SCALAR float
+#define REAL float
+#define WEIR_FN static inline
+#define WEIR_PARAM __constant
+#define MAX0(x) fmax((x), 0.0f)
+#define RSQRT(x) rsqrt(x)
+
+#if WEIR_KERNEL == 0
+#define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
+#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h, (p)->guard)
+#elif WEIR_KERNEL == 1
+#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h, (p)->guard)
+#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#else
+#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h, (p)->guard)
+#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#endif
+
+#if WEIR_DIM == 3
+#define SQUARE(d) (d.x * d.x + d.y * d.y + d.z * d.z)
+#else
+#define SQUARE(d) (d.x * d.x + d.y * d.y)
+#endif

@@ -1,0 +1,194 @@
+/* The passes of SPH (Mueller, Charypar & Gross 2003): sph_pair.inl over every particle's neighbours. Positions are float4 with 1 / rho as their
+   fourth number, velocities with pressure, or with the density's excess over rho0. Defines: WEIR_CONTINUITY (density by its rate; else it is
+   summed), WEIR_TAIT, WEIR_PULL (pressure may be negative), WEIR_WALL_FORCES, WEIR_TENSION. */
+#pragma OPENCL FP_CONTRACT ON
+
+#ifndef WEIR_CONTINUITY
+/* rho_i = sum_j m W                                                                               Mueller et al. 2003, eq. 3 */
+__kernel void sph_densities(int count, int stride, __constant SphParams* p, __constant WallParams* walls, float wall_rho,
+                            __global const float4* at, __global const int* neighbours, __global const int* list,
+                            __global const int* order, __global double* density) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const float4 me = at[i];
+    float rho = p->self;
+    const int n = neighbours[i];
+    for (int k = 0; k < n; ++k) {
+        const float4 d = me - at[list[(size_t)k * stride + i]];
+        rho += sph_density(SQUARE(d), p);
+    }
+    density[order[i]] = (double)(rho + wall_rho * walls_at(me, walls).w);
+}
+#endif
+
+WEIR_FN float4 velocity_of(int i, int stride, __global const double* v, double more) {
+    float4 u = (float4)((float)v[i], (float)v[(size_t)stride + i], 0.0f, (float)more);
+#if WEIR_DIM == 3
+    u.z = (float)v[(size_t)2 * stride + i];
+#endif
+    return u;
+}
+
+/* The equation of state, and what the force pass reads. tait: (c^2 rho0 / gamma, gamma); linear: (c^2, 1)               eq. 12 */
+__kernel void find_pressures(int count, int stride, double2 state, double rest, __global const int* order, __global const double* v,
+                             __global const double* density, __global double* pressure, __global float4* at,
+                             __global float4* velocities) {
+    const int k = get_global_id(0);
+    if (k >= count) return;
+    const int i = order[k];
+#ifdef WEIR_TAIT
+    double p = state.x * (pow(density[i] / rest, state.y) - 1);
+#else
+    double p = state.x * (density[i] - rest);
+#endif
+#ifndef WEIR_PULL
+    p = p < 0 ? 0 : p;
+#endif
+    pressure[i] = p;
+    at[k].w = (float)(1 / density[i]);
+    velocities[k] = velocity_of(i, stride, v, p);
+}
+
+/* All forces between particles and of walls, over mass. Of a density that is summed, between particles the gradient of the energy
+   sum_i m e(rho_i), e' = p / rho^2 (Monaghan 1992, eq. 3.3); else the form that goes with continuity. */
+__kernel void sph_forces(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* at,
+                         __global const float4* velocities, __global const int* neighbours, __global const int* list,
+                         __global float4* acceleration) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const float4 me = at[i], u = velocities[i], w = walls_at(me, walls);
+    const float own = (u.w + u.w) * me.w; /* walls push back with the particle's own pressure: no gradient through them */
+    float ax = -own * w.x, ay = -own * w.y, az = -own * w.z;
+#ifdef WEIR_WALL_FORCES
+    if (w.w > 0) {
+        const float x[3] = {me.x, me.y, me.z}, v[3] = {u.x, u.y, u.z};
+        float more[3];
+        sph_wall_force(x, v, u.w, w.w, walls, p, more);
+        ax += more[0], ay += more[1], az += more[2];
+    }
+#endif
+    const int n = neighbours[i];
+    for (int k = 0; k < n; ++k) {
+        const int j = list[(size_t)k * stride + i];
+        const float4 other = at[j], v = velocities[j], d = me - other, du = u - v;
+        const float r2 = SQUARE(d), approach = du.x * d.x + du.y * d.y + du.z * d.z, volumes = me.w * other.w;
+#ifdef WEIR_CONTINUITY
+        const float pressures = (u.w + v.w) * volumes;
+#else
+        const float pressures = u.w * me.w * me.w + v.w * other.w * other.w;
+#endif
+        const float push = sph_push(r2, approach, pressures, 0.5f * (me.w + other.w), p), drag = sph_drag(r2, volumes, p);
+        ax += push * d.x - drag * du.x;
+        ay += push * d.y - drag * du.y;
+        az += push * d.z - drag * du.z;
+    }
+    acceleration[i] = (float4)(ax, ay, az, 0.0f);
+}
+
+#ifdef WEIR_TENSION
+/* Normals of the surface, as sph_normal keeps them, and their squares. Liquid goes on behind walls. */
+__kernel void normals(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* at,
+                      __global const int* neighbours, __global const int* list, __global float4* normal) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const float4 me = at[i];
+    float4 q = walls_at(me, walls);
+    q.w = 0;
+    for (int k = 0; k < neighbours[i]; ++k) {
+        const float4 other = at[list[(size_t)k * stride + i]], d = me - other;
+        const float f = sph_colour(SQUARE(d), other.w, p);
+        q.x += f * d.x;
+        q.y += f * d.y;
+        q.z += f * d.z;
+    }
+    q *= sph_normal(q.x * q.x + q.y * q.y + q.z * q.z, p);
+    q.w = q.x * q.x + q.y * q.y + q.z * q.z;
+    normal[i] = q;
+}
+
+/* v += dt a, a by surface tension */
+__kernel void tension(int count, int stride, __constant SphParams* p, double dt, __global const float4* at, __global const float4* normal,
+                      __global const int* neighbours, __global const int* list, __global const int* order, __global double* v) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const float4 me = at[i], q = normal[i];
+    float4 a = (float4)(0.0f);
+    for (int k = 0; k < neighbours[i]; ++k) {
+        const int j = list[(size_t)k * stride + i];
+        const float4 other = at[j], n = normal[j], d = me - other;
+        const float f = sph_tension(SQUARE(d), me.w * other.w, p), both = q.w + n.w;
+        const float own = q.x * d.x + q.y * d.y + q.z * d.z, others = n.x * d.x + n.y * d.y + n.z * d.z;
+        a += f * (both * d - own * q - others * n);
+    }
+    add_change(i, stride, dt, a, order, v);
+}
+#endif
+
+#pragma OPENCL FP_CONTRACT OFF
+
+/* The forces that the scene names, then v += dt a */
+__kernel void kick(int count, int stride, __constant StateParams* s, double dt, double pull, __global const int* order,
+                   __global const double* x, __global const float4* acceleration, __global double* v) {
+    const int k = get_global_id(0);
+    if (k >= count) return;
+    const int i = order[k];
+    const float4 a = acceleration[k];
+    const float by[3] = {a.x, a.y, a.z};
+    for (int axis = 0; axis < WEIR_DIM; ++axis) {
+        const size_t at = (size_t)axis * stride + i;
+        v[at] = forced(v[at], x[at], dt, pull, s, axis) + dt * (double)by[axis];
+    }
+}
+
+/* Squares of the accelerations by pressure, viscosity and walls. */
+__kernel void accelerations(int count, __global const float4* acceleration, __global double* parts) {
+    __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
+    double largest = 0;
+    for (int k = get_global_id(0); k < count; k += get_global_size(0)) {
+        const float4 a = acceleration[k];
+        largest = larger((double)a.x * a.x + (double)a.y * a.y + (double)a.z * a.z, largest);
+    }
+    reduce_parts(largest, 0, largests, sums, parts);
+}
+
+#ifdef WEIR_CONTINUITY
+/* The new velocities and the density's excess, as the rate reads them. */
+__kernel void load_excess(int count, int stride, double rho0, __global const int* order, __global const double* v,
+                          __global const double* density, __global float4* velocities) {
+    const int k = get_global_id(0);
+    if (k < count) velocities[k] = velocity_of(order[k], stride, v, density[order[k]] - rho0);
+}
+
+/* d rho / dt = rate, from the new velocities and the old places (Colagrossi & Landrini 2003, eq. 10). Behind a wall the velocity's image moves
+   against the particle, as fast: the work of the wall's pressure is then what the particle's volume loses. */
+__kernel void advance_densities(int count, int stride, __constant SphParams* p, __constant WallParams* walls, double dt, double rho0,
+                                __global const float4* at, __global const float4* velocities, __global const int* neighbours,
+                                __global const int* list, __global const int* order, __global double* density) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const float4 me = at[i], u = velocities[i], w = walls_at(me, walls);
+    float rate = 2 * (w.x * u.x + w.y * u.y + w.z * u.z), spread = 0;
+    const int n = neighbours[i];
+    for (int k = 0; k < n; ++k) {
+        const int j = list[(size_t)k * stride + i];
+        const float4 other = at[j], v = velocities[j], d = me - other, du = u - v;
+        const float r2 = SQUARE(d);
+        rate += sph_rate(r2, du.x * d.x + du.y * d.y + du.z * d.z, other.w, p);
+        spread += sph_diffusion(r2, v.w - u.w + p->layers[0] * d.x + p->layers[1] * d.y + p->layers[2] * d.z, other.w, p);
+    }
+    const double rho = density[order[i]];
+    density[order[i]] = density_kept(rho * density_growth(dt * (double)(rate / me.w + spread) / rho), rho0);
+}
+#endif
+
+/* x += dt v. What would enter a wall is put back and loses its speed into it. */
+__kernel void drift(int count, int stride, __constant StateParams* s, double dt, __global double* x, __global double* v) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    for (int axis = 0; axis < WEIR_DIM; ++axis) {
+        const size_t at = (size_t)axis * stride + i;
+        const double free = x[at] + dt * v[at], end = kept_inside(free, s, axis);
+        if (end != free) v[at] = (end - x[at]) / dt;
+        x[at] = end;
+    }
+}

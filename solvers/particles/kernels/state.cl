@@ -1,0 +1,121 @@
+/* Passes over the state: double precision, one array an axis (axis a of particle i stands at a * stride + i). No contraction: the cell of a
+   particle is the one that the processor's path finds. */
+#pragma OPENCL FP_CONTRACT OFF
+
+/* The nearest place inside the walls; what is not a number stays so, and is found. */
+WEIR_FN double kept_inside(double x, __constant StateParams* s, int axis) {
+    double above = x < s->keep_lo[axis] ? s->keep_lo[axis] : x;
+    return s->keep_hi[axis] < above ? s->keep_hi[axis] : above;
+}
+
+/* The forces that the scene names: v + dt f. pull: dt omega^2 */
+WEIR_FN double forced(double u, double x, double dt, double pull, __constant StateParams* s, int axis) {
+#ifdef WEIR_GRAVITY
+    u += dt * s->gravity[axis];
+#endif
+#ifdef WEIR_CENTRAL_FORCE
+    u = u - pull * (x - s->field_centre[axis]);
+#endif
+    return u;
+}
+
+/* v += dt f, x* = x + dt v                                                    Macklin & Mueller 2013, algorithm 1, lines 1-4 */
+__kernel void predict(int count, int stride, __constant StateParams* s, double dt, double pull, __global const double* x,
+                      __global double* v, __global double* x_star) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    for (int a = 0; a < WEIR_DIM; ++a) {
+        const size_t at = (size_t)a * stride + i;
+        const double u = forced(v[at], x[at], dt, pull, s, a);
+        v[at] = u;
+        x_star[at] = kept_inside(x[at] + dt * u, s, a);
+    }
+}
+
+/* The box of all particles: of each group, lo and hi of every axis. A coordinate that is not finite makes its axis infinite. */
+__kernel void range(int count, int stride, __global const double* x, __global double* parts) {
+    __local double lo[WEIR_GROUP], hi[WEIR_GROUP];
+    const int l = get_local_id(0);
+    for (int a = 0; a < WEIR_DIM; ++a) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = get_global_id(0); i < count; i += get_global_size(0)) {
+            const double here = x[(size_t)a * stride + i];
+            low = isfinite(here) ? fmin(low, here) : -INFINITY;
+            high = isfinite(here) ? fmax(high, here) : INFINITY;
+            if (!isfinite(here)) break;
+        }
+        lo[l] = low;
+        hi[l] = high;
+        for (int span = WEIR_GROUP / 2; span > 0; span /= 2) {
+            barrier(CLK_LOCAL_MEM_FENCE);
+            if (l < span) {
+                lo[l] = fmin(lo[l], lo[l + span]);
+                hi[l] = fmax(hi[l], hi[l + span]);
+            }
+        }
+        if (l == 0) {
+            parts[get_group_id(0) * 2 * WEIR_DIM + 2 * a] = lo[0];
+            parts[get_group_id(0) * 2 * WEIR_DIM + 2 * a + 1] = hi[0];
+        }
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+}
+
+/* What is not a number stays so. */
+WEIR_FN double larger(double a, double b) { return a > b || isnan(a) ? a : b; }
+
+/* Of each group: the largest value, its sum. Every item adds its own particles in the same order each time, so sums repeat to the bit. */
+WEIR_FN void reduce_parts(double largest, double sum, __local double* largests, __local double* sums, __global double* parts) {
+    const int l = get_local_id(0);
+    largests[l] = largest;
+    sums[l] = sum;
+    for (int span = WEIR_GROUP / 2; span > 0; span /= 2) {
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (l < span) {
+            largests[l] = larger(largests[l], largests[l + span]);
+            sums[l] += sums[l + span];
+        }
+    }
+    if (l == 0) {
+        parts[2 * get_group_id(0)] = largests[0];
+        parts[2 * get_group_id(0) + 1] = sums[0];
+    }
+}
+
+/* Squares of speeds. 0 x makes a position that is not finite turn the speed into NaN: one sweep finds both. */
+__kernel void speeds(int count, int stride, __global const double* x, __global const double* v, __global double* parts) {
+    __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
+    double largest = 0;
+    for (int i = get_global_id(0); i < count; i += get_global_size(0)) {
+        double square = 0;
+        for (int a = 0; a < WEIR_DIM; ++a) {
+            const size_t at = (size_t)a * stride + i;
+            square += v[at] * v[at] + 0 * (v[at] * x[at]);
+        }
+        largest = larger(square, largest);
+    }
+    reduce_parts(largest, 0, largests, sums, parts);
+}
+
+/* Compression max(0, rho / rest - 1) of the state's densities. */
+__kernel void compressions(int count, double rest, __global const double* density, __global double* parts) {
+    __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
+    double largest = 0, sum = 0;
+    for (int i = get_global_id(0); i < count; i += get_global_size(0)) {
+        const double ratio = density[i] / rest - 1, excess = ratio > 0 ? ratio : 0;
+        largest = larger(excess, largest);
+        sum += excess;
+    }
+    reduce_parts(largest, sum, largests, sums, parts);
+}
+
+/* Rearranges the state: particle k is the former order[k]. */
+__kernel void gather_numbers(int count, int stride, int axes, __global const int* order, __global const double* from, __global double* to) {
+    const int k = get_global_id(0);
+    if (k >= count) return;
+    for (int a = 0; a < axes; ++a) to[(size_t)a * stride + k] = from[(size_t)a * stride + order[k]];
+}
+__kernel void gather_names(int count, __global const int* order, __global const int* from, __global int* to) {
+    const int k = get_global_id(0);
+    if (k < count) to[k] = from[order[k]];
+}

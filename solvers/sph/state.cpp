@@ -1,0 +1,74 @@
+#include "sph/state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::sph {
+
+template <int D>
+particles::single::PbfParams smoothing_params(const particles::single::SphParams& p, const particles::Fluid<D>& fluid) {
+    const real scale = particles::cell_volume<D>(fluid.domain.spacing) / fluid.mass;
+    particles::single::PbfParams s{};
+    s.h = p.h, s.h2 = p.h2, s.guard = p.guard;
+    s.self = static_cast<float>(static_cast<real>(p.self) * scale);
+    s.density = static_cast<float>(static_cast<real>(p.density) * scale);
+    s.gradient = static_cast<float>(static_cast<real>(p.gradient) * scale);
+    return s;
+}
+
+RestDensity::RestDensity(const scene::Scene& scene, real rho0) : rho0_(rho0) {
+    const auto* e = scene.effect("rest_density");
+    if (!e) return;
+    times_ = e->numbers("times");
+    values_ = e->numbers("values");
+    if (times_.size() != values_.size() || times_.empty())
+        scene.refuse("effects.rest_density", "times and values must be lists of the same length, at least one");
+}
+
+real RestDensity::at(real time) const {
+    if (times_.empty()) return rho0_;
+    if (time <= times_.front()) return values_.front();
+    for (std::size_t k = 1; k < times_.size(); ++k)
+        if (time < times_[k]) return values_[k - 1] + (values_[k] - values_[k - 1]) * (time - times_[k - 1]) / (times_[k] - times_[k - 1]);
+    return values_.back();
+}
+
+template <int D>
+void start_pressure(const scene::Scene& scene, const Options& options, particles::Fluid<D>& fluid) {
+    if (!scene.has("initial.surface")) return;
+    if (!options.continuity)
+        scene.refuse("initial.surface", "a density that is summed has the pressure of its particles",
+                     "set scheme.density = \"continuity\"");
+    const Vec<D> surface = scene.vec<D>("initial.surface");
+    for (int i = 0; i < fluid.count(); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        fluid.carried[at] = std::max<real>(0, fluid.rho0 * dot(fluid.gravity, fluid.position(i) - surface));
+        fluid.density[at] = options.density(fluid.carried[at], fluid.rho0);
+    }
+}
+
+template <int D>
+real step_limit(const Options& o, const particles::Fluid<D>& fluid, real speed, real acceleration) {
+    const real s = 0.5 * o.support * fluid.domain.spacing;
+    const real acoustic = 0.4 * s / ((o.sound + speed) * (1 + 0.6 * o.artificial));
+    const real viscous = o.viscosity > 0 ? 0.125 * s * s / o.viscosity : infinity;
+    const real strongest = acceleration + norm(fluid.gravity);
+    return std::min({acoustic, viscous, strongest > 0 ? 0.25 * std::sqrt(s / strongest) : infinity});
+}
+
+template <int D>
+real tension_limit(const Options& o, const particles::Fluid<D>& fluid) {
+    const real s = 0.5 * o.support * fluid.domain.spacing;
+    return o.sigma > 0 ? 0.25 * std::sqrt(fluid.rho0 * s * s * s / (2 * pi * o.sigma)) : infinity;
+}
+
+template particles::single::PbfParams smoothing_params(const particles::single::SphParams&, const particles::Fluid<2>&);
+template particles::single::PbfParams smoothing_params(const particles::single::SphParams&, const particles::Fluid<3>&);
+template void start_pressure(const scene::Scene&, const Options&, particles::Fluid<2>&);
+template void start_pressure(const scene::Scene&, const Options&, particles::Fluid<3>&);
+template real step_limit(const Options&, const particles::Fluid<2>&, real, real);
+template real step_limit(const Options&, const particles::Fluid<3>&, real, real);
+template real tension_limit(const Options&, const particles::Fluid<2>&);
+template real tension_limit(const Options&, const particles::Fluid<3>&);
+
+}  // namespace weir::sph

@@ -1,0 +1,40 @@
+// What a scene of SPH becomes on any backend: the rest density over time, the first pressure, kernels for the passes over velocities,
+// limits of the time step.
+#pragma once
+#include "particles/fluid.hpp"
+#include "particles/passes.hpp"
+#include "sph/options.hpp"
+
+#include <vector>
+
+namespace weir::sph {
+
+/// The kernels of SPH as XSPH and vorticity read them.
+template <int D>
+particles::single::PbfParams smoothing_params(const particles::single::SphParams& params, const particles::Fluid<D>& fluid);
+
+/// The effect rest_density: linear between the given times, constant outside; without it the fluid's own.
+class RestDensity {
+public:
+    RestDensity(const scene::Scene& scene, real rho0);
+    bool constant() const { return times_.empty(); }
+    real at(real time) const;
+
+private:
+    std::vector<double> times_, values_;
+    real rho0_;
+};
+
+/// initial.surface: the pressure of a liquid at rest below it, and the densities that go with that.
+template <int D>
+void start_pressure(const scene::Scene& scene, const Options& options, particles::Fluid<D>& fluid);
+
+/// The limits of Monaghan 1992 and Morris 1997 with the smoothing length s = support / 2: sound, viscosity, force.
+template <int D>
+real step_limit(const Options& options, const particles::Fluid<D>& fluid, real speed, real acceleration);
+
+/// The period of the shortest capillary wave that the support holds (Brackbill, Kothe & Zemach 1992).
+template <int D>
+real tension_limit(const Options& options, const particles::Fluid<D>& fluid);
+
+}  // namespace weir::sph

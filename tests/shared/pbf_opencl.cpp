@@ -1,0 +1,63 @@
+// The bodies shared by all backends, on the first OpenCL device; and what is true of a device alone.
+#include "pbf/device_solver.hpp"
+#include "shared/device.hpp"
+
+#include <string>
+
+namespace weir::test {
+namespace {
+constexpr const char* backend = "opencl";
+template <int D>
+using Pbf = pbf::DevicePbfSolver<D>;
+std::string missing() { return missing_device(); }
+}  // namespace
+}  // namespace weir::test
+
+#include "shared/pbf_bodies.hpp"
+
+TEST_IN_2D_AND_3D("the order of sorted particles is that of the processor's path, also where thousands share a cell") {
+    NEEDS_BACKEND;
+    for (const real squeeze : {1.0, 0.3, 0.01}) {
+        auto here = on_backend<D>(test::box<D>(1, 1, 1), "settle = 0");
+        auto there = test::on_sse2<D>(test::box<D>(1, 1, 1), "settle = 0");
+        for (Fluid<D>* fluid : {&here->fluid(), &there->fluid()}) {
+            test::disturb(*fluid);
+            for (int i = 0; i < fluid->count(); ++i)
+                Fluid<D>::put(fluid->x, i, Vec<D>::constant(0.5) + squeeze * (fluid->position(i) - Vec<D>::constant(0.5)));
+        }
+        here->step(0.001), there->step(0.001);
+        EXPECT_EQ(here->on_device().sorted_order(), there->pairs().particle_order()) << squeeze;
+    }
+}
+
+TEST_IN_2D_AND_3D("what a device lacks is refused by name, all of it at once, and never run on the processor") {
+    const std::string at = D == 2 ? "[0.75, 0.3]" : "[0.75, 0.3, 0.5]", along = D == 2 ? "[1, 0]" : "[1, 0, 0]";
+    const std::string ball = "{ shape = \"sphere\", centre = " + at + ", radius = 0.2";
+    const std::string more = "solids = [" + ball + " }]\nemitters = [" + ball + ", velocity = " + along + " }]\nsinks = [" + ball +
+                             " }]\nsides = { x_min = { kind = \"periodic\" }, x_max = { kind = \"periodic\" } }";
+    try {
+        on_backend<D>(test::box<D>(0.5, 1, 1), "", more);
+        ADD_FAILURE() << "was not refused";
+    } catch (const scene::BadScene& refused) {
+        for (const char* what : {"solids", "emitters", "sinks", "periodic sides"})
+            EXPECT_NE(std::string(refused.what()).find("the backend opencl has no " + std::string(what)), std::string::npos)
+                << refused.what();
+    }
+}
+
+TEST("the dam break of the cases, at half its resolution: ten steps on the device and on threads end within 1e-4 of the support") {
+    NEEDS_BACKEND;
+    const auto read = [](const char* on) {
+        return scene::read(WEIR_SOURCE_DIR "/cases/dam_break_particles", {pbf::kind().schema},
+                           {{"grid.cells", "[48, 32, 17]"}, {"grid.size", "[3.0, 2.0, 1.0625]"}, {"scheme.backend", on}});
+    };
+    pbf::DevicePbfSolver<3> here(read("opencl"));
+    pbf::PbfSolver<3> there(read("threads"));
+    ASSERT_EQ(here.fluid().count(), 4096);
+    for (int s = 0; s < 10; ++s) here.step(0.002), there.step(0.002);
+    EXPECT_EQ(here.fluid().id, there.fluid().id);
+    const real h = here.options().support * here.fluid().domain.spacing, worst = test::farthest_apart(here.fluid(), there.fluid());
+    // coordinates of up to 12 h are rounded to 7e-7 h in each of five passes a step, and that stays as speed: 55 times 1.6e-6 h
+    EXPECT_LE(worst, 1e-4 * h);
+    testing::Test::RecordProperty("farthest_over_support", fmt::format("{:.3g}", worst / h));
+}

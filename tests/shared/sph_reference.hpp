@@ -1,0 +1,106 @@
+// One step of SPH by the plain double-precision reference over all pairs, from any state: what every backend is compared with; and scenes
+// in which each term of the physics acts.
+#pragma once
+#include "particles/reference.hpp"
+#include "scene/scene.hpp"
+#include "sph/solver.hpp"
+
+#include <fmt/core.h>
+
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace weir::test {
+
+using particles::Fluid;
+using particles::Point;
+
+/// A block of liquid in a box of 8 x 12 [x 8] spacings of 1/8 m.
+template <int D>
+scene::Scene sph_scene(const std::string& scheme, const std::string& effects) {
+    const std::string text = fmt::format(
+        "title = \"test\"\nsolver = \"sph\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime = {{ end = 10.0, dt = 0.002 }}\n"
+        "fluid = {{ density = 1000.0, viscosity = 0.01 }}\nliquid = [{{ shape = \"box\", min = {}, max = {} }}]\nscheme = {{ {} }}\n{}\n",
+        D, D == 2 ? "[8, 12]" : "[8, 12, 8]", D == 2 ? "[1, 1.5]" : "[1, 1.5, 1]", D == 2 ? "[0.25, 0.25]" : "[0.25, 0.25, 0.25]",
+        D == 2 ? "[1, 1]" : "[1, 1, 1]", scheme, effects);
+    return scene::parse(text, "test.toml", {sph::kind().schema});
+}
+
+template <int D>
+void shake(Fluid<D>& fluid, real amount) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<real> jitter(-1, 1);
+    for (int i = 0; i < fluid.count(); ++i) {
+        Vec<D> x = fluid.position(i), u{};
+        for (int a = 0; a < D; ++a) x[a] += amount * fluid.domain.spacing * jitter(random), u[a] = 0.2 * jitter(random);
+        Fluid<D>::put(fluid.x, i, fluid.domain.kept(x));
+        Fluid<D>::put(fluid.v, i, u);
+        fluid.density[static_cast<std::size_t>(i)] = fluid.rho0 * (1 + 0.02 * jitter(random));  // continuity starts from it
+    }
+}
+
+/// The state in the reference's coordinates.
+template <int D>
+std::pair<std::vector<Point>, std::vector<Point>> points_of(const Fluid<D>& fluid) {
+    std::vector<Point> x, v;
+    for (int i = 0; i < fluid.count(); ++i) {
+        x.push_back({0, 0, 0}), v.push_back({0, 0, 0});
+        for (int a = 0; a < D; ++a) {
+            x.back()[static_cast<std::size_t>(a)] = fluid.position(i)[a] - fluid.domain.centre()[a];
+            v.back()[static_cast<std::size_t>(a)] = fluid.velocity(i)[a];
+        }
+    }
+    return {x, v};
+}
+
+/// One step by the double reference: densities, and positions before walls keep them.
+template <int D>
+std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Options& o, const Fluid<D>& before, real dt) {
+    const real d = before.domain.spacing;
+    particles::ReferenceSph reference;
+    reference.p = sph::sph_params<particles::plain::SphParams, D>(o, d, before.rho0);
+    reference.walls =
+        before.domain.template walls<particles::plain::WallParams>(sph::density_kernel<D>(o, d), sph::gradient_kernel<D>(o, d));
+    reference.kernel = static_cast<int>(o.smoothing);
+    reference.summed = !o.continuity;
+    const auto [x, v] = points_of(before);
+    std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
+    for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
+    const auto acceleration = reference.accelerations(x, v, rho, pressure);
+    const auto tension = reference.tensions(x, rho);
+    std::vector<Point> moved = v;
+    std::vector<Vec<D>> after;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        after.push_back(before.position(static_cast<int>(i)));
+        for (std::size_t a = 0; a < D; ++a) {
+            moved[i][a] += dt * (acceleration[i][a] + tension[i][a] + o.gravity[a]);
+            after.back()[static_cast<int>(a)] += dt * moved[i][a];
+        }
+    }
+    if (o.continuity) {
+        const auto rate = reference.rates(x, moved, before.density, before.rho0);
+        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] += dt * rate[i];
+    }
+    return {rho, after};
+}
+
+/// Each pair term, and each wall term, in some scene.
+struct Physics {
+    const char *scheme, *effects;
+};
+template <int D>
+std::vector<Physics> all_physics() {
+    const bool flat = D == 2;
+    return {{"density = \"summation\"", "effects.viscosity = {}\neffects.artificial_viscosity = { alpha = 0.1 }"},
+            {"density = \"continuity\", tension = true",
+             "effects.density_diffusion = { delta = 0.5 }\neffects.surface_tension = { sigma = 50 }"},
+            {"density = \"continuity\"",
+             flat ? "effects.gravity = { g = [3, -9.81] }\neffects.density_diffusion = {}\neffects.viscosity = {}\n"
+                    "sides.x_max = { kind = \"wall\", slip = \"no\" }\nsides.y_max = { kind = \"moving_wall\", velocity = [2, 0] }"
+                  : "effects.gravity = { g = [3, -9.81, 1] }\neffects.density_diffusion = {}\neffects.viscosity = {}\n"
+                    "sides.z_max = { kind = \"wall\", slip = \"no\" }\nsides.x_max = { kind = \"moving_wall\", velocity = [0, 2, 1] }"}};
+}
+
+}  // namespace weir::test
