@@ -8,6 +8,7 @@
 #include "mac/state.hpp"
 
 #include <array>
+#include <vector>
 
 namespace weir::mac {
 
@@ -26,8 +27,12 @@ private:
     void set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     /// (K u)_a at a face [1/s² × fraction]; `fixed` 1: prescribed values of walls count, 0: they are zero (for corrections).
     real stress_divergence(const Faces& u, int a, const Index<D>& I, real fixed) const;
+    bool is_inner(int a, const Index<D>& I) const;
+    real inner_stress_divergence(const Faces& u, int a, const Index<D>& I) const;
     real shear(const Faces& u, int a, int b, const Index<D>& I, real fixed) const;
     const Grid<real, D>& edge(int a, int b) const { return edge_[static_cast<std::size_t>(a + b - 1)]; }
+    real diagonal(int a, const Index<D>& I) const;
+    void list_unknowns();
     void solve(real dt_nu);
     real dot(const Faces& p, const Faces& q) const;
     template <class F>
@@ -38,9 +43,10 @@ private:
     real theta_;
     bool solids_stick_;
     int iterations_ = 0;
-    Grid<real, D> cell_;                      // liquid fraction of cells
-    std::array<Grid<real, D>, edges> edge_;   // ... of the boxes about edges, 0 where no shear acts
-    Faces mass_, x_, r_, p_, ap_, diagonal_;  // mass_ < 0: not an unknown
+    Grid<real, D> cell_;                            // liquid fraction of cells
+    std::array<Grid<real, D>, edges> edge_;         // ... of the boxes about edges, 0 where no shear acts
+    Faces mass_, x_, r_, p_, ap_, diagonal_;        // mass_ < 0: not an unknown
+    std::array<std::vector<Index<D>>, D> unknown_;  // faces that liquid or its stress reaches
 };
 
 }  // namespace weir::mac
