@@ -15,8 +15,7 @@ namespace {
 
 constexpr const char* how_to =
     "install the OpenCL driver of your GPU's vendor, or pocl-opencl-icd, which runs kernels on the processor; `weir list devices` shows "
-    "what is "
-    "found";
+    "what is found";
 
 const char* name_of(cl_int error) {
     switch (error) {
@@ -186,7 +185,7 @@ void OpenClDevice::compile(const std::string& program, const std::string& define
     std::string log(size, '\0');
     clGetProgramBuildInfo(program_, device_, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
     throw BadInput("OpenCL: the driver of " + info_.name + " (" + info_.driver + ") does not compile the kernels, error " +
-                             std::to_string(error) + ":\n" + log.c_str());
+                   std::to_string(error) + ":\n" + log.c_str());
 }
 
 Memory OpenClDevice::alloc(std::size_t bytes) {

@@ -35,17 +35,17 @@ inline int add(const char* file, int line, const std::string& sentence, void (*b
 #define WEIR_JOIN_(a, b) a##b
 #define WEIR_JOIN(a, b) WEIR_JOIN_(a, b)
 
-#define TEST(sentence)                                                                        \
-    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                       \
-    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                 \
+#define TEST(sentence)                                                                             \
+    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                            \
+    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                      \
         weir::test::add(__BASE_FILE__, __LINE__, sentence, &WEIR_JOIN(weir_test_body_, __LINE__)); \
     static void WEIR_JOIN(weir_test_body_, __LINE__)()
 
-#define TEST_IN_2D_AND_3D(sentence)                                                                                         \
-    template <int D>                                                                                                        \
-    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                                                     \
-    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                                               \
+#define TEST_IN_2D_AND_3D(sentence)                                                                                              \
+    template <int D>                                                                                                             \
+    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                                                          \
+    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                                                    \
         weir::test::add(__BASE_FILE__, __LINE__, std::string(sentence) + " [2D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 2 >) + \
         weir::test::add(__BASE_FILE__, __LINE__, std::string(sentence) + " [3D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 3 >);  \
-    template <int D>                                                                                                        \
+    template <int D>                                                                                                             \
     static void WEIR_JOIN(weir_test_body_, __LINE__)()

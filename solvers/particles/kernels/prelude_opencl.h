@@ -1,5 +1,5 @@
-/* Compiles the pair physics as OpenCL C 1.2, one particle a work item. Defines from the host: WEIR_DIM, WEIR_KERNEL (0: Mueller's, 1: cubic,
-   2: Wendland), WEIR_GROUP (work items of a group that reduces or scans), and one for each effect that the scene names. */
+/* Compiles the pair physics as OpenCL C 1.2, one particle a work item. Defines from the host: WEIR_DIM, WEIR_KERNEL (0: Mueller's, 1:
+   cubic, 2: Wendland), WEIR_GROUP (work items of a group that reduces or scans), and one for each effect that the scene names. */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #define SCALAR float
 #define REAL float
