@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# weir's front door: ./weir.sh build | run SCENE [...] | validate [...] | cost [...] | plan CASE --budget 16ms --error 2% | stability [...] | report | picture RESULT [...] | list ... | describe ... | test [...] | install DIR
+# weir's front door: ./weir.sh build | run SCENE [...] | validate [...] | cost [...] | plan CASE --budget 16ms --error 2% | stability [...] | report | picture RESULT [...] | view RESULT [...] | list ... | describe ... | test [...] | install DIR
 # Each call installs what is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a second call re-does only
 # what changed. The executable is build/release/weir.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 
 packages=(g++ cmake ninja-build ccache git libeigen3-dev libfmt-dev libgtest-dev libbenchmark-dev librapidcheck-dev libtomlplusplus-dev libcli11-dev
-          nlohmann-json3-dev opencl-headers ocl-icd-opencl-dev pocl-opencl-icd oclgrind libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libhypre-dev libnanoflann-dev libvtk9-dev gnuplot-nox)
+          nlohmann-json3-dev opencl-headers ocl-icd-opencl-dev pocl-opencl-icd oclgrind libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libhypre-dev libnanoflann-dev libvtk9-dev xvfb xauth gnuplot-nox)
 
 install_missing() {
     if ! command -v dpkg-query >/dev/null; then
@@ -43,7 +43,7 @@ usage() {
 
 case "${1:-}" in
     build) build ;;
-    run | validate | cost | plan | stability | report | picture | list | describe) build weir >&2 && exec "$here/build/release/weir" "$@" ;;
+    run | validate | cost | plan | stability | report | picture | view | list | describe) build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     test) # threads that wait sleep: tests share the machine with other work, and spinning starves the thread that is waited for
         export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
         build && cd "$here/build/release" && exec ctest --output-on-failure "${@:2}" ;;

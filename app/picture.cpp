@@ -1,15 +1,11 @@
 // weir picture RESULT: one frame, or a row of frames, of a finished (or running) run as PNG.
 #include "app/commands.hpp"
 #include "app/picture/view.hpp"
+#include "app/run_folder.hpp"
 #include "core/error.hpp"
-#include "scene/scene.hpp"
-#include "sim/registry.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <memory>
-
-#include <nlohmann/json.hpp>
 
 namespace weir::app {
 
@@ -20,25 +16,6 @@ struct PictureArguments {
     double time = -1, range = 0;
     int size = 900, sheet = 1;
 };
-
-/// The scene as run.json keeps it.
-scene::Scene scene_of_run(const std::filesystem::path& folder) {
-    std::ifstream file(folder / "run.json");
-    const auto j = nlohmann::json::parse(file, nullptr, false);
-    if (!j.is_object() || !j.contains("scene"))
-        throw BadInput(folder.string() + " is not the folder of a run: it has no readable run.json");
-    std::vector<scene::Override> overrides;
-    for (const auto& text : j["scene"]["overrides"]) overrides.push_back(scene::to_override(text.get<std::string>()));
-    return scene::parse(j["scene"]["source"].get<std::string>(), j["scene"]["file"].get<std::string>(), sim::schemas(), overrides);
-}
-
-/// The last frame at or before `time`; the last of all where none is asked for.
-std::size_t frame_at(const std::vector<real>& times, double time) {
-    if (time < 0) return times.size() - 1;
-    std::size_t frame = 0;
-    while (frame + 1 < times.size() && times[frame + 1] <= time * (1 + 1e-9)) ++frame;
-    return frame;
-}
 
 /// One frame, or `sheet` frames evenly spread over the run's times.
 std::vector<std::size_t> frames_of(const std::vector<real>& times, const PictureArguments& arguments) {

@@ -29,14 +29,20 @@ function(weir_library name)
   set_property(GLOBAL APPEND PROPERTY WEIR_LIBRARIES weir_${name})
 endfunction()
 
-# weir_test(KIND NAME SOURCES a.cpp ... LINKS ... [LABELS ...] [ENVIRONMENT ...])  builds one program KIND_NAME; each source file is one
-# ctest entry, named KIND.NAME.file, that runs the tests of that file.
-function(weir_test kind name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LINKS;LABELS;ENVIRONMENT" ${ARGN})
+# weir_test_program(KIND NAME SOURCES a.cpp ... LINKS ...)  builds the program of tests KIND_NAME, which no ctest entry runs yet.
+function(weir_test_program kind name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${kind}_${name} ${arg_SOURCES})
   target_include_directories(${kind}_${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${kind}_${name} PRIVATE weir_flags weir_test_main ${arg_LINKS})
   target_compile_definitions(${kind}_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WEIR_BINARY_DIR="${PROJECT_BINARY_DIR}")
+endfunction()
+
+# weir_test(KIND NAME SOURCES a.cpp ... LINKS ... [LABELS ...] [ENVIRONMENT ...])  builds one program KIND_NAME; each source file is one
+# ctest entry, named KIND.NAME.file, that runs the tests of that file.
+function(weir_test kind name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LINKS;LABELS;ENVIRONMENT" ${ARGN})
+  weir_test_program(${kind} ${name} SOURCES ${arg_SOURCES} LINKS ${arg_LINKS})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()

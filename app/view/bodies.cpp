@@ -1,0 +1,120 @@
+// What the viewer's stage shows in space: clouds of a 3D grid's field, the scene's solids, the outline of the domain.
+#include "app/view/stage.hpp"
+#include "geometry/solids.hpp"
+
+#include <vtkActor.h>
+#include <vtkClipDataSet.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkContourFilter.h>
+#include <vtkDataSetMapper.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkLookupTable.h>
+#include <vtkOutlineSource.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+#include <vtkSmartVolumeMapper.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::view {
+
+namespace {
+
+/// Signed distance to the solids [m] on a lattice of `step` [m] over the box.
+template <int D>
+vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, real time, const std::array<real, 6>& box, real step) {
+    geometry::Solids<D> solids(scene.root().tables("solids"));
+    if (solids.empty()) return nullptr;
+    solids.set_time(time);
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    std::array<int, 3> n{1, 1, 1};
+    for (std::size_t a = 0; a < D; ++a) n[a] = 1 + static_cast<int>(std::ceil((box[2 * a + 1] - box[2 * a]) / step - 1e-9));
+    image->SetDimensions(n.data());
+    image->SetOrigin(box[0], box[2], box[4]);
+    image->SetSpacing(step, step, step);
+    vtkNew<vtkFloatArray> values;
+    values->SetNumberOfTuples(image->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+        Vec<D> x;
+        for (int a = 0; a < D; ++a) x[a] = image->GetPoint(i)[a];
+        values->SetValue(i, static_cast<float>(solids.distance(x)));
+    }
+    image->GetPointData()->SetScalars(values);
+    return image;
+}
+
+}  // namespace
+
+void Stage::add_solids(real time) {
+    const bool flat = dim() == 2;
+    const real longest = std::max({domain_[1] - domain_[0], domain_[3] - domain_[2], domain_[5] - domain_[4]});
+    const real step = std::max(0.5 * cell_, longest / (flat ? 600 : 160));
+    const auto image = flat ? distances<2>(scene_, time, domain_, step) : distances<3>(scene_, time, domain_, step);
+    if (!image) return;
+    vtkNew<vtkDataSetMapper> mapper;
+    if (flat) {
+        vtkNew<vtkClipDataSet> inside;
+        inside->SetInputData(image);
+        inside->SetValue(0);
+        inside->InsideOutOn();
+        mapper->SetInputConnection(inside->GetOutputPort());
+    } else {
+        vtkNew<vtkContourFilter> surface;
+        surface->SetInputData(image);
+        surface->SetValue(0, 0);
+        mapper->SetInputConnection(surface->GetOutputPort());
+    }
+    mapper->ScalarVisibilityOff();
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(0.55, 0.57, 0.61);
+    if (flat) actor->GetProperty()->LightingOff(), actor->SetPosition(0, 0, cell_);  // in front of markers
+    mapper->Update();
+    add(actor.Get());
+}
+
+void Stage::add_cloud(const Frame& frame, const std::string& field) {
+    const auto shown = coloured(frame.grid, frame, field);
+    if (!shown) return;
+    widen(shown);
+    set_colours(field);
+    vtkNew<vtkColorTransferFunction> colour;
+    vtkNew<vtkPiecewiseFunction> opacity;
+    for (int i = 0; i <= 16; ++i) {
+        const real value = low_ + (high_ - low_) * i / 16;
+        double rgb[3];
+        colours_->GetColor(value, rgb);
+        colour->AddRGBPoint(value, rgb[0], rgb[1], rgb[2]);
+        opacity->AddPoint(value, 0.6 * (low_ < 0 ? std::abs(2 * i / 16.0 - 1) : i / 16.0));
+    }
+    vtkNew<vtkVolume> volume;
+    volume->GetProperty()->SetColor(colour);
+    volume->GetProperty()->SetScalarOpacity(opacity);
+    volume->GetProperty()->SetInterpolationTypeToLinear();
+    volume->GetProperty()->SetScalarOpacityUnitDistance(4 * cell_);
+    vtkNew<vtkSmartVolumeMapper> mapper;
+    mapper->SetInputData(shown);
+    volume->SetMapper(mapper);
+    add(volume.Get());
+}
+
+void Stage::add_outline() {
+    vtkNew<vtkOutlineSource> outline;
+    outline->SetBounds(domain_.data());
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputConnection(outline->GetOutputPort());
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(0.35, 0.38, 0.42);
+    actor->GetProperty()->LightingOff();
+    renderer_->AddActor(actor);
+}
+
+}  // namespace weir::view

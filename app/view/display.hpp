@@ -1,0 +1,9 @@
+// Whether there is a display to draw on.
+#pragma once
+
+namespace weir::view {
+
+/// Throws BadInput that says what is missing and how to draw without a screen; VTK would abort.
+void need_display();
+
+}  // namespace weir::view

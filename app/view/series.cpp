@@ -1,0 +1,112 @@
+#include "app/view/series.hpp"
+
+#include "core/error.hpp"
+#include "output/read_frame.hpp"
+#include "output/series_file.hpp"
+
+#include <vtkCellData.h>
+#include <vtkCellDataToPointData.h>
+#include <vtkDataArray.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkProbeFilter.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::view {
+
+namespace {
+
+template <class Reader>
+auto opened(const std::filesystem::path& file) {
+    vtkNew<Reader> reader;
+    if (!reader->CanReadFile(file.c_str())) throw BadInput(file.string() + ": cannot read this frame");
+    reader->SetFileName(file.c_str());
+    reader->Update();
+    return vtkSmartPointer(reader->GetOutput());
+}
+
+std::string array_of(const std::string& field) { return field == "speed" ? "velocity" : field; }
+
+void add_names(vtkDataSetAttributes* data, std::vector<std::string>& names) {
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+        if (!data->GetArray(i)) continue;
+        const std::string array = data->GetArrayName(i), name = array == "velocity" ? "speed" : array;
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+}
+
+/// A number a tuple: itself, or its length.
+vtkSmartPointer<vtkFloatArray> numbers(vtkDataArray& array) {
+    auto values = vtkSmartPointer<vtkFloatArray>::New();
+    values->SetName("shown");
+    values->SetNumberOfTuples(array.GetNumberOfTuples());
+    for (vtkIdType i = 0; i < array.GetNumberOfTuples(); ++i) {
+        double sum = 0;
+        for (int c = 0; c < array.GetNumberOfComponents(); ++c) sum += array.GetComponent(i, c) * array.GetComponent(i, c);
+        values->SetValue(i, static_cast<float>(array.GetNumberOfComponents() == 1 ? array.GetComponent(i, 0) : std::sqrt(sum)));
+    }
+    return values;
+}
+
+/// The grid with its cells' values carried to their corners.
+vtkSmartPointer<vtkDataSet> at_points(vtkImageData* grid, const std::string& array) {
+    vtkNew<vtkImageData> only;
+    only->CopyStructure(grid);
+    only->GetCellData()->AddArray(grid->GetCellData()->GetArray(array.c_str()));
+    vtkNew<vtkCellDataToPointData> corners;
+    corners->SetInputData(only);
+    corners->Update();
+    return corners->GetOutput();
+}
+
+}  // namespace
+
+Series::Series(std::filesystem::path folder) : folder_(std::move(folder)), times_(output::frame_times(folder_)) {}
+
+Frame Series::read(std::size_t number) const {
+    Frame frame;
+    for (const auto& name : output::series_in(folder_)) {
+        const auto entries = output::read_series(folder_ / name);
+        if (number >= entries.size()) throw BadInput((folder_ / name).string() + " has only " + std::to_string(entries.size()) + " frames");
+        const auto file = folder_ / entries[number].file;
+        frame.time = entries[number].time;
+        if (file.extension() == ".vtp") frame.particles[name.stem().string()] = opened<vtkXMLPolyDataReader>(file);
+        if (name.stem() == "grid") frame.grid = opened<vtkXMLImageDataReader>(file);
+    }
+    return frame;
+}
+
+std::vector<std::string> field_names(const Frame& frame) {
+    std::vector<std::string> names;
+    if (frame.grid) add_names(frame.grid->GetCellData(), names);
+    for (const auto& [set, points] : frame.particles) add_names(points->GetPointData(), names);
+    return names;
+}
+
+vtkSmartPointer<vtkDataSet> coloured(vtkDataSet* data, const Frame& frame, const std::string& field) {
+    const std::string array = array_of(field);
+    vtkSmartPointer<vtkDataSet> with = data;
+    if (!data->GetPointData()->GetArray(array.c_str())) {
+        if (!frame.grid || !frame.grid->GetCellData()->GetArray(array.c_str())) return nullptr;
+        with = at_points(frame.grid, array);
+        if (data != frame.grid.Get()) {
+            vtkNew<vtkProbeFilter> probe;
+            probe->SetInputData(data);
+            probe->SetSourceData(with);
+            probe->Update();
+            with = probe->GetOutput();
+        }
+    }
+    vtkSmartPointer<vtkDataSet> copy;
+    copy.TakeReference(data->NewInstance());
+    copy->CopyStructure(data);
+    copy->GetPointData()->SetScalars(numbers(*with->GetPointData()->GetArray(array.c_str())));
+    return copy;
+}
+
+}  // namespace weir::view

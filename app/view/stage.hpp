@@ -1,0 +1,62 @@
+// What stands in the viewer's window: particles as spheres, a grid as a coloured sheet (2D) or a cloud (3D), the scene's solids, the
+// outline of the domain, a scale, and a line of text.
+#pragma once
+#include "app/view/series.hpp"
+#include "scene/scene.hpp"
+
+#include <vtkNew.h>
+#include <vtkSmartPointer.h>
+
+#include <array>
+#include <vector>
+
+class vtkActor;
+class vtkLookupTable;
+class vtkProp;
+class vtkRenderer;
+class vtkScalarBarActor;
+class vtkTextActor;
+
+namespace weir::view {
+
+enum class Show { particles, grid, both };
+
+class Stage {
+public:
+    explicit Stage(scene::Scene scene);
+    ~Stage();
+
+    vtkRenderer* renderer() { return renderer_; }
+    int dim() const { return scene_.dim(); }
+    /// Replaces what is shown. The scale grows with the fields seen, so that colours keep their meaning from frame to frame.
+    void show(const Frame& frame, const std::string& field, Show what);
+    /// The next frame shown sets the scale anew.
+    void forget_range();
+    /// Looks at the whole domain: from the front (2D), from in front and above (3D).
+    void look_at_all();
+    void tell(const std::string& text);
+    /// Values of the scale's two ends.
+    std::array<real, 2> range() const { return {low_, high_}; }
+
+private:
+    void add_particles(const Frame& frame, vtkPolyData* points, const std::string& field);
+    void add_sheet(const Frame& frame, const std::string& field);
+    void add_cloud(const Frame& frame, const std::string& field);
+    void add_solids(real time);
+    void add_outline();
+    void widen(vtkDataSet* shown);
+    void set_colours(const std::string& field);
+    void add(vtkSmartPointer<vtkProp> prop);
+
+    scene::Scene scene_;
+    std::array<real, 6> domain_{};  // x0 x1 y0 y1 z0 z1 [m]
+    real cell_ = 1;                 // shortest side of a cell of the scene [m]
+    vtkNew<vtkRenderer> renderer_;
+    vtkNew<vtkLookupTable> colours_;
+    vtkNew<vtkScalarBarActor> scale_;
+    vtkNew<vtkTextActor> text_;
+    std::vector<vtkSmartPointer<vtkProp>> props_;  // of this frame
+    real low_ = infinity, high_ = -infinity;
+};
+
+}  // namespace weir::view
