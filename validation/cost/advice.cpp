@@ -49,6 +49,9 @@ std::string in_real_time(const Study& study, const Points& by_price) {
         return fmt::format("Nothing here runs in real time; {} comes nearest with {}.", plain(*by_price.front()),
                            in_frames(*by_price.front()));
     const auto best = *std::min_element(fast.begin(), fast.end(), [](auto* a, auto* b) { return a->error < b->error; });
+    if (const auto as_good = std::count_if(fast.begin(), fast.end(), [&](auto* p) { return p->error <= study.known_to; }); as_good > 0)
+        return fmt::format("{} of {} settings run in real time, {} of them as near to the reference as it is known itself.", fast.size(),
+                           by_price.size(), as_good);
     return fmt::format("{} of {} settings run in real time; the most accurate of them is {}: {} = {:.3g}, for {}.", fast.size(),
                        by_price.size(), plain(*best), study.error, best->error, in_frames(*best));
 }
@@ -56,10 +59,15 @@ std::string in_real_time(const Study& study, const Points& by_price) {
 std::string along_the_front(const Study& study, const Points& by_price) {
     Points front;
     std::copy_if(by_price.begin(), by_price.end(), std::back_inserter(front), [](auto* p) { return p->on_front; });
-    if (front.size() < 2) return fmt::format("{} is both the cheapest and the most accurate.", plain(*front.front()));
     const CostPoint &from = *front.front(), &to = *front.back();
-    return fmt::format("From {}, the cheapest, to {}, the most accurate, the error falls {:.3g} times for {:.3g} times the time.",
-                       plain(from), plain(to), from.error / to.error, to.price(study.price) / from.price(study.price));
+    const bool to_the_limit = to.error <= study.known_to;
+    if (front.size() < 2)
+        return fmt::format(
+            "{} is {}.", plain(from),
+            to_the_limit ? "the cheapest, and as near to the reference as it is known" : "both the cheapest and the most accurate");
+    return fmt::format("From {}, the cheapest, to {}, {}, the error falls {:.3g} times for {:.3g} times the time.", plain(from), plain(to),
+                       to_the_limit ? "as near to the reference as it is known" : "the most accurate", from.error / to.error,
+                       to.price(study.price) / from.price(study.price));
 }
 
 /// Where most methods are no more accurate at their dearest setting than at their cheapest, that is what to know; nothing otherwise.
@@ -69,9 +77,10 @@ std::string that_finer_does_not_pay(const Study& study, const Points& by_price) 
     std::size_t refined = 0, worse = 0;
     double least = infinity, most = 0;
     for (const auto& [method, end] : ends) {
-        if (end.first == end.second) continue;
+        const real first = study.told(end.first->error), last = study.told(end.second->error);
+        if (end.first == end.second || std::max(first, last) <= study.known_to) continue;  // nothing can be told of it
         ++refined;
-        if (end.second->error < end.first->error) continue;
+        if (last < first) continue;
         const double times = end.second->price(study.price) / end.first->price(study.price);
         ++worse, least = std::min(least, times), most = std::max(most, times);
     }
@@ -80,6 +89,15 @@ std::string that_finer_does_not_pay(const Study& study, const Points& by_price) 
         "A finer setting does not pay here: the dearest of {} of {} methods is no more accurate than its cheapest, at {:.2g} to "
         "{:.2g} times the price.",
         worse, refined, least, most);
+}
+
+/// What the reference cannot tell, where it has a limit that settings reach.
+std::string below_what_is_known(const Study& study, const Points& by_price) {
+    const auto within = [&](const CostPoint* p) { return p->error <= study.known_to; };
+    const auto first = std::find_if(by_price.begin(), by_price.end(), within);
+    if (first == by_price.end()) return "";
+    return fmt::format("{} of {} settings lie within {:g}, where this reference cannot rank them ({}); the cheapest of them is {}.",
+                       std::count_if(first, by_price.end(), within), by_price.size(), study.known_to, study.known_why, plain(**first));
 }
 
 }  // namespace
@@ -96,8 +114,12 @@ std::vector<std::string> advice(const StudyResult& result) {
     if (study.price == Price::second) sentences.push_back(in_real_time(study, by_price));
     const std::string in_vain = that_finer_does_not_pay(study, by_price);
     sentences.push_back(in_vain.empty() ? along_the_front(study, by_price) : in_vain);
-    if (const auto failed = result.points.size() - by_price.size(); failed > 0)
+    if (const std::string limit = below_what_is_known(study, by_price); !limit.empty()) sentences.push_back(limit);
+    const auto count = [&](auto holds) { return std::count_if(result.points.begin(), result.points.end(), holds); };
+    if (const auto failed = count([](const CostPoint& p) { return p.failure && p.was_run(); }); failed > 0)
         sentences.push_back(fmt::format("{} of {} settings failed: see the table.", failed, result.points.size()));
+    if (const auto missing = count([](const CostPoint& p) { return !p.was_run(); }); missing > 0)
+        sentences.push_back(fmt::format("{} of {} settings could not be run here: the table says why.", missing, result.points.size()));
     return sentences;
 }
 

@@ -6,8 +6,8 @@
 #include "scene/names.hpp"
 #include "validation/cost/report_table.hpp"
 #include "validation/cost/tables.hpp"
+#include "validation/page/sections.hpp"
 #include "validation/report/command.hpp"
-#include "validation/report/svg.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -47,11 +47,7 @@ void write_outputs(const StudyResult& result, const json& study, const std::file
     const std::string& name = result.study.name;
     output::write_file(out / (name + ".csv"), cost_csv(result));
     output::write_file(out / (name + ".json"), study.dump(1) + "\n");
-    try {
-        draw(fmt::format("{} ({})", name, study["size"].get<std::string>()), cost_panels(result), out / (name + ".svg"));
-    } catch (const OutputError& failed) {
-        std::fprintf(stderr, "%s\n", failed.what());  // the numbers stand without their picture
-    }
+    output::write_file(out / (name + ".svg"), cost_figure(study));
 }
 
 json read_json(const std::filesystem::path& file) {

@@ -1,5 +1,6 @@
 #include "validation/cost/measure.hpp"
 
+#include "backend/device.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "sim/simulation.hpp"
@@ -49,6 +50,33 @@ void take_errors(CostPoint& point, const Study& study, const RunRecord& record, 
     if (!std::isfinite(point.error)) point.failure = fmt::format("{} is not a number", study.error);
 }
 
+/// Which device the scene's backend is. Nothing where it is the processor itself, or where there is no such device: the run says so.
+void take_device(CostPoint& point, const scene::Scene& scene) {
+    if (!scene.has("scheme.backend")) return;
+    const backend::Choice choice = backend::parse_choice(scene.text("scheme.backend"));
+    if (choice.kind != backend::Choice::Kind::opencl) return;
+    const auto devices = backend::devices();
+    const auto number = static_cast<std::size_t>(choice.device);
+    if (number >= devices.size()) return;
+    const backend::DeviceInfo& d = devices[number];
+    point.device = fmt::format("{} ({}, {} units), {}, driver {}", d.name, d.kind, d.units, d.version, d.driver);
+    point.device_kind = d.kind;
+}
+
+/// The threads that a method asks for, while it is measured.
+class OwnThreads {
+public:
+    explicit OwnThreads(std::optional<int> count) : before_(threads()) {
+        if (count) set_threads(*count > 0 ? *count : omp_get_num_procs());
+    }
+    ~OwnThreads() { set_threads(before_); }
+    OwnThreads(const OwnThreads&) = delete;
+    OwnThreads& operator=(const OwnThreads&) = delete;
+
+private:
+    int before_;
+};
+
 /// Medians, so that one disturbed run says nothing.
 void take_times(CostPoint& point, std::vector<Timing> runs) {
     std::sort(runs.begin(), runs.end(), [](const Timing& a, const Timing& b) { return a.computing < b.computing; });
@@ -60,8 +88,9 @@ void take_times(CostPoint& point, std::vector<Timing> runs) {
 }
 
 CostPoint measure_point(const Study& study, const Variant& method, std::size_t i, const MeasureOptions& options, const Solvers& solvers,
-                        std::string& source) {
-    CostPoint point{.method = method.name};
+                        StudyResult& result) {
+    const OwnThreads own(method.threads);
+    CostPoint point{.method = method.name, .threads = threads()};
     if (method.sweep) point.setting = fmt::format("{:g}", method.sweep->values[i]);
     std::vector<scene::SolverSchema> schemas;
     for (const auto& kind : solvers) schemas.push_back(kind.schema);
@@ -71,22 +100,27 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
         double spent = 0;
         while (static_cast<int>(timings.size()) < options.repeats && (timings.empty() || spent < options.enough_seconds)) {
             scene::Scene scene = scene_of(method, i, schemas);
+            take_device(point, scene);
             const Reference reference = make_reference(method.reference, scene, study.folder);
-            source = reference.source;
+            result.source = reference.source;
             RunOptions run = run_options(study, method, options);
             run.at_start = [&](const RunRecord& start) { check_metric(study.error, start, reference); };
             const RunRecord record = run_scene(std::move(scene), run, solvers);
-            point.steps = record.steps(), point.bytes = record.simulation->solver().bytes(), point.failure = record.failure;
-            if (point.failure) break;
+            point.steps = record.steps(), point.bytes = record.simulation->solver().bytes();
+            if (record.failure) {
+                point.failure = (record.seconds > run.time_limit ? "stopped at " : "diverged at ") + *record.failure;
+                break;
+            }
+            result.unit = unit_of(study.error, record);
             timings.push_back(timing_of(record)), spent += record.seconds;
             if (timings.size() == 1) take_errors(point, study, record, reference);  // repeats give the same numbers bit for bit
         }
         point.others = others_between(before, work_so_far());
         if (!timings.empty()) take_times(point, std::move(timings));
     } catch (const NumericalFailure& failure) {  // of the initial state
-        point.failure = failure.what();
-    } catch (const BadInput& wrong) {
-        point.failure = wrong.what();
+        point.failure = std::string("diverged at the start: ") + failure.what();
+    } catch (const BadInput& wrong) {  // no such device, or a scene that this backend cannot run
+        point.failure = std::string(CostPoint::not_run) + wrong.what();
     }
     return point;
 }
@@ -95,20 +129,28 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
 
 StudyResult measure_study(const Study& study, const MeasureOptions& options, const Solvers& solvers,
                           const std::function<void(const std::string&)>& progress) {
-    StudyResult result{.study = study, .source = {}, .threads = threads(), .points = {}};
+    StudyResult result{.study = study, .source = {}, .unit = {}, .threads = threads(), .points = {}};
     for (const Variant& method : study.methods)
         for (std::size_t i = 0; i < method.runs(); ++i) {
             if (progress) progress(fmt::format("{} {} {}", study.name, method.name, i + 1));
-            result.points.push_back(measure_point(study, method, i, options, solvers, result.source));
+            result.points.push_back(measure_point(study, method, i, options, solvers, result));
         }
-    mark_front(result.points, study.price);
+    mark_front(result.points, study);
     return result;
 }
 
-void mark_front(std::vector<CostPoint>& points, Price price) {
+std::string CostPoint::name() const {
+    std::string s = setting.empty() ? method : method.empty() ? setting : method + " " + setting;
+    if (!device_kind.empty()) s += " (on " + device_kind + ")";
+    return s;
+}
+
+void mark_front(std::vector<CostPoint>& points, const Study& study) {
+    constexpr real alike = 1.01;
     const auto beats = [&](const CostPoint& a, const CostPoint& b) {
-        const double pa = a.price(price), pb = b.price(price);
-        return !a.failure && pa <= pb && a.error <= b.error && (pa < pb || a.error < b.error);
+        const double pa = a.price(study.price), pb = b.price(study.price);
+        const real ea = study.told(a.error), eb = study.told(b.error);
+        return !a.failure && ((pa < pb && ea <= alike * eb) || (pa == pb && ea < eb));
     };
     for (CostPoint& p : points)
         p.on_front = !p.failure && std::none_of(points.begin(), points.end(), [&](const CostPoint& q) { return beats(q, p); });

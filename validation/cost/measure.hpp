@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace weir::validation {
@@ -23,16 +24,26 @@ struct CostPoint {
     int repeats = 0;
     std::int64_t steps = 0;
     std::size_t bytes = 0;                 // held by the solver
-    std::optional<std::string> failure{};  // why there is no error or no price
+    std::optional<std::string> failure{};  // why there is no error or no price, as the table says it
     bool on_front = false;                 // nothing else in the study is both cheaper and more accurate
+    int threads = 0;                       // that it ran on
+    std::string device{};                  // where its backend is a device: which
+    std::string device_kind{};             // GPU, CPU, accelerator
 
     double price(Price by) const { return by == Price::second ? seconds_per_second : ms_per_step; }
-    std::string name() const { return setting.empty() ? method : method.empty() ? setting : method + " " + setting; }
+    /// "pbf-opencl 144 (on CPU)": that OpenCL ran on a processor is part of the name.
+    std::string name() const;
+    /// The same without the setting.
+    std::string label() const { return device_kind.empty() ? method : method + " (on " + device_kind + ")"; }
+    /// It could not even begin: no such device here, or bad input.
+    bool was_run() const { return !failure || !failure->starts_with(not_run); }
+    static constexpr std::string_view not_run = "not run: ";
 };
 
 struct StudyResult {
     Study study;
     std::string source{};  // the reference's citation
+    std::string unit{};    // of the error
     int threads = 1;
     std::vector<CostPoint> points{};
 };
@@ -47,7 +58,8 @@ struct MeasureOptions {
 StudyResult measure_study(const Study& study, const MeasureOptions& options, const Solvers& solvers,
                           const std::function<void(const std::string&)>& progress = nullptr);
 
-/// Marks the points that no other one dominates (Pareto).
-void mark_front(std::vector<CostPoint>& points, Price price);
+/// Marks the points that no other one dominates (Pareto), by what the reference can tell: of errors below what it is known to, and of
+/// errors that differ by less than 1%, the cheaper point wins.
+void mark_front(std::vector<CostPoint>& points, const Study& study);
 
 }  // namespace weir::validation

@@ -15,12 +15,16 @@ std::vector<Key> make_keys() {
     method.insert(method.begin(), {.name = "name", .type = Type::text, .doc = "Its name in tables and figures.", .required = true});
     method.insert(method.begin() + 1,
                   {.name = "size", .type = Type::choice, .doc = "Run only at this size; absent: at both.", .choices = {"ci", "full"}});
+    method.insert(method.begin() + 2,
+                  {.name = "threads", .type = Type::integer, .doc = "Its own number of threads; 0: all that the machine has.", .min = 0});
     std::vector<Key> keys = {
         {.name = "question", .type = Type::text, .doc = "What the study asks.", .required = true},
         {.name = "error", .type = Type::text, .doc = "The metric that is the error.", .required = true},
         {.name = "also", .type = Type::texts, .doc = "Further metrics for the table."},
         {.name = "good_enough", .type = Type::number, .doc = "The error at which methods are compared.", .min = 0, .min_open = true},
         {.name = "why", .type = Type::text, .doc = "Where that error comes from."},
+        {.name = "known_to", .type = Type::number, .doc = "How well the reference itself is known.", .min = 0, .min_open = true},
+        {.name = "known_why", .type = Type::text, .doc = "Where that comes from."},
         {.name = "price",
          .type = Type::choice,
          .doc = "Time is counted for a simulated second, or for a step.",
@@ -67,11 +71,18 @@ Study parse_study(std::string_view text, const std::string& file, const std::fil
                 .error = reader.said(root, "error"),
                 .good_enough = root.number_or("good_enough", 0),
                 .why = root.text_or("why", ""),
+                .known_to = root.number_or("known_to", 0),
+                .known_why = root.text_or("known_why", ""),
                 .price = root.text("price") == "step" ? Price::step : Price::second,
                 .size = size};
     if (root.has("also")) study.also = root.texts("also");
     if (study.good_enough > 0 && study.why.empty()) reader.problem(root.place("good_enough"), "\"good_enough\" needs a \"why\"");
-    study.methods = reader.read(root, "methods", nullptr);
+    if (study.known_to > 0 && study.known_why.empty()) reader.problem(root.place("known_to"), "\"known_to\" needs a \"known_why\"");
+    if (study.good_enough > 0 && study.good_enough < study.known_to)
+        reader.problem(root.place("good_enough"), "\"good_enough\" is below \"known_to\": nobody could tell");
+    study.methods = reader.read(root, "methods", [](Variant& v, const scene::Table& t) {
+        if (t.has("threads")) v.threads = static_cast<int>(t.integer("threads"));
+    });
     if (!reader.problems().empty()) throw scene::BadScene(reader.problems(), text);
     return study;
 }

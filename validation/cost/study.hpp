@@ -5,6 +5,7 @@
 #include "validation/harness/case.hpp"
 #include "validation/harness/runner.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -23,9 +24,14 @@ struct Study {
     std::vector<std::string> also{};  // further metrics, for the table
     real good_enough = 0;             // the error at which the sentences compare methods; 0: none is given
     std::string why{};                // where that error comes from
+    real known_to = 0;                // how well the reference itself is known: errors below it are not told apart
+    std::string known_why{};          // where that comes from
     Price price = Price::second;
     Size size = Size::ci;
     std::vector<Variant> methods{};
+
+    /// An error as far as the reference can tell.
+    real told(real e) const { return std::max(e, known_to); }
 };
 
 /// What cost.toml may contain.
@@ -39,7 +45,8 @@ Study parse_study(std::string_view text, const std::string& file, const std::fil
 std::vector<std::filesystem::path> find_studies(const std::filesystem::path& root);
 
 /// --vary "key=v1,v2,...": every method through these values in place of its own sweep (grid.cells counts cells along x), or, after a
-/// first one, once for each value. A name without a dot is looked for in scheme, scheme.poisson and time, in this order. Throws BadInput.
+/// first one, once for each value. A name without a dot is looked for in scheme, scheme.poisson and time, in this order. A method whose
+/// solver does not know the key stays as it is. Throws BadInput where none knows it.
 void vary(Study& study, const std::vector<std::string>& changes, const Solvers& solvers);
 
 }  // namespace weir::validation

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <set>
 
 namespace weir::validation {
 namespace {
@@ -32,7 +33,34 @@ std::string megabytes(std::size_t bytes) { return fmt::format("{:.3g}", static_c
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+/// "a, b": the methods of the points that hold `f`, each once.
+template <class F>
+std::string methods_where(const StudyResult& result, F&& f) {
+    std::vector<std::string> names;
+    for (const CostPoint& p : result.points)
+        if (f(p) && std::find(names.begin(), names.end(), p.method) == names.end()) names.push_back(p.method);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 }  // namespace
+
+std::vector<std::string> notes(const StudyResult& result) {
+    std::vector<std::string> list;
+    std::set<std::string> devices;
+    std::set<int> threads;
+    for (const CostPoint& p : result.points) {
+        if (!p.device.empty() && devices.insert(p.device).second)
+            list.push_back(fmt::format("{}: {}{}.", methods_where(result, [&](const CostPoint& q) { return q.device == p.device; }),
+                                       p.device, p.device_kind == "GPU" ? "" : "; this is no GPU"));
+        if (p.device.empty() && p.threads != result.threads && p.was_run() && threads.insert(p.threads).second)
+            list.push_back(fmt::format("{}: {} thread{}.",
+                                       methods_where(result, [&](const CostPoint& q) { return q.threads == p.threads; }), p.threads,
+                                       p.threads == 1 ? "" : "s"));
+    }
+    list.push_back(result.source.empty() ? "Compared with no reference: the error is one that every run shows of itself."
+                                         : fmt::format("Compared with: {}.", result.source));
+    return list;
+}
 
 std::string cost_table(const StudyResult& result) {
     std::size_t width = 12;
@@ -50,21 +78,24 @@ std::string cost_table(const StudyResult& result) {
     }
     s += "    * nothing else is both cheaper and more accurate\n";
     for (const std::string& sentence : advice(result)) s += "  " + sentence + "\n";
+    for (const std::string& note : notes(result)) s += "  (" + note + ")\n";
     return s;
 }
 
 std::string cost_csv(const StudyResult& result) {
     std::string s =
         fmt::format("# {} at {} size, error: {}. {}\n", result.study.name, name(result.study.size), result.study.error, result.source);
-    s += "method,setting,error,seconds_per_second,ms_per_step,real_time_factor,spread,others,repeats,steps,bytes,front,failure";
+    s += "method,setting,error,seconds_per_second,ms_per_step,real_time_factor,spread,others,repeats,steps,bytes,front,threads,device,"
+         "failure";
     for (const std::string& metric : result.study.also) s += "," + metric;
     s += "\n";
     for (const CostPoint* p : by_price(result)) {
-        s += p->failure ? fmt::format("{},{},,,,,,{:.2f},{},{},{},no,{}", p->method, p->setting, p->others, p->repeats, p->steps, p->bytes,
-                                      quoted(*p->failure))
-                        : fmt::format("{},{},{:.9g},{:.6g},{:.6g},{:.6g},{:.3f},{:.2f},{},{},{},{},", p->method, p->setting, p->error,
-                                      p->seconds_per_second, p->ms_per_step, p->seconds_per_second > 0 ? 1 / p->seconds_per_second : 0,
-                                      p->spread, p->others, p->repeats, p->steps, p->bytes, p->on_front ? "yes" : "no");
+        s += p->failure
+                 ? fmt::format("{},{},,,,,,{:.2f},{},{},{},no,{},{},{}", p->method, p->setting, p->others, p->repeats, p->steps, p->bytes,
+                               p->threads, quoted(p->device), quoted(*p->failure))
+                 : fmt::format("{},{},{:.9g},{:.6g},{:.6g},{:.6g},{:.3f},{:.2f},{},{},{},{},{},{},", p->method, p->setting, p->error,
+                               p->seconds_per_second, p->ms_per_step, p->seconds_per_second > 0 ? 1 / p->seconds_per_second : 0, p->spread,
+                               p->others, p->repeats, p->steps, p->bytes, p->on_front ? "yes" : "no", p->threads, quoted(p->device));
         for (const std::string& metric : result.study.also) {
             const auto at = p->also.find(metric);
             s += at == p->also.end() ? std::string(",") : fmt::format(",{:.9g}", at->second);
@@ -78,8 +109,9 @@ json cost_json(const StudyResult& result) {
     const Study& study = result.study;
     json points = json::array();
     for (const CostPoint* p : by_price(result)) {
-        json entry = {{"method", p->method}, {"setting", p->setting}, {"name", p->name()},     {"steps", p->steps},   {"bytes", p->bytes},
-                      {"others", p->others}, {"spread", p->spread},   {"repeats", p->repeats}, {"front", p->on_front}};
+        json entry = {{"method", p->method},  {"setting", p->setting}, {"name", p->name()},     {"steps", p->steps},
+                      {"bytes", p->bytes},    {"others", p->others},   {"spread", p->spread},   {"repeats", p->repeats},
+                      {"front", p->on_front}, {"label", p->label()},   {"threads", p->threads}, {"device", p->device}};
         if (p->failure) {
             entry["failure"] = *p->failure;
         } else {
@@ -92,12 +124,16 @@ json cost_json(const StudyResult& result) {
             {"size", name(study.size)},
             {"question", study.question},
             {"error", study.error},
+            {"unit", result.unit},
             {"good_enough", study.good_enough},
             {"why", study.why},
+            {"known_to", study.known_to},
+            {"known_why", study.known_why},
             {"price", study.price == Price::second ? "second" : "step"},
             {"source", result.source},
             {"threads", result.threads},
             {"advice", advice(result)},
+            {"notes", notes(result)},
             {"points", points}};
 }
 
@@ -110,9 +146,8 @@ std::string cost_markdown(const json& study) {
                      study["error"].get<std::string>());
     for (const auto& p : study["points"]) {
         if (p.contains("failure")) {
-            s += fmt::format("| {} | failed: {} | | | {} | {} | |\n", p["name"].get<std::string>(),
-                             first_line(p["failure"].get<std::string>()), megabytes(p["bytes"].get<std::size_t>()),
-                             p["steps"].get<std::int64_t>());
+            s += fmt::format("| {} | {} | | | {} | {} | |\n", p["name"].get<std::string>(), first_line(p["failure"].get<std::string>()),
+                             megabytes(p["bytes"].get<std::size_t>()), p["steps"].get<std::int64_t>());
             continue;
         }
         const double others = p["others"];
@@ -121,31 +156,12 @@ std::string cost_markdown(const json& study) {
                          p["steps"].get<std::int64_t>(), p["front"].get<bool>() ? "front" : "",
                          others > busy ? fmt::format(" ({:.1f} cores busy with other work)", others) : "");
     }
-    s += fmt::format("\nCompared with: {}. Every number: [csv/{}.csv](csv/{}.csv). {} thread(s), {} size, commit {}, on {}.\n\n",
-                     study["source"].get<std::string>(), name, name, study["threads"].get<int>(), study["size"].get<std::string>(),
-                     study.value("commit", "unknown"), study.value("machine", "unknown"));
+    s += "\n";
+    for (const auto& note : study.value("notes", json::array())) s += note.get<std::string>() + " ";
+    s += fmt::format("Every number: [csv/{}.csv](csv/{}.csv). {} thread(s), {} size, commit {}, on {}.\n\n", name, name,
+                     study["threads"].get<int>(), study["size"].get<std::string>(), study.value("commit", "unknown"),
+                     study.value("machine", "unknown"));
     return s;
-}
-
-std::vector<Panel> cost_panels(const StudyResult& result) {
-    const Study& study = result.study;
-    const auto abscissa = [&](const CostPoint& p) { return study.price == Price::second ? 1 / p.seconds_per_second : p.ms_per_step; };
-    Panel panel{
-        .title = study.question,
-        .x = {study.price == Price::second ? "real-time factor: simulated seconds a second of computing" : "computing time a step [ms]",
-              true},
-        .y = {study.error, true}};
-    for (const Variant& method : study.methods) {
-        Curve c{.label = method.name.empty() ? study.name : method.name};
-        for (const CostPoint& p : result.points)
-            if (p.method == method.name && !p.failure) c.x.push_back(abscissa(p)), c.y.push_back(p.error);
-        if (c.size() > 0) panel.curves.push_back(std::move(c));
-    }
-    Curve front{.label = "Pareto front", .dashed = true};
-    for (const CostPoint* p : by_price(result))
-        if (p->on_front) front.x.push_back(abscissa(*p)), front.y.push_back(p->error), front.names.push_back(p->name());
-    panel.curves.push_back(std::move(front));
-    return {panel};
 }
 
 }  // namespace weir::validation

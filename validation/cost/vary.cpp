@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <optional>
 
 namespace weir::validation {
 namespace {
@@ -32,23 +34,42 @@ Settings split(const std::string& text) {
     return s;
 }
 
-bool reads(const Variant& method, const std::string& key, const std::string& value, const std::vector<scene::SolverSchema>& schemas) {
+/// How a method's scene takes key = value: it does, its solver knows the key but not the value, or it does not know the key.
+enum class Answer { taken, refused, unknown_key };
+
+Answer try_on(const Variant& method, const std::string& key, const std::string& value, const std::vector<scene::SolverSchema>& schemas) {
+    if (key == "grid.cells" && !value.starts_with('[')) return Answer::taken;  // a count along an axis: the sweep's own form
     Variant tried = method;
     tried.sweep.reset();
     tried.overrides.push_back({key, value});
     try {
         scene_of(tried, 0, schemas);
-        return true;
+        return Answer::taken;
+    } catch (const scene::BadScene& bad) {
+        const auto unknown = [](const scene::Problem& p) { return p.message.starts_with("unknown key"); };
+        return std::all_of(bad.problems.begin(), bad.problems.end(), unknown) ? Answer::unknown_key : Answer::refused;
     } catch (const BadInput&) {
-        return false;
+        return Answer::refused;
     }
 }
 
-/// The whole name of a key: itself, or where a method's scene takes it.
-std::string whole_key(const Settings& s, const Variant& method, const std::vector<scene::SolverSchema>& schemas) {
-    if (s.key.find('.') != std::string::npos) return s.key;
+/// The whole name of a key, or nothing where the method's solver does not know it.
+std::optional<std::string> whole_key(const Settings& s, const Variant& method, const std::vector<scene::SolverSchema>& schemas) {
+    if (s.key.find('.') != std::string::npos)
+        return try_on(method, s.key, s.values.front(), schemas) == Answer::unknown_key ? std::nullopt : std::optional(s.key);
     for (const char* prefix : {"scheme.", "scheme.poisson.", "time."})
-        if (reads(method, prefix + s.key, s.values.front(), schemas)) return prefix + s.key;
+        if (try_on(method, prefix + s.key, s.values.front(), schemas) == Answer::taken) return prefix + s.key;
+    return std::nullopt;
+}
+
+/// No method takes it: what the reader says of a whole key, or where a name without a dot was looked for.
+[[noreturn]] void refuse(const Settings& s, const Variant& method, const std::vector<scene::SolverSchema>& schemas) {
+    if (s.key.find('.') != std::string::npos) {
+        Variant tried = method;
+        tried.sweep.reset();
+        tried.overrides.push_back({s.key, s.values.front()});
+        scene_of(tried, 0, schemas);  // throws
+    }
     throw BadInput(
         fmt::format("--vary {}: {} takes no such value in scheme, scheme.poisson or time; give the whole key, as `weir describe` shows it",
                     s.key, method.scene.string()));
@@ -75,8 +96,15 @@ void vary(Study& study, const std::vector<std::string>& changes, const Solvers& 
         const Settings s = split(change);
         const std::vector<real> values = numbers(s);
         std::vector<Variant> methods;
+        bool taken = false;
         for (const Variant& method : study.methods) {
-            const std::string key = whole_key(s, method, schemas);
+            const auto whole = whole_key(s, method, schemas);
+            if (!whole) {
+                methods.push_back(method);
+                continue;
+            }
+            taken = true;
+            const std::string& key = *whole;
             if (!swept && !values.empty()) {
                 methods.push_back(method);
                 methods.back().sweep = Sweep{.key = key, .values = values};
@@ -88,6 +116,7 @@ void vary(Study& study, const std::vector<std::string>& changes, const Solvers& 
                 methods.back().name += fmt::format("{}{}={}", method.name.empty() ? "" : " ", s.key, value);
             }
         }
+        if (!taken) refuse(s, study.methods.front(), schemas);
         study.methods = std::move(methods);
         swept = swept || !values.empty();
     }

@@ -59,7 +59,8 @@ struct Variant {
     std::vector<scene::Override> overrides{};
     std::optional<Sweep> sweep{};
     std::vector<Criterion> accept{};
-    real time_limit = infinity;  // wall seconds of one run
+    real time_limit = infinity;    // wall seconds of one run
+    std::optional<int> threads{};  // of its own; 0: all that the machine has
 
     std::size_t runs() const { return sweep ? sweep->values.size() : 1; }
 };

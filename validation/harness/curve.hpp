@@ -32,11 +32,18 @@ struct Axis {
     bool log = false;
 };
 
+/// Where differences mean nothing: shaded from the bottom of a diagram up to `below`; 0: nowhere.
+struct Shade {
+    real below = 0;
+    std::string label{};
+};
+
 /// One diagram of a case's figure.
 struct Panel {
     std::string title{};
     Axis x{}, y{};
     std::vector<Curve> curves{};
+    Shade shade{};
 };
 
 }  // namespace weir::validation

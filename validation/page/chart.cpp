@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace weir::validation {
 namespace {
 
 constexpr int colours = 8;  // --c0 to --c7 of the page
-constexpr double width = 720, height = 430, left = 74, right = 20, top = 16, bottom = 58;
+constexpr double width = 620, height = 400, left = 74, right = 20, top = 16, bottom = 58;
 
 /// One axis on the paper: from data to pixels.
 struct Scale {
@@ -85,20 +86,31 @@ std::string axes(const Panel& p, const Scale& sx, const Scale& sy) {
                            (top + height - bottom) / 2, escaped(p.y.label));
 }
 
+/// Colours have been used up once: the line is broken.
+bool again(std::size_t number) { return number >= colours; }
+
 struct Box {
     double x0, y0, x1, y1;
     bool meets(const Box& b) const { return x0 < b.x1 && b.x0 < x1 && y0 < b.y1 && b.y0 < y1; }
 };
 
-/// Writes names beside points, at the first of four places where they cover nothing; a name without room is left to the pointer.
+/// Writes names beside points, at the first of ten places where they cover nothing; a name without room is left to the pointer.
 class Names {
 public:
     void keep_free(double x, double y) { taken_.push_back({x - 4, y - 4, x + 4, y + 4}); }
     std::string beside(double x, double y, const std::string& name) {
         const double w = 6.6 * static_cast<double>(name.size()), h = 14;
-        for (const auto& [dx, dy, anchor] :
-             {std::tuple{8.0, -8.0, "start"}, {-8.0, 16.0, "end"}, {8.0, 16.0, "start"}, {-8.0, -8.0, "end"}}) {
-            const double x0 = anchor[0] == 's' ? x + dx : x + dx - w;
+        for (const auto& [dx, dy, anchor] : {std::tuple{8.0, -8.0, "start"},
+                                             {-8.0, 16.0, "end"},
+                                             {8.0, 16.0, "start"},
+                                             {-8.0, -8.0, "end"},
+                                             {0.0, -12.0, "middle"},
+                                             {0.0, 22.0, "middle"},
+                                             {0.0, -26.0, "middle"},
+                                             {0.0, 36.0, "middle"},
+                                             {-8.0, -22.0, "end"},
+                                             {8.0, 30.0, "start"}}) {
+            const double x0 = anchor[0] == 's' ? x + dx : anchor[0] == 'm' ? x - w / 2 : x + dx - w;
             const Box box{x0, y + dy - h + 3, x0 + w, y + dy + 3};
             if (box.x0 < left || box.x1 > width - 4 || box.y0 < 0 || box.y1 > height - bottom) continue;
             if (std::any_of(taken_.begin(), taken_.end(), [&](const Box& b) { return b.meets(box); })) continue;
@@ -126,7 +138,7 @@ std::string curve_svg(const Panel& p, const Curve& c, std::size_t number, const 
                             c.x[i], c.y[i]);
     }
     if (c.dashed) return fmt::format("<path class=\"guide\" d=\"{}\"/>\n", line);
-    const std::string path = c.points ? "" : fmt::format("<path d=\"{}\"/>", line);
+    const std::string path = c.points ? "" : fmt::format("<path{} d=\"{}\"/>", again(number) ? " stroke-dasharray=\"8 3\"" : "", line);
     return fmt::format("<g class=\"k{}\">{}{}</g>\n", number % colours, path, dots);
 }
 
@@ -143,8 +155,13 @@ std::string chart_svg(const Panel& p, const std::vector<Mark>& marks) {
     for (const Curve& c : p.curves)
         for (std::size_t i = 0; i < c.size(); ++i)
             if (drawable(p, c.x[i], c.y[i])) xs.push_back(c.x[i]), ys.push_back(c.y[i]);
+    if (p.shade.below > 0) ys.push_back(p.shade.below);
     const Scale sx = scale_of(p.x.log, xs, left, width - right), sy = scale_of(p.y.log, ys, height - bottom, top);
-    std::string s = opening(width, height, p.title) + axes(p, sx, sy);
+    std::string s = opening(width, height, p.title);
+    if (p.shade.below > 0)
+        s += fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\"><title>{}</title></rect>\n", left,
+                         sy(p.shade.below), width - right - left, height - bottom - sy(p.shade.below), escaped(p.shade.label));
+    s += axes(p, sx, sy);
     Names names;
     for (const Mark& mark : marks)
         if (mark.at > sx.low && mark.at < sx.high)
@@ -159,12 +176,21 @@ std::string chart_svg(const Panel& p, const std::vector<Mark>& marks) {
     return s + "</svg>\n";
 }
 
+namespace {
+
+std::string legend_item(std::size_t number, const std::string& label) {
+    return fmt::format("<li><i class=\"k{}\"{}></i>{}</li>", number % colours, again(number) ? " style=\"border-top-style:dashed\"" : "",
+                       escaped(label));
+}
+
+}  // namespace
+
 std::string chart_legend(const Panel& p) {
     std::string s = "<ul class=\"legend\">";
     std::size_t number = 0;
     for (const Curve& c : p.curves)
-        s += c.dashed ? fmt::format("<li><i class=\"dash\"></i>{}</li>", escaped(c.label))
-                      : fmt::format("<li><i class=\"k{}\"></i>{}</li>", number++ % colours, escaped(c.label));
+        s += c.dashed ? fmt::format("<li><i class=\"dash\"></i>{}</li>", escaped(c.label)) : legend_item(number++, c.label);
+    if (p.shade.below > 0) s += fmt::format("<li><i class=\"shade\"></i>{}</li>", escaped(p.shade.label));
     return s + "</ul>\n";
 }
 
@@ -209,8 +235,8 @@ std::string map_svg(const Map& m) {
 std::string standalone(const std::string& svg) {
     static constexpr const char* style = R"(<style>
 text{font:12.5px sans-serif;fill:#1c2430}.label{font-weight:600}.name{font-size:11.5px}
-.grid{stroke:#e2e6ea;fill:none}.frame{stroke:#5b6673;fill:none}.guide{stroke:#7a8591;fill:none;stroke-dasharray:5 4}
-.mark{stroke:#7a8591;fill:none}.cell text{fill:#fff}.held rect{fill:#cfe8dc}.held text{fill:#1c5a3d}
+.chart g path{stroke-width:1.8}.grid{stroke:#e2e6ea;fill:none}.frame{stroke:#5b6673;fill:none}.guide{stroke:#7a8591;fill:none;stroke-dasharray:5 4}
+.mark{stroke:#7a8591;fill:none}.shade{fill:#eceff2}.cell text{fill:#fff}.held rect{fill:#cfe8dc}.held text{fill:#1c5a3d}
 .k0 path{stroke:#0072b2;fill:none}.k0 rect,.k0 circle{fill:#0072b2}.k1 path{stroke:#c24d00;fill:none}.k1 rect,.k1 circle{fill:#c24d00}
 .k2 path{stroke:#00805c;fill:none}.k2 rect,.k2 circle{fill:#00805c}.k3 path{stroke:#b0578a;fill:none}.k3 rect,.k3 circle{fill:#b0578a}
 .k4 path{stroke:#a87400;fill:none}.k4 rect,.k4 circle{fill:#a87400}.k5 path{stroke:#2f8fc4;fill:none}.k5 rect,.k5 circle{fill:#2f8fc4}
@@ -220,6 +246,57 @@ text{font:12.5px sans-serif;fill:#1c2430}.label{font-weight:600}.name{font-size:
 )";
     const auto head = svg.find('\n');
     return svg.substr(0, head + 1) + style + svg.substr(head + 1);
+}
+
+namespace {
+
+/// Words in lines of at most `most` letters.
+std::vector<std::string> lines_of(const std::string& text, std::size_t most) {
+    std::vector<std::string> lines{""};
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
+        lines.back() += (lines.back().empty() ? "" : " ") + word;
+    }
+    return lines;
+}
+
+/// Entries of the legend from left to right in rows below `y`; gives where the last row ends.
+double draw_legend(const Panel& p, double y, std::string& s) {
+    constexpr double letter = 7.2, swatch = 24, gap = 16, row = 20;
+    double x = 12;
+    const auto entry = [&](const std::string& sign, const std::string& label) {
+        const double w = swatch + 6 + letter * static_cast<double>(label.size());
+        if (x > 12 && x + w > width) x = 12, y += row;
+        s += fmt::format("<g transform=\"translate({:.0f} {:.0f})\">{}<text x=\"{}\" y=\"4\">{}</text></g>\n", x, y, sign, swatch + 6,
+                         escaped(label));
+        x += w + gap;
+    };
+    std::size_t number = 0;
+    for (const Curve& c : p.curves) {
+        const std::string line =
+            fmt::format("<path d=\"M0,0H{}\"{}/>", swatch, !c.dashed && again(number) ? " stroke-dasharray=\"8 3\"" : "");
+        entry(c.dashed ? fmt::format("<path class=\"guide\" d=\"M0,0H{}\"/>", swatch)
+                       : fmt::format("<g class=\"k{}\">{}<circle cx=\"{}\" r=\"4\"/></g>", number % colours, line, swatch / 2),
+              c.label);
+        number += c.dashed ? 0 : 1;
+    }
+    if (p.shade.below > 0) entry(fmt::format("<rect class=\"shade\" y=\"-7\" width=\"{}\" height=\"14\"/>", swatch), p.shade.label);
+    return y + row;
+}
+
+}  // namespace
+
+std::string chart_file(const Panel& p, const std::vector<Mark>& marks) {
+    std::string body;
+    double y = 6;
+    for (const std::string& line : lines_of(p.title, 72))
+        body += fmt::format("<text class=\"label\" x=\"{}\" y=\"{:.0f}\" text-anchor=\"middle\">{}</text>\n", width / 2, y += 17,
+                            escaped(line));
+    const std::string chart = chart_svg(p, marks), head = "<svg class=\"chart\" ";
+    body += fmt::format("<svg y=\"{:.0f}\" width=\"{}\" height=\"{}\" ", y += 8, width, height) + chart.substr(head.size());
+    const double end = draw_legend(p, y + height + 8, body);
+    return standalone(opening(width, end, p.title) + body + "</svg>\n");
 }
 
 }  // namespace weir::validation

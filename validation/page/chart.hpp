@@ -38,5 +38,7 @@ std::string map_svg(const Map& map);
 
 /// The same with paper and colours of its own, to be a file.
 std::string standalone(const std::string& svg);
+/// A diagram as such a file: its title above, its legend below.
+std::string chart_file(const Panel& panel, const std::vector<Mark>& marks = {});
 
 }  // namespace weir::validation

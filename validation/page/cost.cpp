@@ -27,13 +27,14 @@ double abscissa(const json& study, const json& point) {
 
 /// One curve a method in the order of the study's cheapest first, and the front.
 Panel panel_of(const json& study) {
+    const std::string unit = text_at(study, "unit");
     Panel panel{.title = text_at(study, "question"),
                 .x = {by_step(study) ? "computing time a step [ms]" : "real-time factor: simulated seconds a second of computing", true},
-                .y = {text_at(study, "error"), true}};
+                .y = {text_at(study, "error") + (unit.empty() ? "" : " [" + unit + "]"), true}};
     Curve front{.label = "Pareto front: nothing is both cheaper and more accurate", .dashed = true};
     for (const json& p : study["points"]) {
         if (failed(p)) continue;
-        const std::string method = text_at(p, "method");
+        const std::string method = text_at(p, p.contains("label") ? "label" : "method");
         auto at = std::find_if(panel.curves.begin(), panel.curves.end(), [&](const Curve& c) { return c.label == method; });
         if (at == panel.curves.end()) at = panel.curves.insert(at, Curve{.label = method});
         at->x.push_back(abscissa(study, p)), at->y.push_back(number_at(p, "error").value_or(0)), at->names.push_back(text_at(p, "name"));
@@ -41,8 +42,11 @@ Panel panel_of(const json& study) {
             front.x.push_back(at->x.back()), front.y.push_back(at->y.back()), front.names.push_back(at->names.back());
     }
     panel.curves.push_back(std::move(front));
+    panel.shade = {number_at(study, "known_to").value_or(0), "the reference itself is known no better"};
     return panel;
 }
+
+std::vector<Mark> marks_of(const json& study) { return by_step(study) ? std::vector<Mark>{} : std::vector<Mark>{{1, "real time"}}; }
 
 std::string table_of(const json& study) {
     HtmlTable table({"setting", text_at(study, "error"), "× real time", "ms of a 60 Hz frame", "ms a step", "MB", "steps", "on the front"},
@@ -51,7 +55,7 @@ std::string table_of(const json& study) {
         const auto bytes = number_at(p, "bytes");
         const auto memory = value(bytes ? std::optional(*bytes / 1e6) : std::nullopt);
         if (failed(p)) {
-            table.row({word(text_at(p, "name")), raw("failed: " + escaped(text_at(p, "failure"))), value({}), value({}), value({}), memory,
+            table.row({word(text_at(p, "name")), raw(escaped(text_at(p, "failure"))), value({}), value({}), value({}), memory,
                        value(number_at(p, "steps")), word("")},
                       "fail");
             continue;
@@ -72,10 +76,11 @@ std::string study_html(const json& study, const std::filesystem::path& results) 
     std::string s = fmt::format(
         "<article id=\"cost-{}\"><h3>{}</h3>\n<div class=\"beside\"><figure><div class=\"scroll\">{}</div>{}</figure>\n<ul "
         "class=\"advice\">",
-        escaped(name), escaped(text_at(study, "question")),
-        chart_svg(panel, by_step(study) ? std::vector<Mark>{} : std::vector<Mark>{{1, "real time"}}), chart_legend(panel));
+        escaped(name), escaped(text_at(study, "question")), chart_svg(panel, marks_of(study)), chart_legend(panel));
     for (const json& sentence : study["advice"]) s += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
-    s += "</ul></div>\n<details><summary>All settings</summary>" + table_of(study) + "</details>\n";
+    s += "</ul></div>\n";
+    for (const json& note : study.value("notes", json::array())) s += "<p class=\"fine\">" + escaped(note.get<std::string>()) + "</p>\n";
+    s += "<details><summary>All settings</summary>" + table_of(study) + "</details>\n";
     s += fmt::format("<p class=\"fine\"><code>./weir.sh cost {0} --size {1}</code> · {2} thread(s), commit {3}, {4}", escaped(name),
                      escaped(text_at(study, "size")), study.value("threads", 1), escaped(text_at(study, "commit")),
                      escaped(text_at(study, "machine")));
@@ -150,6 +155,8 @@ std::vector<const json*> in_reading_order(const std::vector<json>& studies) {
 }
 
 }  // namespace
+
+std::string cost_figure(const json& study) { return chart_file(panel_of(study), marks_of(study)); }
 
 Section cost_section(const std::vector<json>& studies, const std::filesystem::path& results) {
     Section section{.summary = "<p>No study is published: <code>./weir.sh cost --all --publish</code></p>"};

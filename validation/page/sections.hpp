@@ -19,6 +19,8 @@ struct Section {
 Section claims_section(const nlohmann::json& verdicts, const std::filesystem::path& results);
 /// Studies of error against time: figure, sentences, table.
 Section cost_section(const std::vector<nlohmann::json>& studies, const std::filesystem::path& results);
+/// The figure of one study, as a file.
+std::string cost_figure(const nlohmann::json& study);
 /// Limits of all solvers in one table, and two-axis maps.
 Section limits_section(const std::vector<nlohmann::json>& studies);
 /// One of their maps, to be drawn.

@@ -3,7 +3,9 @@
 #include "validation/cost/report_table.hpp"
 
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "validation/cost/tables.hpp"
+#include "validation/page/sections.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -66,6 +68,8 @@ TEST("a study is read at the asked size; what is wrong in it is named") {
     EXPECT_EQ(ci.methods[0].runs(), 1u);
     EXPECT_EQ(ci.error, "velocity.max");
     EXPECT_NE(refusal("question = \"q\"\nerror = \"e\"\ngood_enough = 1\n").find("\"good_enough\" needs a \"why\""), std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\nerror = \"e\"\nknown_to = 1\n").find("\"known_to\" needs a \"known_why\""), std::string::npos);
+    EXPECT_NE(refusal(head + "known_to = 3\nknown_why = \"w\"\n").find("nobody could tell"), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n").find("error"), std::string::npos);
     EXPECT_NE(refusal(head + "methodes = 1\n").find("methods"), std::string::npos) << "the nearest name is offered";
 }
@@ -74,16 +78,42 @@ TEST("the front holds the points that no other beats in both error and time; fai
     std::vector<CostPoint> points = {point("cheap", 0.5, 1), point("dominated", 0.6, 2), point("accurate", 0.1, 4),
                                      point("failed", 0.01, 0.1)};
     points[3].failure = "diverged at step 41";
-    mark_front(points, Price::second);
+    mark_front(points, {.name = "s"});
     EXPECT_TRUE(points[0].on_front && points[2].on_front);
     EXPECT_FALSE(points[1].on_front || points[3].on_front);
+}
+
+TEST("of errors that cannot be told apart the cheaper one is on the front: below what the reference is known to, or alike to a hundredth") {
+    std::vector<CostPoint> points = {point("cheap", 0.08, 1), point("alike", 0.0795, 2), point("known", 0.04, 3), point("below", 0.01, 4)};
+    mark_front(points, {.name = "s", .known_to = 0.05});
+    EXPECT_TRUE(points[0].on_front && points[2].on_front);
+    EXPECT_FALSE(points[1].on_front) << "0.6% more accurate for twice the time";
+    EXPECT_FALSE(points[3].on_front) << "the reference does not know";
+    mark_front(points, {.name = "s"});
+    EXPECT_TRUE(points[3].on_front) << "a reference without a limit does";
+}
+
+TEST("what the reference cannot tell is said, and no setting is called the most accurate for it") {
+    StudyResult result{.study = {.name = "s", .error = "e", .good_enough = 0.2, .known_to = 0.05, .known_why = "gates differ"}};
+    for (const char* method : {"a", "b", "c"})
+        for (const int setting : {1, 2}) {
+            result.points.push_back(point(method, setting == 1 ? 0.02 : 0.04, setting * (*method == 'a' ? 0.1 : 0.3)));
+            result.points.back().setting = std::to_string(setting);
+        }
+    mark_front(result.points, result.study);
+    const auto sentences = advice(result);
+    ASSERT_EQ(sentences.size(), 4u);
+    EXPECT_EQ(sentences[1], "6 of 6 settings run in real time, 6 of them as near to the reference as it is known itself.");
+    EXPECT_EQ(sentences[2], "a 1 is the cheapest, and as near to the reference as it is known.") << "not: a finer setting does not pay";
+    EXPECT_EQ(sentences[3],
+              "6 of 6 settings lie within 0.05, where this reference cannot rank them (gates differ); the cheapest of them is a 1.");
 }
 
 TEST("the sentences name the cheapest setting that is good enough, the best in real time, the price of accuracy and the failures") {
     StudyResult result{.study = {.name = "s", .error = "e", .good_enough = 0.2}};
     result.points = {point("coarse", 0.5, 0.5), point("fine", 0.1, 2), point("other", 0.15, 8), point("bad", 0, 0)};
     result.points[3].failure = "diverged";
-    mark_front(result.points, Price::second);
+    mark_front(result.points, result.study);
     const auto sentences = advice(result);
     ASSERT_EQ(sentences.size(), 4u);
     EXPECT_EQ(
@@ -107,7 +137,7 @@ TEST("where most methods gain nothing from a dearer setting the third sentence s
         }
     for (CostPoint& p : result.points)
         if (p.method == "b" && p.setting == "2") p.seconds_per_second = 15;
-    mark_front(result.points, Price::second);
+    mark_front(result.points, result.study);
     EXPECT_EQ(advice(result).back(),
               "A finer setting does not pay here: the dearest of 2 of 3 methods is no more accurate than its cheapest, at 2 to 5 times the "
               "price.");
@@ -125,11 +155,42 @@ TEST("the command writes table, JSON, figure and page; a setting that fails stay
     ASSERT_EQ(json["points"].size(), 3u);
     EXPECT_NEAR(json["points"][0]["error"].get<double>(), 2.1, 1e-9) << "2 y + t at y = 1, t = 0.1";
     EXPECT_GT(json["points"][0]["seconds_per_second"].get<double>(), 0);
-    EXPECT_NE(json["points"][2]["failure"].get<std::string>().find("step 2"), std::string::npos);
+    EXPECT_EQ(json["points"][2]["failure"].get<std::string>().substr(0, 21), "diverged at step 2, t");
     EXPECT_NE(read(folder.path() / "out/study.csv").find("late"), std::string::npos);
     EXPECT_NE(read(folder.path() / "out/study.svg").find("Pareto front"), std::string::npos);
-    EXPECT_NE(read(folder.path() / "page/index.md").find("failed: "), std::string::npos);
+    EXPECT_NE(read(folder.path() / "page/index.md").find("| late | diverged at step 2, t = "), std::string::npos);
+    EXPECT_NE(read(folder.path() / "page/index.md").find("Compared with no reference"), std::string::npos) << "this study has none";
     EXPECT_TRUE(fs::exists(folder.path() / "page/svg/study.svg"));
+}
+
+TEST("a backend that is not here leaves its row with the reason, and the study goes on; a method may have threads of its own") {
+    const test::TemporaryFolder folder;
+    auto kinds = test::fake_kinds();
+    kinds[0].make = [make = kinds[0].make](const scene::Scene& scene) {
+        if (scene.integer("stall_at") == 7) throw BadInput("no OpenCL device here: install one");
+        return make(scene);
+    };
+    const auto study =
+        add(folder.path(), head + "[[methods]]\nname = \"here\"\nthreads = 3\n[[methods]]\nname = \"away\"\nset = [\"stall_at = 7\"]\n");
+    const int before = threads();
+    const StudyResult result = measure_study(read_study(study, Size::ci), {.repeats = 1}, kinds);
+    EXPECT_EQ(threads(), before);
+    ASSERT_EQ(result.points.size(), 2u);
+    EXPECT_EQ(result.points[0].threads, 3);
+    EXPECT_EQ(result.points[1].failure.value_or(""), "not run: no OpenCL device here: install one");
+    EXPECT_EQ(advice(result).back(), "1 of 2 settings could not be run here: the table says why.");
+    EXPECT_NE(cost_table(result).find("not run: no OpenCL device here: install one"), std::string::npos);
+    EXPECT_EQ(notes(result).front(), "here: 3 threads.");
+}
+
+TEST("a device is named with its settings, so that nobody takes a processor for a GPU") {
+    StudyResult result{.study = {.name = "s", .error = "e"}};
+    result.points = {point("pbf-opencl", 0.1, 1)};
+    result.points[0].setting = "64", result.points[0].device = "a processor (CPU, 2 units)", result.points[0].device_kind = "CPU";
+    mark_front(result.points, result.study);
+    EXPECT_EQ(result.points[0].name(), "pbf-opencl 64 (on CPU)");
+    EXPECT_EQ(notes(result).front(), "pbf-opencl: a processor (CPU, 2 units); this is no GPU.");
+    EXPECT_NE(cost_figure(cost_json(result)).find("pbf-opencl (on CPU)"), std::string::npos);
 }
 
 TEST("--vary replaces a sweep, multiplies methods by words, and refuses what no scene takes") {
@@ -140,7 +201,25 @@ TEST("--vary replaces a sweep, multiplies methods by words, and refuses what no 
     EXPECT_EQ(study.methods[0].runs(), 3u);
     EXPECT_EQ(study.methods[1].name, "a time.max_dt=0.02");
     EXPECT_THROW(vary(study, {"sheme=1"}, test::fake_kinds()), BadInput);
+    EXPECT_THROW(vary(study, {"time.stepp=1"}, test::fake_kinds()), BadInput);
     EXPECT_THROW(vary(study, {"no values"}, test::fake_kinds()), BadInput);
+}
+
+TEST("--vary leaves a method alone whose solver does not know the key, and refuses a value that none takes") {
+    const test::TemporaryFolder folder;
+    const auto at = add(folder.path(), head + "[[methods]]\nname = \"a\"\n[[methods]]\nname = \"b\"\nscene = \"other.toml\"\n");
+    std::ofstream(at / "other.toml") << "solver = \"other\"\ndim = 2\ngrid = { cells = [8, 4], size = [1, 1] }\ntime = { end = 0.1 }\n";
+    auto kinds = test::fake_kinds();
+    kinds.push_back(kinds[0]);
+    kinds[1].schema.name = "other";
+    const scene::Key backend{.name = "backend", .type = scene::Type::choice, .doc = "d", .choices = {"threads", "opencl"}};
+    kinds[1].schema.keys.push_back({.name = "scheme", .type = scene::Type::table, .doc = "d", .keys = {backend}});
+    Study study = read_study(at, Size::ci);
+    vary(study, {"backend=threads,opencl"}, kinds);
+    ASSERT_EQ(study.methods.size(), 3u);
+    EXPECT_EQ(study.methods[0].name, "a");
+    EXPECT_EQ(study.methods[2].name, "b backend=opencl");
+    EXPECT_THROW(vary(study, {"backend=opnecl"}, kinds), BadInput);
 }
 
 TEST("the report's figures stand beside ours: frames a second of whole steps, milliseconds of passes that there are") {

@@ -136,6 +136,9 @@ TEST("a folder without verdicts is refused by name") {
 TEST("a diagram holds every point that its axes can show, and a map one cell a run") {
     const Panel panel{.title = "t", .x = {"x", true}, .y = {"y", true}, .curves = {{.label = "a", .x = {1, 10, -1}, .y = {1, 2, 3}}}};
     EXPECT_EQ(count(chart_svg(panel), "<circle"), 2u) << "a negative number has no place on a logarithmic axis";
+    const std::string file = chart_file({.title = "t", .x = {"x"}, .y = {"y"}, .curves = panel.curves, .shade = {2, "not told apart"}});
+    EXPECT_EQ(count(file, "class=\"shade\""), 2u) << "in the diagram and in the legend, which says what it is";
+    EXPECT_NE(file.find(">not told apart</text>"), std::string::npos);
     const Map map{.title = "t",
                   .x_label = "x",
                   .y_label = "y",
