@@ -22,5 +22,6 @@ check() { # NAME OPTIONS...: one run that must leave an empty log
 
 check pbf_2d
 check pbf_3d
+check pbf_sides
 check sph_2d
 check sph_3d

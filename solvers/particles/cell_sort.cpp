@@ -27,47 +27,44 @@ Range range_of(const real* x, int count, std::vector<Range>& parts) {
 
 }  // namespace
 
-CellGrid cover_box(const std::array<real, 3>& lo, const std::array<real, 3>& hi, int count, real cell_size) {
+CellGrid cover_box(const Box& box, int count, real cell_size) {
     const real most = 1e6 + 8.0 * count;  // cells: more than this costs more memory than the particles themselves
     CellGrid grid;
-    grid.origin = lo;
+    grid.origin = box.lo;
     for (real size = cell_size;; size *= 1.26) {
         real cells = 1;
-        for (std::size_t a = 0; a < 3; ++a) cells *= std::floor((hi[a] - lo[a]) / size) + 1;
+        for (std::size_t a = 0; a < 3; ++a) cells *= std::floor((box.hi[a] - box.lo[a]) / size) + 1;
         if (cells > most) continue;
         grid.per_cell = 1 / size;
-        for (std::size_t a = 0; a < 3; ++a) grid.cells[a] = static_cast<int>(std::floor((hi[a] - lo[a]) * grid.per_cell)) + 1;
+        for (std::size_t a = 0; a < 3; ++a) grid.cells[a] = static_cast<int>(std::floor((box.hi[a] - box.lo[a]) * grid.per_cell)) + 1;
         return grid;
     }
 }
 
-void CellSort::cover(const Coordinates& x, int count, real cell_size) {
-    std::array<real, 3> lo{0, 0, 0}, hi{0, 0, 0};
+Box CellSort::box(const Coordinates& x, int count) {
+    Box box;
     for (std::size_t a = 0; a < 3; ++a) {
         if (!x[a] || count == 0) continue;
         const Range r = range_of(x[a], count, ranges_);
         if (!r.finite) throw NumericalFailure("position", "a particle's position is not finite");
-        lo[a] = r.lo;
-        hi[a] = r.hi;
+        box.lo[a] = r.lo;
+        box.hi[a] = r.hi;
     }
-    const CellGrid grid = cover_box(lo, hi, count, cell_size);
-    n_ = grid.cells;
-    origin_ = grid.origin;
-    per_cell_ = grid.per_cell;
+    return box;
 }
 
 int CellSort::cell(const Coordinates& x, int i) const {
     int c = 0;
     for (std::size_t a = 3; a-- > 0;) {
-        const int k = x[a] ? std::min(static_cast<int>((x[a][i] - origin_[a]) * per_cell_), n_[a] - 1) : 0;
-        c = c * n_[a] + k;
+        const int k = x[a] ? std::min(static_cast<int>((x[a][i] - grid_.origin[a]) * grid_.per_cell), grid_.cells[a] - 1) : 0;
+        c = c * grid_.cells[a] + k;
     }
     return c;
 }
 
 /// Turns the chunks' histograms into the places where each chunk's particles of each cell begin, and fills the cell starts.
 void CellSort::place_starts(int chunks) {
-    const int cells = n_[0] * n_[1] * n_[2];
+    const int cells = grid_.cells[0] * grid_.cells[1] * grid_.cells[2];
     before_.assign(static_cast<std::size_t>(chunks) + 1, 0);
     for_chunks(cells, chunks, [&](int t, int begin, int end) {
         int sum = 0;
@@ -91,10 +88,11 @@ void CellSort::place_starts(int chunks) {
     start_[static_cast<std::size_t>(cells)] = before_.back();
 }
 
-void CellSort::sort(const Coordinates& x, int count, real cell_size) {
-    cover(x, count, cell_size);
+void CellSort::sort(const Coordinates& x, int count, const CellGrid& grid) {
+    cover(grid);
     count_ = count;
-    const auto cells = static_cast<std::size_t>(n_[0]) * static_cast<std::size_t>(n_[1]) * static_cast<std::size_t>(n_[2]);
+    const auto& n = grid.cells;
+    const auto cells = static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
     const int chunks = threads();
     order_.resize(static_cast<std::size_t>(count));
     cell_.resize(static_cast<std::size_t>(count));

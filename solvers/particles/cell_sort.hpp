@@ -15,6 +15,10 @@ struct Range {
     bool finite = true;
 };
 
+struct Box {
+    std::array<real, 3> lo{0, 0, 0}, hi{0, 0, 0};
+};
+
 /// Cells over a box: cell (i, j, k) has number (k n_y + j) n_x + i.
 struct CellGrid {
     std::array<int, 3> cells{1, 1, 1};
@@ -23,13 +27,16 @@ struct CellGrid {
 };
 /// Cells at least `cell_size` wide over the box of `count` points. Where points are so sparse that cells would outnumber them by far, cells
 /// are wider.
-CellGrid cover_box(const std::array<real, 3>& lo, const std::array<real, 3>& hi, int count, real cell_size);
+CellGrid cover_box(const Box& box, int count, real cell_size);
 
 class CellSort {
 public:
-    /// Sorts `count` points into cells at least `cell_size` wide that cover their bounding box (cover_box). Throws NumericalFailure when a
-    /// coordinate is not finite.
-    void sort(const Coordinates& x, int count, real cell_size);
+    /// The box of `count` points. Throws NumericalFailure when a coordinate is not finite.
+    Box box(const Coordinates& x, int count);
+    /// Sorts `count` points into these cells, which cover them.
+    void sort(const Coordinates& x, int count, const CellGrid& grid);
+    /// Into cells at least `cell_size` wide over their box.
+    void sort(const Coordinates& x, int count, real cell_size) { sort(x, count, cover_box(box(x, count), count, cell_size)); }
 
     int count() const { return count_; }
     /// Where each sorted particle came from.
@@ -38,10 +45,10 @@ public:
     const std::vector<int>& cell_of() const { return cell_; }
     /// Cell c holds sorted particles start()[c] .. start()[c + 1] - 1.
     const std::vector<int>& start() const { return start_; }
-    const std::array<int, 3>& cells() const { return n_; }
+    const std::array<int, 3>& cells() const { return grid_.cells; }
     std::size_t bytes() const;
-    /// The first half of sort: chooses the cells.
-    void cover(const Coordinates& x, int count, real cell_size);
+    /// The cells alone, without the sort.
+    void cover(const CellGrid& grid) { grid_ = grid; }
     /// The cell of a point that is covered.
     int cell(const Coordinates& x, int i) const;
 
@@ -49,9 +56,7 @@ private:
     void place_starts(int chunks);
 
     int count_ = 0;
-    std::array<int, 3> n_{1, 1, 1};
-    std::array<real, 3> origin_{0, 0, 0};
-    real per_cell_ = 1;  // 1 / cell size
+    CellGrid grid_;
     std::vector<int> order_, cell_, start_;
     std::vector<int> unsorted_;                 // cell of each particle before sorting
     std::vector<std::vector<int>> histograms_;  // one a chunk; later: where the chunk's next particle of the cell goes

@@ -15,27 +15,34 @@ DeviceEffects<D>::DeviceEffects(const scene::Scene& scene) {
 template struct DeviceEffects<2>;
 template struct DeviceEffects<3>;
 
+namespace {
+
+/// Passes over pairs see the nearest image of a neighbour: of two within reach they would see one.
+template <int D>
+void check_periods(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
+    const Domain<D> domain(scene);
+    const real shortest = 2 * scene.number("scheme.support") * domain.spacing;
+    for (int a = 0; a < D; ++a)
+        if (domain.sides.periodic(a) && domain.hi[a] - domain.lo[a] < shortest)
+            problems.push_back(scene.problem(
+                "grid.size", "the backend opencl has no periods shorter than two supports",
+                "from scheme.support and the cells' size: " + std::to_string(shortest) + " m; or take scheme.backend = \"threads\""));
+}
+
+}  // namespace
+
 void refuse_what_devices_lack(const scene::Scene& scene) {
     std::vector<scene::Problem> problems;
     const auto refuse = [&](const std::string& key, const std::string& what) {
         problems.push_back(scene.problem(key, "the backend opencl has no " + what,
-                                         "known to it: walls, forces, effects; take scheme.backend = \"threads\""));
+                                         "known to it: sides, forces, effects; take scheme.backend = \"threads\""));
     };
     for (const char* list : {"solids", "emitters", "sinks"})
         if (scene.has(list) && !scene.root().tables(list).empty()) refuse(list, list);
-    const auto check_sides = [&](const auto& sides, int dim) {
-        for (int a = 0; a < dim; ++a)
-            for (int end = 0; end < 2; ++end) {
-                const auto kind = sides.side(a, end).kind;
-                if (kind == geometry::SideKind::wall || kind == geometry::SideKind::moving_wall) continue;
-                const std::string side = std::string(1, "xyz"[a]) + (end ? "_max" : "_min");
-                refuse("sides." + side, sides.periodic(a) ? "periodic sides" : "open sides");
-            }
-    };
     if (scene.dim() == 2)
-        check_sides(geometry::Sides<2>(scene), 2);
+        check_periods<2>(scene, problems);
     else
-        check_sides(geometry::Sides<3>(scene), 3);
+        check_periods<3>(scene, problems);
     if (!problems.empty()) scene.refuse(std::move(problems));
 }
 

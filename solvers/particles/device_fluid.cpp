@@ -11,9 +11,7 @@ namespace weir::particles {
 namespace {
 #include "particles/kernels/state_params.h"
 
-constexpr std::size_t reduction_groups = 256;
-constexpr std::size_t usual_group = 256, pair_group = 128;
-constexpr int scan_items = 8;  // SCAN_ITEMS of sort.cl
+constexpr std::size_t usual_group = 256;
 constexpr std::int64_t steps_between_reorders = 16;
 
 template <int D>
@@ -23,10 +21,31 @@ StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& do
         p.centre[a] = domain.centre()[a];
         p.keep_lo[a] = domain.keep_lo[a];
         p.keep_hi[a] = domain.keep_hi[a];
+        const bool repeats = domain.sides.periodic(a);
+        p.lo[a] = domain.lo[a];
+        p.period[a] = repeats ? domain.hi[a] - domain.lo[a] : 0;
+        p.exit_lo[a] = repeats || domain.walled(a, 0) ? -infinity : domain.lo[a];
+        p.exit_hi[a] = repeats || domain.walled(a, 1) ? infinity : domain.hi[a];
         p.gravity[a] = effects.g[a];
         p.field_centre[a] = effects.centre[a];
     }
     return p;
+}
+
+/// The periods in single precision, exactly as numbers of a program's text: what passes over pairs measure distances by.
+template <int D>
+std::string periods(const Domain<D>& domain) {
+    std::string lengths, inverse;
+    const Frame frame = domain.frame();
+    for (std::size_t a = 0; a < 4; ++a) {
+        const auto period = static_cast<float>(a < 3 ? frame.period[a] : 0);
+        const auto append = [&](std::string& list, float number) {
+            list += (a > 0 ? "," : "") + hex_number(static_cast<double>(number)) + "f";
+        };
+        append(lengths, period);
+        append(inverse, period > 0 ? 1 / period : 0);
+    }
+    return " -DWEIR_PERIOD=" + lengths + " -DWEIR_PER_PERIOD=" + inverse;
 }
 
 /// How many neighbours there is room for at first: half as many again as a lattice has.
@@ -45,6 +64,11 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
         throw BadInput(device_->info().name +
                        " has no double precision (cl_khr_fp64), in which the state of particles is kept: choose another "
                        "device (weir list devices) or the backend threads");
+    for (int axis = 0; axis < D; ++axis) {
+        const auto& domain = host_.domain;
+        repeats_ = repeats_ || domain.sides.periodic(axis);
+        open_ = open_ || (!domain.sides.periodic(axis) && !(domain.walled(axis, 0) && domain.walled(axis, 1)));
+    }
     for (group_ = static_cast<int>(usual_group); static_cast<std::size_t>(group_) > device_->info().group_limit;) group_ /= 2;
     compile(setup);
     room_ = usual_neighbours<D>(support_ / host_.domain.spacing);
@@ -58,8 +82,8 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
     state_params = constant(state_params_of(effects, host_.domain));
     wall_params = constant(setup.walls);
     kernel_params = constant(setup.kernels);
-    parts_ = device_->alloc(reduction_groups * 2 * D * sizeof(double));
-    host_parts_.resize(reduction_groups * 2 * D);
+    parts_ = device_->alloc(device_reduction_groups * 2 * D * sizeof(double));
+    host_parts_.resize(device_reduction_groups * 2 * D);
     needed_ = device_->alloc(sizeof(int));
 }
 
@@ -70,6 +94,8 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     files.insert(files.end(), setup.files.begin(), setup.files.end());
     std::string defines = "-cl-std=CL1.2 -DWEIR_DIM=" + std::to_string(D) + " -DWEIR_KERNEL=" + std::to_string(setup.kernel) +
                           " -DWEIR_GROUP=" + std::to_string(group_) + " " + setup.defines;
+    if (repeats_) defines += periods(host_.domain);
+    if (open_) defines += " -DWEIR_LEAVING";
     if (effects_.gravity) defines += " -DWEIR_GRAVITY";
     if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
     if (effects_.xsph) defines += " -DWEIR_XSPH";
@@ -101,7 +127,8 @@ Fluid<D>& DeviceFluid<D>::change() {
 
 template <int D>
 void DeviceFluid<D>::upload() {
-    if (host_.count() > stride_) settle_in();  // a restored state may have more particles
+    count_ = host_.count();
+    if (count_ > stride_) settle_in();  // a restored state may have more particles
     const auto n = host_.id.size(), row = static_cast<std::size_t>(stride_) * sizeof(real);
     for (std::size_t axis = 0; axis < D; ++axis) {
         device_->upload(x, host_.x[axis].data(), n * sizeof(real), axis * row);
@@ -116,6 +143,7 @@ void DeviceFluid<D>::upload() {
 
 template <int D>
 void DeviceFluid<D>::download() const {
+    host_.resize(count_);
     const auto n = host_.id.size(), row = static_cast<std::size_t>(stride_) * sizeof(real);
     for (std::size_t axis = 0; axis < D; ++axis) {
         device_->download(host_.x[axis].data(), x, n * sizeof(real), axis * row);
@@ -133,125 +161,39 @@ template <int D>
 void DeviceFluid<D>::run(std::string_view kernel, std::initializer_list<backend::Argument> arguments) {
     if (device_is_old_) upload();
     host_is_old_ = true;
-    device_->launch(kernel, static_cast<std::size_t>(host_.count()), pair_group, arguments);
+    device_->launch(kernel, static_cast<std::size_t>(count()), device_group, arguments);
 }
 
 template <int D>
 void DeviceFluid<D>::clear(const Memory& numbers, std::size_t bytes_per_particle) {
-    device_->fill_zero(numbers, static_cast<std::size_t>(host_.count()) * bytes_per_particle);
+    device_->fill_zero(numbers, static_cast<std::size_t>(count()) * bytes_per_particle);
 }
 
 template <int D>
 void DeviceFluid<D>::predict(real dt) {
     pass_time(dt);
-    run("predict", {host_.count(), stride_, state_params, dt, pull(dt), x, v, x_star});
-}
-
-template <int D>
-void DeviceFluid<D>::find_neighbours(const Memory& positions) {
-    if (host_.count() == 0) return;
-    if (device_is_old_) upload();
-    const CellGrid grid = cover(positions);
-    sort(positions, grid);
-    run("load_sorted", {host_.count(), stride_, state_params, positions, order, cell_, a, sorted_cell_});
-    build_list(grid);
-}
-
-/// The box of all particles decides the cells, by the rule of the processor's path.
-template <int D>
-CellGrid DeviceFluid<D>::cover(const Memory& positions) {
-    const auto group = static_cast<std::size_t>(group_);
-    const std::size_t groups = std::min(reduction_groups, (static_cast<std::size_t>(host_.count()) + group - 1) / group);
-    device_->launch("range", groups * group, group, {host_.count(), stride_, positions, parts_});
-    device_->download(host_parts_.data(), parts_, groups * 2 * D * sizeof(double));
-    std::array<real, 3> lo{0, 0, 0}, hi{0, 0, 0};
-    for (std::size_t axis = 0; axis < D; ++axis) {
-        lo[axis] = infinity, hi[axis] = -infinity;
-        for (std::size_t g = 0; g < groups; ++g) {
-            lo[axis] = std::min(lo[axis], host_parts_[g * 2 * D + 2 * axis]);
-            hi[axis] = std::max(hi[axis], host_parts_[g * 2 * D + 2 * axis + 1]);
-        }
-        if (!std::isfinite(lo[axis]) || !std::isfinite(hi[axis])) throw NumericalFailure("position", "a particle's position is not finite");
-    }
-    return cover_box(lo, hi, host_.count(), support_ * 1.00001);  // a hair wider: cells are chosen in double, distances tested in float
-}
-
-template <int D>
-void DeviceFluid<D>::sort(const Memory& positions, const CellGrid& grid) {
-    const int cells = grid.cells[0] * grid.cells[1] * grid.cells[2];
-    const auto starts = static_cast<std::size_t>(cells) + 1, group = static_cast<std::size_t>(group_);
-    if (starts > cells_room_) {
-        cells_room_ = starts + starts / 4;
-        start_ = device_->alloc(cells_room_ * sizeof(int));
-        members_ = device_->alloc(cells_room_ * sizeof(int));
-        blocks_ = device_->alloc((cells_room_ / (group * scan_items) + 1) * sizeof(int));
-    }
-    const std::array<double, 4> corner{grid.origin[0], grid.origin[1], grid.origin[2], grid.per_cell};
-    const std::array<int, 4> n{grid.cells[0], grid.cells[1], grid.cells[2], 0};
-    device_->fill_zero(members_, starts * sizeof(int));
-    run("find_cells", {host_.count(), stride_, corner, n, positions, cell_, members_});
-    exclusive_sums(cells + 1, members_, start_);
-    run("scatter", {host_.count(), cell_, start_, members_, order});
-    device_->launch("sort_cells", static_cast<std::size_t>(cells), pair_group, {cells, start_, order});
-}
-
-template <int D>
-void DeviceFluid<D>::exclusive_sums(int count, const Memory& in, const Memory& out) {
-    const auto group = static_cast<std::size_t>(group_), entries = static_cast<std::size_t>(count);
-    const std::size_t blocks = (entries + group * scan_items - 1) / (group * scan_items);
-    device_->launch("scan_blocks", blocks * group, group, {count, in, out, blocks_});
-    if (blocks == 1) return;
-    device_->launch("scan_sums", group, group, {static_cast<int>(blocks), blocks_});
-    device_->launch("scan_add", entries, group, {count, out, blocks_});
-}
-
-template <int D>
-void DeviceFluid<D>::build_list(const CellGrid& grid) {
-    const std::array<int, 4> n{grid.cells[0], grid.cells[1], grid.cells[2], 0};
-    const auto radius = static_cast<float>(support_);
-    for (;;) {
-        int needed = 0;
-        device_->fill_zero(needed_, sizeof needed);
-        run("find_neighbours", {host_.count(), stride_, room_, radius * radius, n, a, sorted_cell_, start_, neighbours, list, needed_});
-        device_->download(&needed, needed_, sizeof needed);
-        if (needed == 0) return;
-        grow_list(needed);
-    }
-}
-
-template <int D>
-void DeviceFluid<D>::grow_list(int needed) {
-    const auto room = static_cast<std::size_t>(needed) + static_cast<std::size_t>(needed) / 4;
-    const std::size_t bytes = room * static_cast<std::size_t>(stride_) * sizeof(int);
-    const auto& info = device_->info();
-    if (bytes > info.largest || device_->allocated() - list.bytes + bytes > info.memory)
-        throw NumericalFailure("neighbours", "the neighbour list needs " + std::to_string(bytes >> 20) + " MiB, more than " + info.name +
-                                                 " has left: too many particles are closer than the support");
-    list = {};
-    list = device_->alloc(bytes);
-    room_ = static_cast<int>(room);
-    ++growths_;
+    run("predict", {count(), stride_, state_params, dt, pull(dt), x, v, x_star});
 }
 
 template <int D>
 void DeviceFluid<D>::finish(real dt) {
     if (effects_.xsph) {
-        run("load_velocities", {host_.count(), stride_, v, order, velocities_});
-        run("smooth", {host_.count(), stride_, kernel_params, effects_.smoothing, a, velocities_, neighbours, list, order, v});
+        run("load_velocities", {count(), stride_, v, order, velocities_});
+        run("smooth", {count(), stride_, kernel_params, effects_.smoothing, a, velocities_, neighbours, list, order, v});
     }
     if (effects_.vorticity) {
-        run("load_velocities", {host_.count(), stride_, v, order, velocities_});
-        run("curl", {host_.count(), stride_, kernel_params, a, velocities_, neighbours, list, omegas_});
-        run("confine", {host_.count(), stride_, kernel_params, dt * effects_.confinement, a, omegas_, neighbours, list, order, v});
+        run("load_velocities", {count(), stride_, v, order, velocities_});
+        run("curl", {count(), stride_, kernel_params, a, velocities_, neighbours, list, omegas_});
+        run("confine", {count(), stride_, kernel_params, dt * effects_.confinement, a, omegas_, neighbours, list, order, v});
     }
 }
 
 template <int D>
 typename DeviceFluid<D>::Reduced DeviceFluid<D>::reduce(std::string_view kernel, std::initializer_list<backend::Argument> arguments) {
-    if (host_.count() == 0) return {};
+    if (count() == 0) return {};
     if (device_is_old_) upload();
     const auto group = static_cast<std::size_t>(group_);
-    const std::size_t groups = std::min(reduction_groups, (static_cast<std::size_t>(host_.count()) + group - 1) / group);
+    const std::size_t groups = std::min(device_reduction_groups, (static_cast<std::size_t>(count()) + group - 1) / group);
     device_->launch(kernel, groups * group, group, arguments);
     device_->download(host_parts_.data(), parts_, groups * 2 * sizeof(double));
     Reduced all{-infinity, 0};
@@ -266,32 +208,33 @@ typename DeviceFluid<D>::Reduced DeviceFluid<D>::reduce(std::string_view kernel,
 
 template <int D>
 real DeviceFluid<D>::max_speed() {
-    const real square = reduce("speeds", {host_.count(), stride_, x, v, parts_}).largest;
+    const real square = reduce("speeds", {count(), stride_, x, v, parts_}).largest;
     speed_ = std::isfinite(square) ? std::sqrt(square) : host().max_speed();  // which names what is not finite
     return speed_;
 }
 
 template <int D>
 void DeviceFluid<D>::end_step() {
-    if (++host_.steps % steps_between_reorders == 0 && host_.count() > 0) reorder();
+    if (++host_.steps % steps_between_reorders == 0 && count() > 0) reorder();
+    cross_sides();
 }
 
 template <int D>
 void DeviceFluid<D>::reorder() {
     const auto arrange = [&](Memory& numbers, Memory& scratch, int axes) {
-        run("gather_numbers", {host_.count(), stride_, axes, order, numbers, scratch});
+        run("gather_numbers", {count(), stride_, axes, order, numbers, scratch});
         std::swap(numbers, scratch);
     };
     arrange(x, x_star, D), arrange(v, x_star, D);  // x* is not needed any more
     arrange(density, scratch_, 1), arrange(carried, scratch_, 1);
-    run("gather_names", {host_.count(), order, id_, names_});
+    run("gather_names", {count(), order, id_, names_});
     std::swap(id_, names_);
 }
 
 template <int D>
 typename DeviceFluid<D>::NeighbourCounts DeviceFluid<D>::neighbour_counts() const {
-    const int n = host_.count();
-    if (n == 0 || host_.steps == 0) return {};
+    const int n = sorted_count_;
+    if (n == 0) return {};
     std::vector<int> counts(static_cast<std::size_t>(n));
     device_->download(counts.data(), neighbours, counts.size() * sizeof(int));
     const auto count_of = [&](int k) { return static_cast<real>(counts[static_cast<std::size_t>(k)]); };
@@ -300,7 +243,7 @@ typename DeviceFluid<D>::NeighbourCounts DeviceFluid<D>::neighbour_counts() cons
 
 template <int D>
 std::vector<int> DeviceFluid<D>::sorted_order() const {
-    std::vector<int> owners(host_.id.size());
+    std::vector<int> owners(static_cast<std::size_t>(sorted_count_));
     device_->download(owners.data(), order, owners.size() * sizeof(int));
     return owners;
 }

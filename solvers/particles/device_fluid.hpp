@@ -12,6 +12,9 @@
 
 namespace weir::particles {
 
+/// Work items of a group of passes over particles; groups that reduce.
+inline constexpr std::size_t device_group = 128, device_reduction_groups = 256;
+
 /// What a solver brings: its kernels, and the numbers that they read.
 struct DeviceSetup {
     int device = 0;
@@ -55,7 +58,7 @@ public:
     /// The same to be changed: the device follows before its next pass.
     Fluid<D>& change();
     real time() const { return host_.time; }
-    int count() const { return host_.count(); }
+    int count() const { return device_is_old_ ? host_.count() : count_; }
     int stride() const { return stride_; }
     /// The fluid's constants; its particles may be old.
     const Fluid<D>& setting() const { return host_; }
@@ -79,7 +82,8 @@ public:
     void find_neighbours(const Memory& positions);
     /// XSPH and vorticity, where the scene names them.
     void finish(real dt);
-    /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory.
+    /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory; what has crossed a side is
+    /// taken back or out.
     void end_step();
 
     /// Zeroes a number of so many bytes of each particle.
@@ -126,12 +130,16 @@ private:
     void build_list(const CellGrid& grid);
     void grow_list(int needed);
     void reorder();
+    void cross_sides();
+    void take_out();
 
     std::unique_ptr<backend::Device> device_;
     mutable Fluid<D> host_;
     mutable bool host_is_old_ = false, device_is_old_ = true;
     DevicePlan plan_;
+    int count_ = 0, sorted_count_ = 0;  // particles on the device; and when they were sorted last
     int stride_ = 1, room_ = 0, growths_ = 0, group_ = 1;
+    bool repeats_ = false, open_ = false;  // any axis; any side
     real support_ = 0;
     DeviceEffects<D> effects_;
     real speed_ = 0;

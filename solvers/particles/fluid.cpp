@@ -34,6 +34,15 @@ void Fluid<D>::add(const Vec<D>& at, const Vec<D>& velocity) {
 }
 
 template <int D>
+void Fluid<D>::resize(int count) {
+    const auto n = static_cast<std::size_t>(count);
+    for (std::size_t a = 0; a < D; ++a) x[a].resize(n), v[a].resize(n);
+    id.resize(n);
+    density.resize(n);
+    carried.resize(n);
+}
+
+template <int D>
 void Fluid<D>::cross_sides() {
     bool open = false, repeats = false;
     for (int a = 0; a < D; ++a) {

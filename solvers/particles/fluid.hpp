@@ -44,6 +44,7 @@ struct Fluid {
         return c;
     }
     void add(const Vec<D>& at, const Vec<D>& velocity);
+    void resize(int count);
     /// Takes out the particles for which gone(i) holds; the others keep their order.
     template <class F>
     void remove_if(F&& gone);
@@ -76,10 +77,7 @@ void Fluid<D>::remove_if(F&& gone) {
         density[at] = density[from];
         carried[at] = carried[from];
     }
-    for (std::size_t a = 0; a < D; ++a) x[a].resize(static_cast<std::size_t>(to)), v[a].resize(static_cast<std::size_t>(to));
-    id.resize(static_cast<std::size_t>(to));
-    density.resize(static_cast<std::size_t>(to));
-    carried.resize(static_cast<std::size_t>(to));
+    resize(to);
 }
 
 /// Sum of f(i) over [0, count) in blocks of fixed size, so that the sum does not depend on the number of threads.

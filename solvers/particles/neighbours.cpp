@@ -69,7 +69,7 @@ void around(const std::array<int, 3>& n, int cell, F&& f) {
 class UniformGrid final : public NeighbourSearch {
 public:
     const NeighbourLists& find(const Coordinates& x, int count, real radius) override {
-        cover_.cover(x, count, radius * (1 + 1e-12));
+        cover_.cover(cover_box(cover_.box(x, count), count, radius * (1 + 1e-12)));
         const auto& n = cover_.cells();
         for (auto& list : members_) list.clear();
         members_.resize(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]));

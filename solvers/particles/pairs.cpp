@@ -6,8 +6,23 @@
 
 namespace weir::particles {
 
-/// One image for each particle near a periodic side; corners follow because an axis also copies the images of the axes before it.
-void Pairs::make_images(const Coordinates& x, int count, real radius) {
+real Frame::band(std::size_t axis, const Box& particles, real radius) const {
+    return radius + std::max<real>(0, std::max(lo[axis] - particles.lo[axis], particles.hi[axis] - lo[axis] - period[axis]));
+}
+
+CellGrid Frame::cover(const Box& particles, int count, real radius) const {
+    Box all = particles;
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (period[a] == 0) continue;
+        const real width = band(a, particles, radius);
+        all.lo[a] = lo[a] - width;
+        all.hi[a] = lo[a] + period[a] + width;
+    }
+    return cover_box(all, count, radius * 1.00001);  // a hair wider than the radius: cells are chosen in double, distances tested in float
+}
+
+/// An image of each particle near a periodic side; corners follow because an axis also copies the images of the axes before it.
+void Pairs::make_images(const Coordinates& x, int count, const Box& particles, real radius) {
     image_owner_.clear();
     image_shift_.clear();
     for (std::size_t a = 0; a < 3; ++a)
@@ -15,11 +30,8 @@ void Pairs::make_images(const Coordinates& x, int count, real radius) {
     for (std::size_t a = 0; a < 3; ++a) {
         const real period = frame_.period[a], lo = frame_.lo[a];
         if (!x[a] || period == 0) continue;
-        const auto before = with_images_[a].size();
-        for (std::size_t i = 0; i < before; ++i) {
-            const real here = with_images_[a][i];
-            const real shift = here < lo + radius ? period : here > lo + period - radius ? -period : 0;
-            if (shift == 0) continue;
+        const real band = frame_.band(a, particles, radius);
+        const auto copy = [&](std::size_t i, real shift) {
             const bool first_hand = i < static_cast<std::size_t>(count);
             image_owner_.push_back(first_hand ? static_cast<int>(i) : image_owner_[i - static_cast<std::size_t>(count)]);
             auto moved = first_hand ? std::array<float, 3>{0, 0, 0} : image_shift_[i - static_cast<std::size_t>(count)];
@@ -27,6 +39,12 @@ void Pairs::make_images(const Coordinates& x, int count, real radius) {
             image_shift_.push_back(moved);
             for (std::size_t b = 0; b < 3; ++b)
                 if (x[b]) with_images_[b].push_back(with_images_[b][i] + (a == b ? shift : 0));
+        };
+        const auto before = with_images_[a].size();
+        for (std::size_t i = 0; i < before; ++i) {
+            const real here = with_images_[a][i];
+            if (here < lo + band) copy(i, period);
+            if (here > lo + period - band) copy(i, -period);
         }
     }
 }
@@ -47,14 +65,14 @@ void Pairs::find(const Coordinates& x, int count, real radius) {
     particles_ = count;
     Coordinates all = x;
     int total = count;
-    const bool periodic = std::any_of(frame_.period.begin(), frame_.period.end(), [](real p) { return p > 0; });
-    if (periodic) {
-        make_images(x, count, radius);
+    const Box box = cells_.box(x, count);
+    if (frame_.periodic()) {
+        make_images(x, count, box, radius);
         total += static_cast<int>(image_owner_.size());
         for (std::size_t a = 0; a < 3; ++a)
             if (x[a]) all[a] = with_images_[a].data();
     }
-    cells_.sort(all, total, radius * 1.00001);  // a hair wider than the radius: cells are chosen in double, distances tested in float
+    cells_.sort(all, total, frame_.cover(box, count, radius));
     owner_.resize(static_cast<std::size_t>(total));
     fit(a_, 4);
     fit(b_, 4);

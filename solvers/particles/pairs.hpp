@@ -15,6 +15,13 @@ namespace weir::particles {
 struct Frame {
     std::array<real, 3> centre{0, 0, 0};
     std::array<real, 3> lo{0, 0, 0}, period{0, 0, 0};  // period 0: the axis does not repeat
+
+    bool periodic() const { return period[0] > 0 || period[1] > 0 || period[2] > 0; }
+    /// Particles closer than this to a side that repeats have an image beyond the other one: the radius, and as far as particles of this
+    /// box have gone beyond a side.
+    real band(std::size_t axis, const Box& particles, real radius) const;
+    /// The cells for particles of this box and their images.
+    CellGrid cover(const Box& particles, int count, real radius) const;
 };
 
 class Pairs {
@@ -60,7 +67,7 @@ public:
     std::size_t bytes() const;
 
 private:
-    void make_images(const Coordinates& x, int count, real radius);
+    void make_images(const Coordinates& x, int count, const Box& particles, real radius);
     void place_dummies(float* four) const;
 
     const PassTable& table_;

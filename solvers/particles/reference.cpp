@@ -67,16 +67,8 @@ struct Functions {
 constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(spline), WEIR_FUNCTIONS(c2)};
 
 /// Walls and solids at one particle: gradient, then part.
-std::array<double, 4> walls_at(const WallParams& walls, const Point& x) {
-    double part[3], pull[3], solid[4] = {0, 0, 0, 0}, out[4];
-    for (int a = 0; a < 3; ++a) {
-        part[a] = wall_part(x[static_cast<std::size_t>(a)], &walls, a);
-        pull[a] = wall_pull(x[static_cast<std::size_t>(a)], &walls, a);
-    }
-    walls_combined(part, pull, solid, out);
-    return {out[0], out[1], out[2], out[3]};
-}
-std::array<double, 4> walls_at(const ReferencePbf& r, const Point& x, std::size_t i) {
+template <class Reference>
+std::array<double, 4> walls_at(const Reference& r, const Point& x, std::size_t i) {
     double part[3], pull[3], solid[4] = {0, 0, 0, 0}, out[4];
     for (int a = 0; a < 3; ++a) {
         part[a] = wall_part(x[static_cast<std::size_t>(a)], &r.walls, a);
@@ -91,13 +83,20 @@ std::array<double, 4> walls_at(const ReferencePbf& r, const Point& x, std::size_
 }
 
 Point difference(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+/// To the nearest image.
+Point apart(const Point& a, const Point& b, const Point& period) {
+    Point d = difference(a, b);
+    for (std::size_t k = 0; k < 3; ++k)
+        if (period[k] > 0) d[k] -= period[k] * std::round(d[k] / period[k]);
+    return d;
+}
 double square(const Point& d) { return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]; }
 
 /// f(j, x_i - x_j, r^2) for every neighbour.
 template <class F>
 void each_neighbour(const ReferencePbf& r, const std::vector<Point>& x, std::size_t i, F&& f) {
     for (const std::size_t j : r.neighbours[i]) {
-        const Point d = difference(x[i], x[j]);
+        const Point d = apart(x[i], x[j], r.period);
         f(j, d, square(d));
     }
 }
@@ -108,7 +107,7 @@ void ReferencePbf::find_neighbours(const std::vector<Point>& x) {
     neighbours.assign(x.size(), {});
     for (std::size_t i = 0; i < x.size(); ++i)
         for (std::size_t j = 0; j < x.size(); ++j)
-            if (j != i && square(difference(x[i], x[j])) < p.h2) neighbours[i].push_back(j);
+            if (j != i && square(apart(x[i], x[j], period)) < p.h2) neighbours[i].push_back(j);
 }
 
 std::vector<double> ReferencePbf::densities(const std::vector<Point>& x) const {
@@ -156,9 +155,9 @@ std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const st
 std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
     std::vector<double> rho(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        rho[i] = p.self + p.wall_rho * walls_at(walls, x[i])[3];
+        rho[i] = p.self + p.wall_rho * walls_at(*this, x[i], i)[3];
         for (std::size_t j = 0; j < x.size(); ++j)
-            if (j != i) rho[i] += functions[kernel].sph_density(square(difference(x[i], x[j])), &p);
+            if (j != i) rho[i] += functions[kernel].sph_density(square(apart(x[i], x[j], period)), &p);
     }
     return rho;
 }
@@ -167,10 +166,10 @@ std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::
                                         double rho0) const {
     std::vector<double> rate(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const auto wall = walls_at(walls, x[i]);
+        const auto wall = walls_at(*this, x[i], i);
         double relative = 2 * (wall[0] * v[i][0] + wall[1] * v[i][1] + wall[2] * v[i][2]), spread = 0;
         for (std::size_t j = 0; j < x.size(); ++j) {
-            const Point d = difference(x[i], x[j]), u = difference(v[i], v[j]);
+            const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
             if (j == i || square(d) >= p.h2) continue;
             double excess = (rho[j] - rho0) - (rho[i] - rho0);
             for (std::size_t b = 0; b < 3; ++b) excess += p.layers[b] * d[b];
@@ -185,10 +184,10 @@ std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::
 std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std::vector<double>& rho) const {
     std::vector<Point> q(x.size()), a(x.size(), Point{0, 0, 0});
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const auto wall = walls_at(walls, x[i]);
+        const auto wall = walls_at(*this, x[i], i);
         q[i] = {wall[0], wall[1], wall[2]};
         for (std::size_t j = 0; j < x.size(); ++j) {
-            const Point d = difference(x[i], x[j]);
+            const Point d = apart(x[i], x[j], period);
             if (j == i || square(d) >= p.h2) continue;
             const double f = functions[kernel].sph_colour(square(d), 1 / rho[j], &p);
             for (std::size_t b = 0; b < 3; ++b) q[i][b] += f * d[b];
@@ -198,7 +197,7 @@ std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std
     }
     for (std::size_t i = 0; i < x.size(); ++i)
         for (std::size_t j = 0; j < x.size(); ++j) {
-            const Point d = difference(x[i], x[j]);
+            const Point d = apart(x[i], x[j], period);
             if (j == i || square(d) >= p.h2) continue;
             const double f = muller::sph_tension(square(d), 1 / (rho[i] * rho[j]), &p), both = square(q[i]) + square(q[j]);
             const double own = q[i][0] * d[0] + q[i][1] * d[1] + q[i][2] * d[2], other = q[j][0] * d[0] + q[j][1] * d[1] + q[j][2] * d[2];
@@ -211,11 +210,11 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
                                                const std::vector<double>& pressure) const {
     std::vector<Point> a(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const auto wall = walls_at(walls, x[i]);
+        const auto wall = walls_at(*this, x[i], i);
         muller::sph_wall_force(x[i].data(), v[i].data(), pressure[i], wall[3], &walls, &p, a[i].data());
         for (std::size_t b = 0; b < 3; ++b) a[i][b] -= 2 * pressure[i] / rho[i] * wall[b];
         for (std::size_t j = 0; j < x.size(); ++j) {
-            const Point d = difference(x[i], x[j]), u = difference(v[i], v[j]);
+            const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
             const double r2 = square(d), approach = d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
             if (j == i || r2 >= p.h2) continue;
             const double pressures = summed ? pressure[i] / (rho[i] * rho[i]) + pressure[j] / (rho[j] * rho[j])

@@ -15,6 +15,7 @@ struct ReferencePbf {
     plain::PbfParams p{};
     plain::WallParams walls{};
     int kernel = 0;
+    Point period{0, 0, 0};     // of axes that repeat, at least two supports; 0: the axis does not
     std::vector<Point> solid;  // gradient of the part inside solids at each particle; empty: no solids
     std::vector<double> solid_part;
     std::vector<std::vector<std::size_t>> neighbours;
@@ -34,6 +35,9 @@ struct ReferenceSph {
     plain::SphParams p{};
     plain::WallParams walls{};
     int kernel = 0;
+    Point period{0, 0, 0};
+    std::vector<Point> solid;  // as for PBF
+    std::vector<double> solid_part;
     bool summed = true;  // density by summation: pairs push by the gradient of its energy
 
     std::vector<double> densities(const std::vector<Point>& x) const;

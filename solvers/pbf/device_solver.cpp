@@ -68,12 +68,13 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     fluid_.finish(dt);  // 22
     const real speed = fluid_.max_speed();
     const Reduced c = compression();
+    const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
     fluid_.end_step();
     fluid_.record(passes_);
     return {.dt = dt,
             .cfl = dt * speed / fluid_.domain().spacing,
             .iterations = iterations,
-            .density_error = fluid_.count() ? c.sum / fluid_.count() : 0,
+            .density_error = mean,
             .max_density_error = c.largest};
 }
 

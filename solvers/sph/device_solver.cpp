@@ -78,12 +78,11 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     fluid_.finish(dt);  // XSPH, vorticity
     const real speed = fluid_.max_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.density, fluid_.parts()});
+    const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
     fluid_.end_step();
     fluid_.record(passes_);
-    return {.dt = dt,
-            .cfl = dt * (speed + options_.sound) / fluid_.domain().spacing,
-            .density_error = fluid_.count() ? c.sum / fluid_.count() : 0,
-            .max_density_error = c.largest};
+    return {
+        .dt = dt, .cfl = dt * (speed + options_.sound) / fluid_.domain().spacing, .density_error = mean, .max_density_error = c.largest};
 }
 
 template <int D>

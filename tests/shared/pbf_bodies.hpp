@@ -1,63 +1,6 @@
-// What is true of PBF on every backend. A file that includes this says first, in namespace weir::test: `backend` (as a scene names it),
-// `Pbf<D>` (the solver's type) and `missing()` (why this machine cannot run it; empty where it can).
+// What is true of PBF on every backend.
 #pragma once
-#include "core/error.hpp"
-#include "shared/pbf_reference.hpp"
-
-#include "support/test.hpp"
-
-#define NEEDS_BACKEND \
-    if (const std::string why = weir::test::missing(); !why.empty()) GTEST_SKIP() << why
-
-namespace weir::test {
-namespace {  // every file that includes this has its own
-
-template <int D>
-std::unique_ptr<Pbf<D>> on_backend(const std::string& liquid, const std::string& scheme = "", const std::string& more = "") {
-    return std::make_unique<Pbf<D>>(
-        pbf_scene<D>(liquid, fmt::format("backend = \"{}\"{}{}", backend, scheme.empty() ? "" : ", ", scheme), more));
-}
-/// The path that every backend is compared with over several steps.
-template <int D>
-std::unique_ptr<pbf::PbfSolver<D>> on_sse2(const std::string& liquid, const std::string& scheme = "", const std::string& more = "") {
-    return pbf_solver<D>(pbf_scene<D>(liquid, "backend = \"threads:sse2\"" + (scheme.empty() ? "" : ", " + scheme), more));
-}
-
-real integral(const Solver& solver, const std::string& name) {
-    for (const auto& i : solver.integrals())
-        if (i.name == name) return i.value;
-    return not_applicable;
-}
-
-template <int D>
-real farthest_apart(const particles::Fluid<D>& a, const particles::Fluid<D>& b) {
-    real worst = 0;
-    for (int i = 0; i < a.count(); ++i) worst = std::max(worst, norm(a.position(i) - b.position(i)));
-    return worst;
-}
-
-template <int D>
-real support(const Pbf<D>& solver) {
-    return solver.options().support / 8;  // spacing of the scenes: 1/8 m
-}
-
-const char* centred(int dim) { return dim == 2 ? "[0.5, 0.75]" : "[0.5, 0.75, 0.5]"; }
-
-/// Each effect, and all together.
-template <int D>
-std::vector<std::string> effects() {
-    const std::string pull = fmt::format("effects.central_force = {{ omega = 5.0, centre = {} }}", centred(D));
-    const std::string smooth = "effects.xsph = { c = 0.2 }", whirl = "effects.vorticity = { epsilon = 0.2 }";
-    const std::string apart = "effects.artificial_pressure = { k = 0.01 }";
-    return {pull, smooth, whirl, apart, pull + "\n" + smooth + "\n" + whirl + "\n" + apart};
-}
-
-}  // namespace
-}  // namespace weir::test
-
-using namespace weir;
-using particles::Fluid;
-using test::on_backend;
+#include "shared/pbf_on_backend.hpp"
 
 TEST_IN_2D_AND_3D("one step agrees with the double reference to 1e-5 of the support, with every kernel") {
     NEEDS_BACKEND;

@@ -1,18 +1,6 @@
 // The bodies shared by all backends, on the first OpenCL device; and what is true of a device alone.
-#include "pbf/device_solver.hpp"
-#include "shared/device.hpp"
-
-#include <string>
-
-namespace weir::test {
-namespace {
-constexpr const char* backend = "opencl";
-template <int D>
-using Pbf = pbf::DevicePbfSolver<D>;
-std::string missing() { return missing_device(); }
-}  // namespace
-}  // namespace weir::test
-
+#include "shared/on_opencl.hpp"
+// first: what the bodies run on
 #include "shared/pbf_bodies.hpp"
 
 TEST_IN_2D_AND_3D("the order of sorted particles is that of the processor's path, also where thousands share a cell") {
@@ -34,12 +22,13 @@ TEST_IN_2D_AND_3D("what a device lacks is refused by name, all of it at once, an
     const std::string at = D == 2 ? "[0.75, 0.3]" : "[0.75, 0.3, 0.5]", along = D == 2 ? "[1, 0]" : "[1, 0, 0]";
     const std::string ball = "{ shape = \"sphere\", centre = " + at + ", radius = 0.2";
     const std::string more = "solids = [" + ball + " }]\nemitters = [" + ball + ", velocity = " + along + " }]\nsinks = [" + ball +
-                             " }]\nsides = { x_min = { kind = \"periodic\" }, x_max = { kind = \"periodic\" } }";
+                             " }]\n" + test::periodic_sides<D>();
     try {
-        on_backend<D>(test::box<D>(0.5, 1, 1), "", more);
+        test::Pbf<D>(test::pbf_scene<D>(test::box<D>(0.5, 0.5, 0.5), "backend = \"opencl\", support = 4.0", more,
+                                        D == 2 ? "[6, 6]" : "[6, 6, 6]", D == 2 ? "[0.75, 0.75]" : "[0.75, 0.75, 0.75]"));
         ADD_FAILURE() << "was not refused";
     } catch (const scene::BadScene& refused) {
-        for (const char* what : {"solids", "emitters", "sinks", "periodic sides"})
+        for (const char* what : {"solids", "emitters", "sinks", "periods shorter than two supports"})
             EXPECT_NE(std::string(refused.what()).find("the backend opencl has no " + std::string(what)), std::string::npos)
                 << refused.what();
     }

@@ -1,6 +1,6 @@
 // One step of PBF by the plain double-precision reference over all pairs, from any state: what every backend is compared with.
 #pragma once
-#include "particles/reference.hpp"
+#include "shared/surroundings.hpp"
 #include "unit/pbf/scenes.hpp"
 
 #include <algorithm>
@@ -17,24 +17,26 @@ void disturb(particles::Fluid<D>& fluid) {
         Vec<D> x = fluid.position(i), u{};
         for (int a = 0; a < D; ++a) x[a] += fluid.domain.spacing * jitter(random), u[a] = jitter(random);
         x[1] *= 0.97;
-        particles::Fluid<D>::put(fluid.x, i, fluid.domain.kept(x));
-        particles::Fluid<D>::put(fluid.v, i, u);
+        particles::Fluid<D>::put(fluid.x, i, fluid.domain.wrapped(fluid.domain.kept(x)));
+        particles::Fluid<D>::put(fluid.v, i, fluid.velocity(i) + u);
     }
 }
 
 /// The same step by the reference: predict, iterate over all pairs in double precision.
 template <int D>
 struct Expected {
+    const particles::Domain<D>& domain;
     std::vector<particles::Point> x;
     real largest_lambda = 0, largest_move = 0;
 
-    Expected(const pbf::Options& o, const particles::Fluid<D>& before, real dt) {
+    Expected(const pbf::Options& o, const particles::Fluid<D>& before, real dt) : domain(before.domain) {
         const real d = before.domain.spacing;
         particles::ReferencePbf reference;
         reference.p = pbf::pbf_params<particles::plain::PbfParams, D>(o, d);
         reference.walls =
             before.domain.template walls<particles::plain::WallParams>(pbf::density_kernel<D>(o, d), pbf::gradient_kernel<D>(o, d));
         reference.kernel = static_cast<int>(o.smoothing);
+        reference.period = periods(domain);
         for (int i = 0; i < before.count(); ++i) {
             Vec<D> u = before.velocity(i);
             u[1] -= dt * 9.81;
@@ -58,9 +60,11 @@ struct Expected {
     /// The largest difference along an axis.
     real farthest(const particles::Fluid<D>& after) const {
         real worst = 0;
-        for (int i = 0; i < after.count(); ++i)
-            for (int a = 0; a < D; ++a)
-                worst = std::max(worst, std::abs(after.position(i)[a] - x[static_cast<std::size_t>(i)][static_cast<std::size_t>(a)]));
+        for (int i = 0; i < after.count(); ++i) {
+            Vec<D> there;
+            for (int a = 0; a < D; ++a) there[a] = x[static_cast<std::size_t>(i)][static_cast<std::size_t>(a)];
+            for (const real c : apart(domain, after.position(i), there)) worst = std::max(worst, std::abs(c));
+        }
         return worst;
     }
 };

@@ -1,16 +1,4 @@
 // The bodies shared by all backends, on the first OpenCL device.
-#include "shared/device.hpp"
-#include "sph/device_solver.hpp"
-
-#include <string>
-
-namespace weir::test {
-namespace {
-constexpr const char* backend = "opencl";
-template <int D>
-using Sph = sph::DeviceSphSolver<D>;
-std::string missing() { return missing_device(); }
-}  // namespace
-}  // namespace weir::test
-
+#include "shared/on_opencl.hpp"
+// first: what the bodies run on
 #include "shared/sph_bodies.hpp"

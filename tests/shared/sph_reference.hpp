@@ -1,8 +1,8 @@
 // One step of SPH by the plain double-precision reference over all pairs, from any state: what every backend is compared with; and scenes
 // in which each term of the physics acts.
 #pragma once
-#include "particles/reference.hpp"
 #include "scene/scene.hpp"
+#include "shared/surroundings.hpp"
 #include "sph/solver.hpp"
 
 #include <fmt/core.h>
@@ -35,8 +35,8 @@ void shake(Fluid<D>& fluid, real amount) {
     for (int i = 0; i < fluid.count(); ++i) {
         Vec<D> x = fluid.position(i), u{};
         for (int a = 0; a < D; ++a) x[a] += amount * fluid.domain.spacing * jitter(random), u[a] = 0.2 * jitter(random);
-        Fluid<D>::put(fluid.x, i, fluid.domain.kept(x));
-        Fluid<D>::put(fluid.v, i, u);
+        Fluid<D>::put(fluid.x, i, fluid.domain.wrapped(fluid.domain.kept(x)));
+        Fluid<D>::put(fluid.v, i, fluid.velocity(i) + u);
         fluid.density[static_cast<std::size_t>(i)] = fluid.rho0 * (1 + 0.02 * jitter(random));  // continuity starts from it
     }
 }
@@ -64,6 +64,7 @@ std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Op
     reference.walls =
         before.domain.template walls<particles::plain::WallParams>(sph::density_kernel<D>(o, d), sph::gradient_kernel<D>(o, d));
     reference.kernel = static_cast<int>(o.smoothing);
+    reference.period = periods(before.domain);
     reference.summed = !o.continuity;
     const auto [x, v] = points_of(before);
     std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
@@ -85,6 +86,19 @@ std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Op
     }
     return {rho, after};
 }
+
+/// The largest differences of a state from what is expected: densities, and places before walls and solids keep them.
+struct Difference {
+    real place = 0, density = 0;
+    template <int D>
+    Difference(const particles::Domain<D>& domain, const Fluid<D>& fluid, const std::vector<double>& rho, const std::vector<Vec<D>>& free) {
+        for (int i = 0; i < fluid.count(); ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            place = std::max(place, norm(apart(domain, fluid.position(i), domain.kept(free[at]))));
+            density = std::max(density, std::abs(fluid.density[at] - rho[at]));
+        }
+    }
+};
 
 /// Each pair term, and each wall term, in some scene.
 struct Physics {

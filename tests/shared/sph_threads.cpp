@@ -1,15 +1,4 @@
 // The bodies shared by all backends, on threads with the best instruction set of this processor.
-#include "sph/solver.hpp"
-
-#include <string>
-
-namespace weir::test {
-namespace {
-constexpr const char* backend = "threads";
-template <int D>
-using Sph = sph::SphSolver<D>;
-std::string missing() { return ""; }
-}  // namespace
-}  // namespace weir::test
-
+#include "shared/on_threads.hpp"
+// first: what the bodies run on
 #include "shared/sph_bodies.hpp"

@@ -37,7 +37,7 @@ __kernel void smooth(int count, int stride, __constant PbfParams* p, double c, _
     float4 sum = (float4)(0.0f);
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
-        const float4 d = me - at[j];
+        const float4 d = APART(me, at[j]);
         sum += xsph_factor(SQUARE(d), p) * (velocities[j] - u);
     }
     add_change(i, stride, c, sum, order, v);
@@ -54,7 +54,7 @@ __kernel void curl(int count, int stride, __constant PbfParams* p, __global cons
     float4 sum = (float4)(0.0f);
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
-        const float4 d = me - at[j], u = velocities[j] - own;
+        const float4 d = APART(me, at[j]), u = velocities[j] - own;
         const float f = curl_factor(SQUARE(d), p);
         sum.x += f * (u.y * d.z - u.z * d.y);
         sum.y += f * (u.z * d.x - u.x * d.z);
@@ -75,7 +75,7 @@ __kernel void confine(int count, int stride, __constant PbfParams* p, double str
     float4 eta = (float4)(0.0f);
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
-        const float4 d = me - at[j];
+        const float4 d = APART(me, at[j]);
         eta += pbf_slope(SQUARE(d), p) * omega[j].w * d;
     }
     const float4 n = RSQRT(eta.x * eta.x + eta.y * eta.y + eta.z * eta.z + 1e-20f) * eta;

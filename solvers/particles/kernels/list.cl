@@ -16,27 +16,52 @@ __kernel void load_sorted(int count, int stride, __constant StateParams* s, __gl
     sorted_cell[k] = cell[i];
 }
 
-/* Where a particle has more neighbours than there is room for, `needed` says how many, and nothing is written beyond. */
-__kernel void find_neighbours(int count, int stride, int room, float radius2, int4 cells, __global const float4* sorted,
-                              __global const int* sorted_cell, __global const int* start, __global int* neighbours, __global int* list,
-                              __global int* needed) {
-    const int i = get_global_id(0);
-    if (i >= count) return;
-    const float4 me = sorted[i];
-    const int c = sorted_cell[i], cx = c % cells.x, cy = c / cells.x % cells.y, cz = c / (cells.x * cells.y);
-    const int x0 = max(cx - 1, 0), x1 = min(cx + 1, cells.x - 1);
-    int found = 0;
-    for (int z = max(cz - 1, 0); z <= min(cz + 1, cells.z - 1); ++z)
-        for (int y = max(cy - 1, 0); y <= min(cy + 1, cells.y - 1); ++y) {
+/* Appends what is near `me` in the cells first .. last to the list of particle i, which has `found` so far. Nothing is written beyond `room`. */
+WEIR_FN int append_near(int found, int i, float4 me, int4 first, int4 last, int stride, int room, float radius2, int4 cells,
+                        __global const float4* sorted, __global const int* start, __global int* list) {
+    first = max(first, (int4)(0));
+    last = min(last, cells - 1);
+    if (first.x > last.x) return found;
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y) {
             const int row = (z * cells.y + y) * cells.x;
-            const int end = start[row + x1 + 1];
-            for (int j = start[row + x0]; j < end; ++j) {
+            const int end = start[row + last.x + 1];
+            for (int j = start[row + first.x]; j < end; ++j) {
                 const float4 d = me - sorted[j];
                 if (j == i || !(SQUARE(d) < radius2)) continue;
                 if (found < room) list[(size_t)found * stride + i] = j;
                 ++found;
             }
         }
+    return found;
+}
+
+/* Where a particle has more neighbours than there is room for, `needed` says how many. Along axes that repeat, a particle's images look for
+   neighbours too. grid: origin of the cells, 1 / size. */
+__kernel void find_neighbours(int count, int stride, int room, float radius2, __constant StateParams* s, double4 grid, int4 cells,
+                              __global const float4* sorted, __global const int* sorted_cell, __global const int* start,
+                              __global int* neighbours, __global int* list, __global int* needed) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const float4 me = sorted[i];
+    const int c = sorted_cell[i];
+    const int4 own = (int4)(c % cells.x, c / cells.x % cells.y, c / (cells.x * cells.y), 0);
+    int found = append_near(0, i, me, own - 1, own + 1, stride, room, radius2, cells, sorted, start, list);
+#ifdef WEIR_PERIOD
+    const float4 period = (float4)(WEIR_PERIOD);
+    const int4 repeats = (int4)(period.x > 0, period.y > 0, period.z > 0, 0);
+    for (int z = -repeats.z; z <= repeats.z; ++z)
+        for (int y = -repeats.y; y <= repeats.y; ++y)
+            for (int x = -repeats.x; x <= repeats.x; ++x) {
+                if (x == 0 && y == 0 && z == 0) continue;
+                const float4 image = me + (float4)(x, y, z, 0) * period;
+                /* in cells; 1.01: the image's place is rounded */
+                const float4 at = (float4)((image.x + s->centre[0] - grid.x) * grid.w, (image.y + s->centre[1] - grid.y) * grid.w,
+                                           WEIR_DIM == 3 ? (image.z + s->centre[2] - grid.z) * grid.w : 0, 0);
+                found = append_near(found, i, image, convert_int4(floor(at - 1.01f)), convert_int4(floor(at + 1.01f)), stride, room,
+                                    radius2, cells, sorted, start, list);
+            }
+#endif
     neighbours[i] = found;
     if (found > room) atomic_max(needed, found);
 }

@@ -25,7 +25,7 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
     float rho = p->self, neighbours2 = 0, gx = 0, gy = 0, gz = 0;
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
-        const float4 d = me - from[list[(size_t)k * stride + i]];
+        const float4 d = APART(me, from[list[(size_t)k * stride + i]]);
         const float r2 = SQUARE(d);
         const float slope = pbf_slope(r2, p);
         rho += pbf_density(r2, p);
@@ -62,7 +62,7 @@ __kernel void correct(int count, int stride, __constant PbfParams* p, __constant
     float cx = 0, cy = 0, cz = 0;
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
-        const float4 other = from[list[(size_t)k * stride + i]], d = me - other;
+        const float4 other = from[list[(size_t)k * stride + i]], d = APART(me, other);
 #ifdef WEIR_PRESSURE
         const float factor = pbf_correction_with_pressure(SQUARE(d), me.w + other.w, p);
 #else
@@ -87,7 +87,7 @@ __kernel void densities(int count, int stride, __constant PbfParams* p, __consta
     float rho = p->self;
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
-        const float4 d = me - at[list[(size_t)k * stride + i]];
+        const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
         rho += pbf_density(SQUARE(d), p);
     }
     density[i] = rho + walls_at(me, walls).w;

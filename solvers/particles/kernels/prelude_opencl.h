@@ -22,6 +22,17 @@
 #define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
 #endif
 
+/* From b to a; along axes that repeat (WEIR_PERIOD, as four numbers) to the nearest of its images. */
+#ifdef WEIR_PERIOD
+WEIR_FN float4 apart(float4 a, float4 b) {
+    const float4 d = a - b;
+    return d - (float4)(WEIR_PERIOD) * rint(d * (float4)(WEIR_PER_PERIOD));
+}
+#define APART(a, b) apart(a, b)
+#else
+#define APART(a, b) ((a) - (b))
+#endif
+
 #if WEIR_DIM == 3
 #define SQUARE(d) (d.x * d.x + d.y * d.y + d.z * d.z)
 #else

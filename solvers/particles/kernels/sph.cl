@@ -14,7 +14,7 @@ __kernel void sph_densities(int count, int stride, __constant SphParams* p, __co
     float rho = p->self;
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
-        const float4 d = me - at[list[(size_t)k * stride + i]];
+        const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
         rho += sph_density(SQUARE(d), p);
     }
     density[order[i]] = (double)(rho + wall_rho * walls_at(me, walls).w);
@@ -70,7 +70,7 @@ __kernel void sph_forces(int count, int stride, __constant SphParams* p, __const
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
         const int j = list[(size_t)k * stride + i];
-        const float4 other = at[j], v = velocities[j], d = me - other, du = u - v;
+        const float4 other = at[j], v = velocities[j], d = APART(me, other), du = u - v;
         const float r2 = SQUARE(d), approach = du.x * d.x + du.y * d.y + du.z * d.z, volumes = me.w * other.w;
 #ifdef WEIR_CONTINUITY
         const float pressures = (u.w + v.w) * volumes;
@@ -95,7 +95,7 @@ __kernel void normals(int count, int stride, __constant SphParams* p, __constant
     float4 q = walls_at(me, walls);
     q.w = 0;
     for (int k = 0; k < neighbours[i]; ++k) {
-        const float4 other = at[list[(size_t)k * stride + i]], d = me - other;
+        const float4 other = at[list[(size_t)k * stride + i]], d = APART(me, other);
         const float f = sph_colour(SQUARE(d), other.w, p);
         q.x += f * d.x;
         q.y += f * d.y;
@@ -115,7 +115,7 @@ __kernel void tension(int count, int stride, __constant SphParams* p, double dt,
     float4 a = (float4)(0.0f);
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
-        const float4 other = at[j], n = normal[j], d = me - other;
+        const float4 other = at[j], n = normal[j], d = APART(me, other);
         const float f = sph_tension(SQUARE(d), me.w * other.w, p), both = q.w + n.w;
         const float own = q.x * d.x + q.y * d.y + q.z * d.z, others = n.x * d.x + n.y * d.y + n.z * d.z;
         a += f * (both * d - own * q - others * n);
@@ -171,7 +171,7 @@ __kernel void advance_densities(int count, int stride, __constant SphParams* p, 
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
         const int j = list[(size_t)k * stride + i];
-        const float4 other = at[j], v = velocities[j], d = me - other, du = u - v;
+        const float4 other = at[j], v = velocities[j], d = APART(me, other), du = u - v;
         const float r2 = SQUARE(d);
         rate += sph_rate(r2, du.x * d.x + du.y * d.y + du.z * d.z, other.w, p);
         spread += sph_diffusion(r2, v.w - u.w + p->layers[0] * d.x + p->layers[1] * d.y + p->layers[2] * d.z, other.w, p);

@@ -109,6 +109,38 @@ __kernel void compressions(int count, double rest, __global const double* densit
     reduce_parts(largest, sum, largests, sums, parts);
 }
 
+#ifdef WEIR_PERIOD
+/* Back into the period. */
+__kernel void wrap(int count, int stride, __constant StateParams* s, __global double* x) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    for (int a = 0; a < WEIR_DIM; ++a) {
+        if (s->period[a] == 0) continue;
+        const size_t at = (size_t)a * stride + i;
+        x[at] -= s->period[a] * floor((x[at] - s->lo[a]) / s->period[a]);
+    }
+}
+#endif
+
+#ifdef WEIR_LEAVING
+/* 1 for what stays: what has not left through an open side. */
+__kernel void find_stayers(int count, int stride, __constant StateParams* s, __global const double* x, __global int* stays) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    int stay = 1;
+    for (int a = 0; a < WEIR_DIM; ++a) {
+        const double here = x[(size_t)a * stride + i];
+        if (here < s->exit_lo[a] || here > s->exit_hi[a]) stay = 0;
+    }
+    stays[i] = stay;
+}
+/* The stayers' numbers, in their order; `before`: how many stay before each particle. */
+__kernel void list_stayers(int count, __global const int* stays, __global const int* before, __global int* order) {
+    const int i = get_global_id(0);
+    if (i < count && stays[i]) order[before[i]] = i;
+}
+#endif
+
 /* Rearranges the state: particle k is the former order[k]. */
 __kernel void gather_numbers(int count, int stride, int axes, __global const int* order, __global const double* from, __global double* to) {
     const int k = get_global_id(0);
