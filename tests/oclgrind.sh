@@ -23,5 +23,7 @@ check() { # NAME OPTIONS...: one run that must leave an empty log
 check pbf_2d
 check pbf_3d
 check pbf_sides
+check pbf_solids
 check sph_2d
 check sph_3d
+check sph_solids

@@ -1,11 +1,24 @@
 #include "geometry/shape.hpp"
 
+#include "core/hex_number.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace weir::geometry {
 
 namespace {
+
+template <int D>
+std::string code(const Vec<D>& x) {
+    return "(double4)(" + hex_number(x[0]) + ", " + hex_number(x[1]) + ", " + hex_number(D == 3 ? x[D - 1] : 0) + ", 0)";
+}
+std::string code(real x) { return hex_number(x); }
+/// A call of a function of the place x.
+template <class... Arguments>
+std::string call(const std::string& function, const Arguments&... arguments) {
+    return function + "(x" + ((", " + code(arguments)) + ...) + ")";
+}
 
 template <int D>
 struct Box final : Shape<D> {
@@ -21,6 +34,7 @@ struct Box final : Shape<D> {
         return inside > 0 ? std::sqrt(outside) : inside;
     }
     Vec<D> centre() const override { return 0.5 * (min + max); }
+    std::string code() const override { return call("shape_box", min, max); }
 };
 
 template <int D>
@@ -30,6 +44,7 @@ struct Sphere final : Shape<D> {
     Sphere(const Vec<D>& c_, real r) : c(c_), radius(r) {}
     real distance(const Vec<D>& x) const override { return norm(x - c) - radius; }
     Vec<D> centre() const override { return c; }
+    std::string code() const override { return call("shape_sphere", c, radius); }
 };
 
 template <int D>
@@ -38,6 +53,7 @@ struct Plane final : Shape<D> {
     Plane(const Vec<D>& p, const Vec<D>& normal) : point(p), n(normal / norm(normal)) {}
     real distance(const Vec<D>& x) const override { return dot(n, x - point); }
     Vec<D> centre() const override { return point; }
+    std::string code() const override { return call("shape_plane", point, n); }
 };
 
 /// Vertical distance times the cosine of the local slope: exact where the surface is flat, off by (slope x curvature) near it.
@@ -50,6 +66,7 @@ struct Wave final : Shape<D> {
         return (x[1] - level - amplitude * std::cos(k * x[0])) / std::sqrt(1 + slope * slope);
     }
     Vec<D> centre() const override { return level * Vec<D>::unit(1); }
+    std::string code() const override { return call("shape_wave", level, amplitude, k); }
 };
 
 template <int D>
@@ -64,6 +81,7 @@ struct Capsule final : Shape<D> {
         return norm(x - a - s * axis) - radius;
     }
     Vec<D> centre() const override { return 0.5 * (a + b); }
+    std::string code() const override { return call("shape_capsule", a, b, radius); }
 };
 
 /// In coordinates along the axis (z, from the middle) and across it (r) the cylinder is the box |z| <= half, r <= radius.
@@ -80,6 +98,7 @@ struct Cylinder final : Shape<D> {
         return std::sqrt(dz * dz + dr * dr);
     }
     Vec<D> centre() const override { return middle; }
+    std::string code() const override { return call("shape_cylinder", middle, axis, half, radius); }
 };
 
 template <int D>
@@ -96,6 +115,11 @@ struct Union final : Shape<D> {
         for (const auto& part : parts) sum += part->centre();
         return sum / static_cast<real>(std::max<std::size_t>(1, parts.size()));
     }
+    std::string code() const override {
+        std::string least = hex_number(infinity);
+        for (const auto& part : parts) least = "fmin(" + least + ", " + part->code() + ")";
+        return least;
+    }
 };
 
 template <int D>
@@ -109,6 +133,11 @@ struct Difference final : Shape<D> {
         return d;
     }
     Vec<D> centre() const override { return from->centre(); }
+    std::string code() const override {
+        std::string most = from->code();
+        for (const auto& hole : minus) most = "fmax(" + most + ", -" + hole->code() + ")";
+        return most;
+    }
 };
 
 }  // namespace

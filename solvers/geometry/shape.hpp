@@ -6,6 +6,7 @@
 #include "scene/scene.hpp"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace weir::geometry {
@@ -19,6 +20,8 @@ public:
     virtual real distance(const Vec<D>& x) const = 0;
     /// Where moving shapes turn about when no centre is given.
     virtual Vec<D> centre() const = 0;
+    /// distance(x) for devices: an expression of OpenCL C over the functions of particles/kernels/shapes.cl.
+    virtual std::string code() const = 0;
     bool contains(const Vec<D>& x) const { return distance(x) < 0; }
 };
 

@@ -35,9 +35,9 @@ void refuse_what_devices_lack(const scene::Scene& scene) {
     std::vector<scene::Problem> problems;
     const auto refuse = [&](const std::string& key, const std::string& what) {
         problems.push_back(scene.problem(key, "the backend opencl has no " + what,
-                                         "known to it: sides, forces, effects; take scheme.backend = \"threads\""));
+                                         "known to it: sides, solids, forces, effects; take scheme.backend = \"threads\""));
     };
-    for (const char* list : {"solids", "emitters", "sinks"})
+    for (const char* list : {"emitters", "sinks"})
         if (scene.has(list) && !scene.root().tables(list).empty()) refuse(list, list);
     if (scene.dim() == 2)
         check_periods<2>(scene, problems);

@@ -1,6 +1,7 @@
 #include "particles/device_fluid.hpp"
 
 #include "core/error.hpp"
+#include "core/hex_number.hpp"
 #include "particles/kernel_text.hpp"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ constexpr std::size_t usual_group = 256;
 constexpr std::int64_t steps_between_reorders = 16;
 
 template <int D>
-StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& domain) {
+StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& domain, real support) {
     StateParams p{};
     for (int a = 0; a < D; ++a) {
         p.centre[a] = domain.centre()[a];
@@ -29,6 +30,9 @@ StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& do
         p.gravity[a] = effects.g[a];
         p.field_centre[a] = effects.centre[a];
     }
+    p.margin = domain.margin;
+    p.feel = 1e-3 * domain.spacing;
+    p.reach = support + 2 * domain.spacing;  // and what the corrections of one step may move a particle
     return p;
 }
 
@@ -64,6 +68,7 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
         throw BadInput(device_->info().name +
                        " has no double precision (cl_khr_fp64), in which the state of particles is kept: choose another "
                        "device (weir list devices) or the backend threads");
+    solid_ = !host_.domain.solids.empty();
     for (int axis = 0; axis < D; ++axis) {
         const auto& domain = host_.domain;
         repeats_ = repeats_ || domain.sides.periodic(axis);
@@ -76,10 +81,11 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
     for (Memory* number : {&density, &carried, &scratch_}) plan_.want(*number, sizeof(double));
     for (Memory* integer : {&id_, &names_, &cell_, &sorted_cell_, &order, &neighbours}) plan_.want(*integer, sizeof(int));
     for (Memory* four : {&a, &b}) plan_.want(*four, 4 * sizeof(float));
+    if (solid_) plan_.want(near_solid, 1), plan_.want(terms, 4 * sizeof(float));
     if (effects_.xsph || effects_.vorticity) plan_.want(velocities_, 4 * sizeof(float));
     if (effects_.vorticity) plan_.want(omegas_, 4 * sizeof(float));
     plan_.want(list, static_cast<std::size_t>(room_) * sizeof(int));
-    state_params = constant(state_params_of(effects, host_.domain));
+    state_params = constant(state_params_of(effects, host_.domain, support_));
     wall_params = constant(setup.walls);
     kernel_params = constant(setup.kernels);
     parts_ = device_->alloc(device_reduction_groups * 2 * D * sizeof(double));
@@ -89,8 +95,10 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
 
 template <int D>
 void DeviceFluid<D>::compile(const DeviceSetup& setup) {
-    std::vector<std::string> files{"prelude_opencl.h", "params.h", "state_params.h", "pair.inl", "pbf_pair.inl",
-                                   "state.cl",         "sort.cl",  "list.cl",        "finish.cl"};
+    std::string program = program_of({"prelude_opencl.h", "params.h", "state_params.h", "pair.inl", "pbf_pair.inl"});
+    if (solid_) program += program_of({"shapes.cl"}) + text_of(host_.domain.solids) + program_of({"solids.cl"});
+    std::vector<std::string> files{"state.cl", "sort.cl", "list.cl", "finish.cl"};
+    if (solid_) files.insert(files.end() - 1, "solid_terms.cl");
     files.insert(files.end(), setup.files.begin(), setup.files.end());
     std::string defines = "-cl-std=CL1.2 -DWEIR_DIM=" + std::to_string(D) + " -DWEIR_KERNEL=" + std::to_string(setup.kernel) +
                           " -DWEIR_GROUP=" + std::to_string(group_) + " " + setup.defines;
@@ -100,7 +108,7 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
     if (effects_.xsph) defines += " -DWEIR_XSPH";
     if (effects_.vorticity) defines += " -DWEIR_VORTICITY";
-    device_->compile(program_of(files), defines);
+    device_->compile(program + program_of(files), defines);
 }
 
 template <int D>
@@ -136,6 +144,7 @@ void DeviceFluid<D>::upload() {
     }
     device_->upload(density, host_.density.data(), n * sizeof(real));
     device_->upload(carried, host_.carried.data(), n * sizeof(real));
+    if (solid_) place_solids();
     const std::vector<int> ids(host_.id.begin(), host_.id.end());
     device_->upload(id_, ids.data(), n * sizeof(int));
     device_is_old_ = false;
@@ -172,7 +181,7 @@ void DeviceFluid<D>::clear(const Memory& numbers, std::size_t bytes_per_particle
 template <int D>
 void DeviceFluid<D>::predict(real dt) {
     pass_time(dt);
-    run("predict", {count(), stride_, state_params, dt, pull(dt), x, v, x_star});
+    run("predict", {count(), stride_, state_params, poses, dt, pull(dt), x, v, x_star});
 }
 
 template <int D>

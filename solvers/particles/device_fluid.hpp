@@ -40,6 +40,10 @@ struct DeviceEffects {
     explicit DeviceEffects(const scene::Scene& scene);
 };
 
+/// The distances to solids at rest as text of a device's program (kernels/solids.cl).
+template <int D>
+std::string text_of(const geometry::Solids<D>& solids);
+
 /// Everything of a scene that only the processor's path has, as problems at its keys: throws BadScene if there is any.
 void refuse_what_devices_lack(const scene::Scene& scene);
 
@@ -75,11 +79,14 @@ public:
     }
     /// v += dt f of the scene's forces; x* = x + dt v.
     void predict(real dt);
-    void pass_time(real dt) { host_.time += dt; }
+    /// Time goes on, and solids that move with it.
+    void pass_time(real dt);
     /// What "central_force" pulls in dt, over the distance.
     real pull(real dt) const { return dt * effects_.omega * effects_.omega; }
-    /// Sorts particles by these positions (x or x*), loads them into a, finds neighbours closer than the support.
+    /// Sorts particles by these positions (x or x*), loads them into a, finds neighbours closer than the support, and what solids are near.
     void find_neighbours(const Memory& positions);
+    /// After a is changed: particles out of solids, and the solids' terms at the new places.
+    void leave_solids();
     /// XSPH and vorticity, where the scene names them.
     void finish(real dt);
     /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory; what has crossed a side is
@@ -117,6 +124,7 @@ public:
 
     Memory x, v, x_star, density, carried;            // state, double precision
     Memory order, a, b, neighbours, list;             // sorted particles: owners, float4, their neighbours
+    Memory near_solid, terms, poses;                  // of solids: sorted particles near one, what they add there; where they are
     Memory state_params, wall_params, kernel_params;  // constants
     const Memory& parts() const { return parts_; }
 
@@ -131,6 +139,8 @@ private:
     void grow_list(int needed);
     void reorder();
     void cross_sides();
+    void place_solids();
+    void meet_solids();
     void take_out();
 
     std::unique_ptr<backend::Device> device_;
@@ -139,7 +149,7 @@ private:
     DevicePlan plan_;
     int count_ = 0, sorted_count_ = 0;  // particles on the device; and when they were sorted last
     int stride_ = 1, room_ = 0, growths_ = 0, group_ = 1;
-    bool repeats_ = false, open_ = false;  // any axis; any side
+    bool repeats_ = false, open_ = false, solid_ = false;  // any axis; any side; any solid
     real support_ = 0;
     DeviceEffects<D> effects_;
     real speed_ = 0;

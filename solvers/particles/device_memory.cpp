@@ -4,8 +4,6 @@
 #include "particles/kernel_text.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <stdexcept>
 
 namespace weir::particles {
@@ -36,12 +34,6 @@ void DevicePlan::check(const backend::DeviceInfo& device, std::size_t count) con
 void DevicePlan::allocate(backend::Device& device, std::size_t count) const {
     for (const Wanted& w : wanted_) *w.memory = {};
     for (const Wanted& w : wanted_) *w.memory = device.alloc(std::max<std::size_t>(count, 1) * w.bytes);
-}
-
-std::string hex_number(double value) {
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), "%a", value);
-    return text.data();
 }
 
 std::string program_of(const std::vector<std::string>& files) {

@@ -20,6 +20,7 @@ void DeviceFluid<D>::find_neighbours(const Memory& positions) {
     sort(positions, grid);
     run("load_sorted", {count(), stride_, state_params, positions, order, cell_, a, sorted_cell_});
     build_list(grid);
+    meet_solids();
 }
 
 /// The box of all particles decides the cells, by the rule of the processor's path.

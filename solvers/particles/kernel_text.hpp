@@ -13,7 +13,5 @@ const std::vector<KernelText>& kernel_texts();
 
 /// The named files one after the other, each with its name for the compiler's messages.
 std::string program_of(const std::vector<std::string>& files);
-/// A number as a device's compiler reads it back to the last bit.
-std::string hex_number(double value);
 
 }  // namespace weir::particles

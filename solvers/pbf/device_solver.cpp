@@ -107,23 +107,25 @@ void DevicePbfSolver<D>::warm_start(real dt) {
 template <int D>
 void DevicePbfSolver<D>::find_lambdas() {
     const auto& f = fluid_;
-    fluid_.run("lambda", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.a, f.neighbours, f.list, f.b, density_, multiplier_});
+    fluid_.run("lambda",
+               {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.a, f.neighbours, f.list, f.b, density_, multiplier_});
 }
 
-/// x* += Δp, eq. 12 and 14, and the walls of the domain.
+/// x* += Δp, eq. 12 and 14, the walls of the domain, and its solids.
 template <int D>
 void DevicePbfSolver<D>::correct() {
     const auto& f = fluid_;
-    fluid_.run("correct", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.b, f.neighbours, f.list, f.a});
+    fluid_.run("correct", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.b, f.neighbours, f.list, f.a});
+    fluid_.leave_solids();
 }
 
 /// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone.
 template <int D>
 void DevicePbfSolver<D>::update(real dt, real slow) {
     const auto& f = fluid_;
-    fluid_.run("densities", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.a, f.neighbours, f.list, density_});
-    fluid_.run("update", {f.count(), f.stride(), f.state_params, dt, slow, f.rest_density(), f.order, f.a, f.x_star, density_, multiplier_,
-                          f.x, f.v, f.density, f.carried});
+    fluid_.run("densities", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.a, f.neighbours, f.list, density_});
+    fluid_.run("update", {f.count(), f.stride(), f.state_params, f.poses, dt, slow, f.rest_density(), f.order, f.a, f.x_star, density_,
+                          multiplier_, f.x, f.v, f.density, f.carried});
 }
 
 template <int D>

@@ -9,6 +9,18 @@ namespace weir::sph {
 
 using particles::Fluid;
 
+namespace {
+
+/// Whether the liquid sticks to any.
+template <int D>
+bool sticky(const geometry::Solids<D>& solids) {
+    bool any = false;
+    for (std::size_t i = 0; i < solids.count(); ++i) any = any || solids[i].no_slip;
+    return any;
+}
+
+}  // namespace
+
 template <int D>
 particles::DeviceSetup DeviceSphSolver<D>::setup(const Options& options, const Fluid<D>& fluid) {
     const real d = fluid.domain.spacing;
@@ -21,6 +33,8 @@ particles::DeviceSetup DeviceSphSolver<D>::setup(const Options& options, const F
     if (options.tension) s.defines += "-DWEIR_PULL ";
     if (options.wall_forces()) s.defines += "-DWEIR_WALL_FORCES ";
     if (options.sigma > 0) s.defines += "-DWEIR_TENSION ";
+    if (sticky(fluid.domain.solids)) s.defines += "-DWEIR_STICKY_SOLIDS ";
+    if (fluid.domain.solids.moving()) s.defines += "-DWEIR_MOVING_SOLIDS ";
     s.kernels = smoothing_params(sph_params<particles::single::SphParams, D>(options, d, fluid.rho0), fluid);
     s.walls = fluid.domain.template walls<particles::single::WallParams>(density_kernel<D>(options, d), gradient_kernel<D>(options, d));
     s.support = options.support * d;
@@ -54,6 +68,7 @@ DeviceSphSolver<D>::DeviceSphSolver(const scene::Scene& scene, Fluid<D> start, c
     : options_(options),
       fluid_(start, particles::DeviceEffects<D>(scene), setup(options_, start)),
       rest_density_(scene, start.rho0),
+      sticky_solids_(sticky(start.domain.solids)),
       rho_rest_(start.rho0),
       max_dt_(scene.root().number_or("time.max_dt", infinity)) {
     start_pressure(scene, options_, fluid_.change());
@@ -90,7 +105,7 @@ void DeviceSphSolver<D>::find_densities() {
     const auto& f = fluid_;
     const auto behind_walls = static_cast<float>(std::min(rho_rest_, f.rest_density()));
     fluid_.run("sph_densities",
-               {f.count(), f.stride(), params_, f.wall_params, behind_walls, f.a, f.neighbours, f.list, f.order, f.density});
+               {f.count(), f.stride(), params_, f.wall_params, f.terms, behind_walls, f.a, f.neighbours, f.list, f.order, f.density});
 }
 
 template <int D>
@@ -104,7 +119,11 @@ void DeviceSphSolver<D>::find_pressures() {
 template <int D>
 void DeviceSphSolver<D>::find_forces() {
     const auto& f = fluid_;
-    fluid_.run("sph_forces", {f.count(), f.stride(), params_, f.wall_params, f.a, velocities_, f.neighbours, f.list, acceleration_});
+    fluid_.run("sph_forces",
+               {f.count(), f.stride(), params_, f.wall_params, f.terms, f.a, velocities_, f.neighbours, f.list, acceleration_});
+    if (sticky_solids_)
+        fluid_.run("drag_at_solids", {f.count(), f.stride(), f.state_params, params_, 2 * options_.viscosity, f.poses, f.a, f.near_solid,
+                                      f.terms, f.order, f.v, acceleration_});
     max_acceleration_ = std::sqrt(fluid_.reduce("accelerations", {f.count(), acceleration_, f.parts()}).largest);
 }
 
@@ -113,7 +132,7 @@ template <int D>
 void DeviceSphSolver<D>::kick(real dt) {
     const auto& f = fluid_;
     if (options_.sigma > 0) {
-        fluid_.run("normals", {f.count(), f.stride(), params_, f.wall_params, f.a, f.neighbours, f.list, normals_});
+        fluid_.run("normals", {f.count(), f.stride(), params_, f.wall_params, f.terms, f.a, f.neighbours, f.list, normals_});
         fluid_.run("tension", {f.count(), f.stride(), params_, dt, f.a, normals_, f.neighbours, f.list, f.order, f.v});
     }
     fluid_.run("kick", {f.count(), f.stride(), f.state_params, dt, f.pull(dt), f.order, f.x, acceleration_, f.v});
@@ -124,15 +143,15 @@ template <int D>
 void DeviceSphSolver<D>::advance_densities(real dt) {
     const auto& f = fluid_;
     fluid_.run("load_excess", {f.count(), f.stride(), f.rest_density(), f.order, f.v, f.density, velocities_});
-    fluid_.run("advance_densities", {f.count(), f.stride(), params_, f.wall_params, dt, f.rest_density(), f.a, velocities_, f.neighbours,
-                                     f.list, f.order, f.density});
+    fluid_.run("advance_densities", {f.count(), f.stride(), f.state_params, f.poses, f.near_solid, params_, f.wall_params, f.terms, dt,
+                                     f.rest_density(), f.a, velocities_, f.neighbours, f.list, f.order, f.density});
 }
 
-/// x += dt v, kept inside the walls.
+/// x += dt v, kept inside the walls and outside the solids.
 template <int D>
 void DeviceSphSolver<D>::drift(real dt) {
     fluid_.pass_time(dt);
-    fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, dt, fluid_.x, fluid_.v});
+    fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.x, fluid_.v});
 }
 
 template <int D>

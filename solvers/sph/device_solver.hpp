@@ -44,6 +44,7 @@ private:
     particles::DeviceFluid<D> fluid_;
     Memory params_, velocities_, acceleration_, normals_;  // the latter of sorted particles: float4
     RestDensity rest_density_;
+    bool sticky_solids_ = false;  // whether the liquid sticks to any
     real rho_rest_ = 1, max_acceleration_ = 0, max_dt_ = infinity;
     Passes passes_;
 };

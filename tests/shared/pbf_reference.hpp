@@ -25,22 +25,22 @@ void disturb(particles::Fluid<D>& fluid) {
 /// The same step by the reference: predict, iterate over all pairs in double precision.
 template <int D>
 struct Expected {
-    const particles::Domain<D>& domain;
+    particles::Domain<D> domain;  // as it is at the end of the step
     std::vector<particles::Point> x;
     real largest_lambda = 0, largest_move = 0;
 
     Expected(const pbf::Options& o, const particles::Fluid<D>& before, real dt) : domain(before.domain) {
-        const real d = before.domain.spacing;
+        domain.solids.set_time(before.time + dt);
+        const real d = domain.spacing;
         particles::ReferencePbf reference;
         reference.p = pbf::pbf_params<particles::plain::PbfParams, D>(o, d);
-        reference.walls =
-            before.domain.template walls<particles::plain::WallParams>(pbf::density_kernel<D>(o, d), pbf::gradient_kernel<D>(o, d));
+        reference.walls = domain.template walls<particles::plain::WallParams>(pbf::density_kernel<D>(o, d), pbf::gradient_kernel<D>(o, d));
         reference.kernel = static_cast<int>(o.smoothing);
         reference.period = periods(domain);
         for (int i = 0; i < before.count(); ++i) {
             Vec<D> u = before.velocity(i);
             u[1] -= dt * 9.81;
-            const Vec<D> local = before.domain.kept(before.position(i) + dt * u) - before.domain.centre();
+            const Vec<D> local = domain.kept(before.position(i) + dt * u) - domain.centre();
             particles::Point p{0, 0, 0};
             for (int a = 0; a < D; ++a) p[static_cast<std::size_t>(a)] = local[a];
             x.push_back(p);
@@ -49,13 +49,24 @@ struct Expected {
         reference.find_neighbours(x);
         std::vector<double> sums(x.size(), 0.0);
         for (int iteration = 0; iteration < o.iterations; ++iteration) {
+            add_solids(reference, domain, x);
             const auto lambda = reference.lambdas(x, o.warm_start > 0 ? &sums : nullptr);
             for (const real l : lambda) largest_lambda = std::max(largest_lambda, std::abs(l));
             x = reference.corrected(x, lambda);
+            leave_solids(x);
         }
         for (std::size_t i = 0; i < x.size(); ++i) largest_move = std::max(largest_move, std::abs(x[i][1] - start[i][1]));
         for (auto& p : x)
-            for (int a = 0; a < D; ++a) p[static_cast<std::size_t>(a)] += before.domain.centre()[a];
+            for (int a = 0; a < D; ++a) p[static_cast<std::size_t>(a)] += domain.centre()[a];
+    }
+    void leave_solids(std::vector<particles::Point>& places) const {
+        if (domain.solids.empty()) return;
+        for (auto& p : places) {
+            Vec<D> at = domain.centre();
+            for (int a = 0; a < D; ++a) at[a] += p[static_cast<std::size_t>(a)];
+            at = domain.kept(at) - domain.centre();
+            for (int a = 0; a < D; ++a) p[static_cast<std::size_t>(a)] = at[a];
+        }
     }
     /// The largest difference along an axis.
     real farthest(const particles::Fluid<D>& after) const {

@@ -41,6 +41,12 @@ void shake(Fluid<D>& fluid, real amount) {
     }
 }
 
+namespace text {
+#define WEIR_FN inline
+#include "particles/kernels/sph_state.inl"
+#undef WEIR_FN
+}  // namespace text
+
 /// The state in the reference's coordinates.
 template <int D>
 std::pair<std::vector<Point>, std::vector<Point>> points_of(const Fluid<D>& fluid) {
@@ -55,6 +61,22 @@ std::pair<std::vector<Point>, std::vector<Point>> points_of(const Fluid<D>& flui
     return {x, v};
 }
 
+/// Of solids that are stuck to: 2 nu plane / phi along the surface (Morris et al. 1997, sec. 3.2).
+template <int D>
+void add_drag_of_solids(const sph::Options& o, const particles::ReferenceSph& reference, const Fluid<D>& fluid, std::vector<Point>& to) {
+    const auto& solids = fluid.domain.solids;
+    for (std::size_t i = 0; i < reference.solid.size(); ++i) {
+        const Vec<D> x = fluid.position(static_cast<int>(i));
+        Vec<D> pull;
+        for (int a = 0; a < D; ++a) pull[a] = reference.solid[i][static_cast<std::size_t>(a)];
+        const real plane = norm(pull), phi = std::max(solids.distance(x), 0.25 * fluid.domain.spacing);
+        if (plane == 0 || !solids[solids.nearest(x)].no_slip) continue;
+        const Vec<D> slip = solids.velocity(x) - fluid.velocity(static_cast<int>(i)),
+                     along = slip - dot(slip, pull) / (plane * plane) * pull;
+        for (int a = 0; a < D; ++a) to[i][static_cast<std::size_t>(a)] += 2 * o.viscosity * plane / phi * along[a];
+    }
+}
+
 /// One step by the double reference: densities, and positions before walls keep them.
 template <int D>
 std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Options& o, const Fluid<D>& before, real dt) {
@@ -67,9 +89,11 @@ std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Op
     reference.period = periods(before.domain);
     reference.summed = !o.continuity;
     const auto [x, v] = points_of(before);
+    add_solids(reference, before.domain, x);
     std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
     for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
-    const auto acceleration = reference.accelerations(x, v, rho, pressure);
+    auto acceleration = reference.accelerations(x, v, rho, pressure);
+    add_drag_of_solids(o, reference, before, acceleration);
     const auto tension = reference.tensions(x, rho);
     std::vector<Point> moved = v;
     std::vector<Vec<D>> after;
@@ -81,8 +105,12 @@ std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Op
         }
     }
     if (o.continuity) {
-        const auto rate = reference.rates(x, moved, before.density, before.rho0);
-        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] += dt * rate[i];
+        auto rate = reference.rates(x, moved, before.density, before.rho0);
+        for (std::size_t i = 0; i < reference.solid.size(); ++i)
+            for (int a = 0; a < D; ++a)
+                rate[i] -= 2 * rho[i] * before.domain.solids.velocity(before.position(static_cast<int>(i)))[a] *
+                           reference.solid[i][static_cast<std::size_t>(a)];
+        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] *= text::density_growth(dt * rate[i] / rho[i]);
     }
     return {rho, after};
 }

@@ -27,10 +27,67 @@ std::string open_sides() {
     return "sides.x_max = { kind = \"open\" }\ninitial.velocity = { name = \"constant\", value = " + list<D>(3, 0, 0) + " }\n";
 }
 
-/// All of them, each by itself.
+/// Every shape there is; `more` is added to each solid.
 template <int D>
-std::vector<std::string> surroundings() {
-    return {periodic_sides<D>(), open_sides<D>()};
+std::string solids_at_rest(const std::string& more = "") {
+    const auto ball = fmt::format("shape = \"sphere\", centre = {}, radius = 0.15", list<D>(0.25, 0.35, 0.4));
+    const auto block = fmt::format("{{ shape = \"box\", min = {}, max = {} }}", list<D>(0.6, 0.1, 0.25), list<D>(0.85, 0.5, 1));
+    const auto hole =
+        fmt::format("{{ shape = \"capsule\", from = {}, to = {}, radius = 0.1 }}", list<D>(0.5, 0.3, 0.5), list<D>(0.9, 0.2, 0.6));
+    const auto pillar =
+        fmt::format("{{ shape = \"cylinder\", from = {}, to = {}, radius = 0.08 }}", list<D>(0.4, 0.7, 0.4), list<D>(0.6, 0.8, 0.8));
+    const auto slope = fmt::format("{{ shape = \"plane\", point = {}, normal = {} }}", list<D>(0.95, 0, 0), list<D>(-1, 0.1, 0));
+    return fmt::format(
+        "solids = [{{ {}{} }}, {{ shape = \"difference\", from = {}, minus = [{}]{} }}, {{ shape = \"union\", of = [{}, {}]{} }}, "
+        "{{ shape = \"wave\", level = 0.06, amplitude = 0.03, wavelength = 0.8{} }}]\n",
+        ball, more, block, hole, more, pillar, slope, more, more);
+}
+/// A ball that goes up and a bar that turns.
+template <int D>
+std::string moving_solids(const std::string& more = "") {
+    const auto ball =
+        fmt::format("{{ shape = \"sphere\", centre = {}, radius = 0.2, motion = {{ kind = \"constant\", velocity = {} }}{} }}",
+                    list<D>(0.25, 0.3, 0.4), list<D>(0.5, 2, 0.25), more);
+    const auto bar = fmt::format("{{ shape = \"box\", min = {}, max = {}, motion = {{ kind = \"rotation\", rate = 3 }}{} }}",
+                                 list<D>(0.6, 0.4, 0.25), list<D>(0.9, 0.5, 0.75), more);
+    return fmt::format("solids = [{}, {}]\n", ball, bar);
+}
+
+/// All of them, each by itself. solid: what is said of solids.
+template <int D>
+std::vector<std::string> surroundings(const std::string& solid = "") {
+    return {periodic_sides<D>(), open_sides<D>(), solids_at_rest<D>(solid), moving_solids<D>(solid)};
+}
+
+namespace text {  // of the kernels, in double precision
+#define SCALAR double
+#include "particles/kernels/prelude_double.h"
+using particles::plain::WallParams;
+#include "particles/kernels/pair.inl"
+#undef SCALAR
+#undef REAL
+#undef WEIR_FN
+#undef WEIR_PARAM
+#undef MAX0
+#undef RSQRT
+}  // namespace text
+
+/// What solids add at each place (particles/solid_terms.hpp).
+template <class Reference, int D>
+void add_solids(Reference& reference, const particles::Domain<D>& domain, const std::vector<particles::Point>& x) {
+    const auto& walls = reference.walls;
+    if (domain.solids.empty()) return;
+    reference.solid.assign(x.size(), particles::Point{0, 0, 0});
+    reference.solid_part.assign(x.size(), 0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        Vec<D> at = domain.centre();
+        for (std::size_t a = 0; a < D; ++a) at[a] += x[i][a];
+        const real phi = std::max<real>(0, domain.solids.distance(at));
+        if (phi * walls.inv_h >= 1) continue;
+        const Vec<D> n = domain.solids.normal(at, 1e-3 * domain.spacing);
+        for (std::size_t a = 0; a < D; ++a) reference.solid[i][a] = -text::wall_series(phi, walls.slope, walls.inv_h) * n[a];
+        reference.solid_part[i] = text::wall_series(phi, walls.fraction, walls.inv_h);
+    }
 }
 
 /// Periods, for a reference.

@@ -66,8 +66,8 @@ __kernel void find_neighbours(int count, int stride, int room, float radius2, __
     if (found > room) atomic_max(needed, found);
 }
 
-/* Walls at one particle (walls_combined): gradient, then part. Most particles have none near. */
-WEIR_FN float4 walls_at(float4 at, __constant WallParams* w) {
+/* Walls and solids at sorted particle i (walls_combined): gradient, then part. Most particles have none near. */
+WEIR_FN float4 walls_at(float4 at, __constant WallParams* w, __global const float4* terms, int i) {
     const float x[3] = {at.x, at.y, at.z};
     float part[3] = {0, 0, 0}, pull[3] = {0, 0, 0}, solid[4] = {0, 0, 0, 0}, out[4];
     int any = 0;
@@ -84,6 +84,11 @@ WEIR_FN float4 walls_at(float4 at, __constant WallParams* w) {
             any = 1;
         }
     }
+#ifdef WEIR_SOLIDS
+    const float4 body = terms[i];
+    solid[0] = body.x, solid[1] = body.y, solid[2] = body.z, solid[3] = body.w;
+    any = any || body.w != 0;
+#endif
     if (!any) return (float4)(0.0f);
     walls_combined(part, pull, solid, out);
     return (float4)(out[0], out[1], out[2], out[3]);

@@ -16,9 +16,9 @@ __kernel void start_multipliers(int count, double factor, __global const int* or
 }
 #endif
 
-__kernel void lambda(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* from,
-                     __global const int* neighbours, __global const int* list, __global float4* to, __global float* density,
-                     __global float* multiplier) {
+__kernel void lambda(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
+                     __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to,
+                     __global float* density, __global float* multiplier) {
     const int i = get_global_id(0);
     if (i >= count) return;
     float4 me = from[i];
@@ -34,7 +34,7 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
         gy += slope * d.y;
         gz += slope * d.z;
     }
-    const float4 w = walls_at(me, walls);
+    const float4 w = walls_at(me, walls, terms, i);
     rho += w.w;
     gx += w.x;
     gy += w.y;
@@ -54,8 +54,8 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
     density[i] = rho;
 }
 
-__kernel void correct(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* from,
-                      __global const int* neighbours, __global const int* list, __global float4* to) {
+__kernel void correct(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
+                      __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = from[i];
@@ -72,15 +72,15 @@ __kernel void correct(int count, int stride, __constant PbfParams* p, __constant
         cy += factor * d.y;
         cz += factor * d.z;
     }
-    const float4 w = walls_at(me, walls);
+    const float4 w = walls_at(me, walls, terms, i);
     to[i] = (float4)(clamp(me.x + cx + me.w * w.x, walls->keep_lo[0], walls->keep_hi[0]),
                      clamp(me.y + cy + me.w * w.y, walls->keep_lo[1], walls->keep_hi[1]),
                      clamp(me.z + cz + me.w * w.z, walls->keep_lo[2], walls->keep_hi[2]), 0.0f);
 }
 
 /* Density over rest density at the final positions. */
-__kernel void densities(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* at,
-                        __global const int* neighbours, __global const int* list, __global float* density) {
+__kernel void densities(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
+                        __global const float4* at, __global const int* neighbours, __global const int* list, __global float* density) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = at[i];
@@ -90,7 +90,7 @@ __kernel void densities(int count, int stride, __constant PbfParams* p, __consta
         const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
         rho += pbf_density(SQUARE(d), p);
     }
-    density[i] = rho + walls_at(me, walls).w;
+    density[i] = rho + walls_at(me, walls, terms, i).w;
 }
 
 /* Compression of sorted particles, of each group (reduce_parts). */
@@ -108,8 +108,8 @@ __kernel void pbf_compressions(int count, __global const float* density, __globa
 /* v = (x* - x) / dt, x = x*; with dt = 0 only the latter. The move that the iterations made in single precision is added to the prediction in
    double precision, so that rounding does not depend on how far a particle is from the origin.                            lines 20-24
    slow: the longer of this step and the last; what the iterations moved becomes speed over that (solvers/pbf/solver.cpp). */
-__kernel void update(int count, int stride, __constant StateParams* s, double dt, double slow, double rho0, __global const int* order,
-                     __global const float4* now, __global const double* x_star, __global const float* density,
+__kernel void update(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, double slow, double rho0,
+                     __global const int* order, __global const float4* now, __global const double* x_star, __global const float* density,
                      __global const float* multiplier, __global double* x, __global double* v, __global double* state_density,
                      __global double* carried) {
     const int k = get_global_id(0);
@@ -118,12 +118,16 @@ __kernel void update(int count, int stride, __constant StateParams* s, double dt
     const float4 p = now[k];
     const float place[3] = {p.x, p.y, p.z};
     const double too_fast = dt > 0 ? 1 / dt - 1 / slow : 0;
+    double y[3];
+    for (int a = 0; a < WEIR_DIM; ++a) {
+        const double start = x_star[(size_t)a * stride + i];
+        y[a] = start + ((double)place[a] - (double)(float)(start - s->centre[a]));
+    }
+    keep(y, s, poses);
     for (int a = 0; a < WEIR_DIM; ++a) {
         const size_t at = (size_t)a * stride + i;
-        const double start = x_star[at];
-        const double end = kept_inside(start + ((double)place[a] - (double)(float)(start - s->centre[a])), s, a);
-        if (dt > 0) v[at] = (end - x[at]) / dt - too_fast * (end - start);
-        x[at] = end;
+        if (dt > 0) v[at] = (y[a] - x[at]) / dt - too_fast * (y[a] - x_star[at]);
+        x[at] = y[a];
     }
     state_density[i] = rho0 * (double)density[k];
 #ifdef WEIR_KEEP

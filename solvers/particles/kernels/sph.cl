@@ -5,8 +5,8 @@
 
 #ifndef WEIR_CONTINUITY
 /* rho_i = sum_j m W                                                                               Mueller et al. 2003, eq. 3 */
-__kernel void sph_densities(int count, int stride, __constant SphParams* p, __constant WallParams* walls, float wall_rho,
-                            __global const float4* at, __global const int* neighbours, __global const int* list,
+__kernel void sph_densities(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* terms,
+                            float wall_rho, __global const float4* at, __global const int* neighbours, __global const int* list,
                             __global const int* order, __global double* density) {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -17,7 +17,7 @@ __kernel void sph_densities(int count, int stride, __constant SphParams* p, __co
         const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
         rho += sph_density(SQUARE(d), p);
     }
-    density[order[i]] = (double)(rho + wall_rho * walls_at(me, walls).w);
+    density[order[i]] = (double)(rho + wall_rho * walls_at(me, walls, terms, i).w);
 }
 #endif
 
@@ -51,12 +51,12 @@ __kernel void find_pressures(int count, int stride, double2 state, double rest, 
 
 /* All forces between particles and of walls, over mass. Of a density that is summed, between particles the gradient of the energy
    sum_i m e(rho_i), e' = p / rho^2 (Monaghan 1992, eq. 3.3); else the form that goes with continuity. */
-__kernel void sph_forces(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* at,
-                         __global const float4* velocities, __global const int* neighbours, __global const int* list,
-                         __global float4* acceleration) {
+__kernel void sph_forces(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* terms,
+                         __global const float4* at, __global const float4* velocities, __global const int* neighbours,
+                         __global const int* list, __global float4* acceleration) {
     const int i = get_global_id(0);
     if (i >= count) return;
-    const float4 me = at[i], u = velocities[i], w = walls_at(me, walls);
+    const float4 me = at[i], u = velocities[i], w = walls_at(me, walls, terms, i);
     const float own = (u.w + u.w) * me.w; /* walls push back with the particle's own pressure: no gradient through them */
     float ax = -own * w.x, ay = -own * w.y, az = -own * w.z;
 #ifdef WEIR_WALL_FORCES
@@ -85,14 +85,35 @@ __kernel void sph_forces(int count, int stride, __constant SphParams* p, __const
     acceleration[i] = (float4)(ax, ay, az, 0.0f);
 }
 
+#ifdef WEIR_STICKY_SOLIDS
+/* A solid that is stuck to drags as a wall does: 2 nu plane / phi along its surface (Morris et al. 1997, sec. 3.2; sph_wall_force). */
+__kernel void drag_at_solids(int count, int stride, __constant StateParams* s, __constant SphParams* p, double drag2,
+                             __global const SolidPose* poses, __global const float4* at, __global const uchar* near_solid,
+                             __global const float4* terms, __global const int* order, __global const double* v,
+                             __global float4* acceleration) {
+    const int k = get_global_id(0);
+    if (k >= count || !near_solid[k]) return;
+    const double4 x = world_of(at[k], s);
+    __global const SolidPose* solid = poses + nearest_solid(x, poses);
+    const double4 pull = (double4)(terms[k].x, terms[k].y, terms[k].z, 0); /* against the normal, as long as the integral over its plane */
+    const double plane = norm_of(pull);
+    if (solid->no_slip == 0 || plane == 0) return;
+    const int i = order[k];
+    const double4 own = (double4)(v[i], v[(size_t)stride + i], WEIR_DIM == 3 ? v[(size_t)(WEIR_DIM - 1) * stride + i] : 0, 0);
+    const double4 slip = solid_velocity(x, solid) - own, along = slip - dot_of(slip, pull) / (plane * plane) * pull;
+    const double drag = drag2 * plane / fmax(solids_distance(x, poses), (double)p->closest);
+    acceleration[k] += (float4)((float)(drag * along.x), (float)(drag * along.y), (float)(drag * along.z), 0);
+}
+#endif
+
 #ifdef WEIR_TENSION
 /* Normals of the surface, as sph_normal keeps them, and their squares. Liquid goes on behind walls. */
-__kernel void normals(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* at,
-                      __global const int* neighbours, __global const int* list, __global float4* normal) {
+__kernel void normals(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* terms,
+                      __global const float4* at, __global const int* neighbours, __global const int* list, __global float4* normal) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = at[i];
-    float4 q = walls_at(me, walls);
+    float4 q = walls_at(me, walls, terms, i);
     q.w = 0;
     for (int k = 0; k < neighbours[i]; ++k) {
         const float4 other = at[list[(size_t)k * stride + i]], d = APART(me, other);
@@ -161,12 +182,14 @@ __kernel void load_excess(int count, int stride, double rho0, __global const int
 
 /* d rho / dt = rate, from the new velocities and the old places (Colagrossi & Landrini 2003, eq. 10). Behind a wall the velocity's image moves
    against the particle, as fast: the work of the wall's pressure is then what the particle's volume loses. */
-__kernel void advance_densities(int count, int stride, __constant SphParams* p, __constant WallParams* walls, double dt, double rho0,
-                                __global const float4* at, __global const float4* velocities, __global const int* neighbours,
-                                __global const int* list, __global const int* order, __global double* density) {
+__kernel void advance_densities(int count, int stride, __constant StateParams* s, __global const SolidPose* poses,
+                                __global const uchar* near_solid, __constant SphParams* p, __constant WallParams* walls,
+                                __global const float4* terms, double dt, double rho0, __global const float4* at,
+                                __global const float4* velocities, __global const int* neighbours, __global const int* list,
+                                __global const int* order, __global double* density) {
     const int i = get_global_id(0);
     if (i >= count) return;
-    const float4 me = at[i], u = velocities[i], w = walls_at(me, walls);
+    const float4 me = at[i], u = velocities[i], w = walls_at(me, walls, terms, i);
     float rate = 2 * (w.x * u.x + w.y * u.y + w.z * u.z), spread = 0;
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
@@ -177,18 +200,32 @@ __kernel void advance_densities(int count, int stride, __constant SphParams* p, 
         spread += sph_diffusion(r2, v.w - u.w + p->layers[0] * d.x + p->layers[1] * d.y + p->layers[2] * d.z, other.w, p);
     }
     const double rho = density[order[i]];
-    density[order[i]] = density_kept(rho * density_growth(dt * (double)(rate / me.w + spread) / rho), rho0);
+    float whole = rate / me.w + spread;
+#ifdef WEIR_MOVING_SOLIDS
+    if (near_solid[i]) { /* the images behind a solid that moves move with it */
+        const double4 x = world_of(me, s);
+        const double4 u_solid = solid_velocity(x, poses + nearest_solid(x, poses));
+        whole -= (float)(2 * rho * dot_of(u_solid, (double4)(terms[i].x, terms[i].y, terms[i].z, 0)));
+    }
+#endif
+    density[order[i]] = density_kept(rho * density_growth(dt * (double)whole / rho), rho0);
 }
 #endif
 
-/* x += dt v. What would enter a wall is put back and loses its speed into it. */
-__kernel void drift(int count, int stride, __constant StateParams* s, double dt, __global double* x, __global double* v) {
+/* x += dt v. What would enter a wall or a solid is put back and loses its speed into it. */
+__kernel void drift(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, __global double* x,
+                    __global double* v) {
     const int i = get_global_id(0);
     if (i >= count) return;
+    double free[3], end[3];
     for (int axis = 0; axis < WEIR_DIM; ++axis) {
         const size_t at = (size_t)axis * stride + i;
-        const double free = x[at] + dt * v[at], end = kept_inside(free, s, axis);
-        if (end != free) v[at] = (end - x[at]) / dt;
-        x[at] = end;
+        free[axis] = end[axis] = x[at] + dt * v[at];
+    }
+    keep(end, s, poses);
+    for (int axis = 0; axis < WEIR_DIM; ++axis) {
+        const size_t at = (size_t)axis * stride + i;
+        if (end[axis] != free[axis]) v[at] = (end[axis] - x[at]) / dt;
+        x[at] = end[axis];
     }
 }

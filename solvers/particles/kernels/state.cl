@@ -8,6 +8,15 @@ WEIR_FN double kept_inside(double x, __constant StateParams* s, int axis) {
     return s->keep_hi[axis] < above ? s->keep_hi[axis] : above;
 }
 
+/* The nearest place inside the walls and outside the solids. */
+WEIR_FN void keep(double* x, __constant StateParams* s, __global const SolidPose* poses) {
+#ifdef WEIR_SOLIDS
+    const double4 y = pushed_out((double4)(x[0], x[1], WEIR_DIM == 3 ? x[2] : 0, 0), s->margin, s->feel, poses);
+    x[0] = y.x, x[1] = y.y, x[2] = y.z;
+#endif
+    for (int a = 0; a < WEIR_DIM; ++a) x[a] = kept_inside(x[a], s, a);
+}
+
 /* The forces that the scene names: v + dt f. pull: dt omega^2 */
 WEIR_FN double forced(double u, double x, double dt, double pull, __constant StateParams* s, int axis) {
 #ifdef WEIR_GRAVITY
@@ -20,16 +29,18 @@ WEIR_FN double forced(double u, double x, double dt, double pull, __constant Sta
 }
 
 /* v += dt f, x* = x + dt v                                                    Macklin & Mueller 2013, algorithm 1, lines 1-4 */
-__kernel void predict(int count, int stride, __constant StateParams* s, double dt, double pull, __global const double* x,
-                      __global double* v, __global double* x_star) {
+__kernel void predict(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, double pull,
+                      __global const double* x, __global double* v, __global double* x_star) {
     const int i = get_global_id(0);
     if (i >= count) return;
+    double y[3];
     for (int a = 0; a < WEIR_DIM; ++a) {
         const size_t at = (size_t)a * stride + i;
-        const double u = forced(v[at], x[at], dt, pull, s, a);
-        v[at] = u;
-        x_star[at] = kept_inside(x[at] + dt * u, s, a);
+        v[at] = forced(v[at], x[at], dt, pull, s, a);
+        y[a] = x[at] + dt * v[at];
     }
+    keep(y, s, poses);
+    for (int a = 0; a < WEIR_DIM; ++a) x_star[(size_t)a * stride + i] = y[a];
 }
 
 /* The box of all particles: of each group, lo and hi of every axis. A coordinate that is not finite makes its axis infinite. */

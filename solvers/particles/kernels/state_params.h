@@ -6,4 +6,12 @@ typedef struct {
     double exit_lo[3], exit_hi[3]; /* beyond these a particle has left [m] */
     double gravity[3];             /* of the effect "gravity" [m/s^2] */
     double field_centre[3];        /* of the effect "central_force" [m] */
+    double margin, feel, reach;    /* no particle comes closer to a solid; normals are felt over this; closer than this solids act [m] */
 } StateParams;
+
+/* Where a solid is: x_world = centre + R (x_rest - centre) + offset, and its velocity there (geometry/motion.hpp). */
+typedef struct {
+    double centre[3], offset[3], velocity[3]; /* [m], [m], [m/s] */
+    double rotation[9], spin[3];              /* rows of R; [rad/s] */
+    double no_slip;                           /* 1: the liquid sticks to it */
+} SolidPose;
