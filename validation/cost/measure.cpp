@@ -47,7 +47,10 @@ void take_errors(CostPoint& point, const Study& study, const RunRecord& record, 
             point.also[name] = measure(name, record, reference);
         } catch (const BadInput&) {  // this solver does not have it: the cell stays empty
         }
-    if (!std::isfinite(point.error)) point.failure = fmt::format("{} is not a number", study.error);
+    if (!std::isfinite(point.error))
+        point.failure = fmt::format("{} is not a number", study.error);
+    else if (point.error > study.diverged_above)
+        point.failure = fmt::format("diverged by step {}: {} = {:.3g} ({})", record.steps(), study.error, point.error, study.diverged_why);
 }
 
 /// Which device the scene's backend is. Nothing where it is the processor itself, or where there is no such device: the run says so.
@@ -87,6 +90,12 @@ void take_times(CostPoint& point, std::vector<Timing> runs) {
     if (median.computing > 0) point.spread = (runs.back().computing - runs.front().computing) / median.computing;
 }
 
+bool wants_more(const MeasureOptions& options, int done, double spent) {
+    if (done == 0) return true;
+    if (done < options.repeats) return spent < options.enough_seconds;
+    return options.repeats > 1 && done < options.most_repeats && spent < options.least_seconds;
+}
+
 CostPoint measure_point(const Study& study, const Variant& method, std::size_t i, const MeasureOptions& options, const Solvers& solvers,
                         StudyResult& result) {
     const OwnThreads own(method.threads);
@@ -98,7 +107,7 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
         const Work before = work_so_far();
         std::vector<Timing> timings;
         double spent = 0;
-        while (static_cast<int>(timings.size()) < options.repeats && (timings.empty() || spent < options.enough_seconds)) {
+        while (wants_more(options, static_cast<int>(timings.size()), spent)) {
             scene::Scene scene = scene_of(method, i, schemas);
             take_device(point, scene);
             const Reference reference = make_reference(method.reference, scene, study.folder);
@@ -146,7 +155,7 @@ std::string CostPoint::name() const {
 }
 
 void mark_front(std::vector<CostPoint>& points, const Study& study) {
-    constexpr real alike = 1.01;
+    constexpr real alike = 1.05;
     const auto beats = [&](const CostPoint& a, const CostPoint& b) {
         const double pa = a.price(study.price), pb = b.price(study.price);
         const real ea = study.told(a.error), eb = study.told(b.error);

@@ -50,7 +50,9 @@ struct StudyResult {
 
 struct MeasureOptions {
     int repeats = 3;  // of runs that take less than enough_seconds together
-    double enough_seconds = 8;
+    double enough_seconds = 3;
+    double least_seconds = 0.3;  // runs that are over sooner are repeated up to most_repeats times: a median of milliseconds needs many
+    int most_repeats = 21;
     double time_limit = 120;  // of one run; beyond it is a failure that stays in the table
 };
 
@@ -59,7 +61,7 @@ StudyResult measure_study(const Study& study, const MeasureOptions& options, con
                           const std::function<void(const std::string&)>& progress = nullptr);
 
 /// Marks the points that no other one dominates (Pareto), by what the reference can tell: of errors below what it is known to, and of
-/// errors that differ by less than 1%, the cheaper point wins.
+/// errors that differ by less than 5%, the cheaper point wins.
 void mark_front(std::vector<CostPoint>& points, const Study& study);
 
 }  // namespace weir::validation

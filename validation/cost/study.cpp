@@ -2,7 +2,10 @@
 
 #include "validation/harness/variants.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace weir::validation {
 namespace {
@@ -25,6 +28,8 @@ std::vector<Key> make_keys() {
         {.name = "why", .type = Type::text, .doc = "Where that error comes from."},
         {.name = "known_to", .type = Type::number, .doc = "How well the reference itself is known.", .min = 0, .min_open = true},
         {.name = "known_why", .type = Type::text, .doc = "Where that comes from."},
+        {.name = "diverged_above", .type = Type::number, .doc = "An error beyond which a run has diverged.", .min = 0, .min_open = true},
+        {.name = "diverged_why", .type = Type::text, .doc = "Where that comes from."},
         {.name = "price",
          .type = Type::choice,
          .doc = "Time is counted for a simulated second, or for a step.",
@@ -73,11 +78,14 @@ Study parse_study(std::string_view text, const std::string& file, const std::fil
                 .why = root.text_or("why", ""),
                 .known_to = root.number_or("known_to", 0),
                 .known_why = root.text_or("known_why", ""),
+                .diverged_above = root.number_or("diverged_above", infinity),
+                .diverged_why = root.text_or("diverged_why", ""),
                 .price = root.text("price") == "step" ? Price::step : Price::second,
                 .size = size};
     if (root.has("also")) study.also = root.texts("also");
-    if (study.good_enough > 0 && study.why.empty()) reader.problem(root.place("good_enough"), "\"good_enough\" needs a \"why\"");
-    if (study.known_to > 0 && study.known_why.empty()) reader.problem(root.place("known_to"), "\"known_to\" needs a \"known_why\"");
+    for (const auto& [bound, why] : {std::pair{"good_enough", "why"}, {"known_to", "known_why"}, {"diverged_above", "diverged_why"}})
+        if (root.has(bound) && root.text_or(why, "").empty())
+            reader.problem(root.place(bound), fmt::format("\"{}\" needs a \"{}\"", bound, why));
     if (study.good_enough > 0 && study.good_enough < study.known_to)
         reader.problem(root.place("good_enough"), "\"good_enough\" is below \"known_to\": nobody could tell");
     study.methods = reader.read(root, "methods", [](Variant& v, const scene::Table& t) {

@@ -26,6 +26,8 @@ struct Study {
     std::string why{};                // where that error comes from
     real known_to = 0;                // how well the reference itself is known: errors below it are not told apart
     std::string known_why{};          // where that comes from
+    real diverged_above = infinity;   // a run that ends with a larger error has diverged, though every number is finite
+    std::string diverged_why{};       // where that comes from
     Price price = Price::second;
     Size size = Size::ci;
     std::vector<Variant> methods{};

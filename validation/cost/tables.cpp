@@ -109,9 +109,19 @@ json cost_json(const StudyResult& result) {
     const Study& study = result.study;
     json points = json::array();
     for (const CostPoint* p : by_price(result)) {
-        json entry = {{"method", p->method},  {"setting", p->setting}, {"name", p->name()},     {"steps", p->steps},
-                      {"bytes", p->bytes},    {"others", p->others},   {"spread", p->spread},   {"repeats", p->repeats},
-                      {"front", p->on_front}, {"label", p->label()},   {"threads", p->threads}, {"device", p->device}};
+        json entry = {{"method", p->method},
+                      {"setting", p->setting},
+                      {"name", p->name()},
+                      {"steps", p->steps},
+                      {"bytes", p->bytes},
+                      {"others", p->others},
+                      {"spread", p->spread},
+                      {"repeats", p->repeats},
+                      {"front", p->on_front},
+                      {"label", p->label()},
+                      {"order", p - result.points.data()},
+                      {"threads", p->threads},
+                      {"device", p->device}};
         if (p->failure) {
             entry["failure"] = *p->failure;
         } else {
@@ -125,6 +135,7 @@ json cost_json(const StudyResult& result) {
             {"question", study.question},
             {"error", study.error},
             {"unit", result.unit},
+            {"also", study.also},
             {"good_enough", study.good_enough},
             {"why", study.why},
             {"known_to", study.known_to},
@@ -137,25 +148,39 @@ json cost_json(const StudyResult& result) {
             {"points", points}};
 }
 
+namespace {
+
+std::string markdown_row(const json& p, const std::vector<std::string>& also) {
+    const std::string name = p["name"], memory = megabytes(p["bytes"].get<std::size_t>());
+    const auto steps = p["steps"].get<std::int64_t>();
+    std::string further;
+    for (const std::string& metric : also) {
+        const auto value = p.contains("also") ? p["also"].find(metric) : p.end();
+        const bool known = p.contains("also") && value != p["also"].end() && value->is_number();
+        further += known ? fmt::format("{:.4g} | ", value->get<double>()) : "| ";
+    }
+    if (p.contains("failure"))
+        return fmt::format("| {} | {} | | | {} | {} | {}|\n", name, first_line(p["failure"].get<std::string>()), memory, steps, further);
+    const double others = p["others"];
+    return fmt::format("| {} | {:.4g} | {:.4g} | {:.4g} | {} | {} | {}{}{} |\n", name, p["error"].get<double>(),
+                       p["seconds_per_second"].get<double>(), p["ms_per_step"].get<double>(), memory, steps, further,
+                       p["front"].get<bool>() ? "front" : "",
+                       others > busy ? fmt::format(" ({:.1f} cores busy with other work)", others) : "");
+}
+
+}  // namespace
+
 std::string cost_markdown(const json& study) {
     const std::string name = study["study"];
     std::string s = fmt::format("## {}\n\n{}\n\n![{} against time](svg/{}.svg)\n\n", name, study["question"].get<std::string>(),
                                 study["error"].get<std::string>(), name);
     for (const auto& sentence : study["advice"]) s += "- " + sentence.get<std::string>() + "\n";
-    s += fmt::format("\n| setting | {} | s per simulated s | ms a step | MB | steps | |\n|---|---|---|---|---|---|---|\n",
-                     study["error"].get<std::string>());
-    for (const auto& p : study["points"]) {
-        if (p.contains("failure")) {
-            s += fmt::format("| {} | {} | | | {} | {} | |\n", p["name"].get<std::string>(), first_line(p["failure"].get<std::string>()),
-                             megabytes(p["bytes"].get<std::size_t>()), p["steps"].get<std::int64_t>());
-            continue;
-        }
-        const double others = p["others"];
-        s += fmt::format("| {} | {:.4g} | {:.4g} | {:.4g} | {} | {} | {}{} |\n", p["name"].get<std::string>(), p["error"].get<double>(),
-                         p["seconds_per_second"].get<double>(), p["ms_per_step"].get<double>(), megabytes(p["bytes"].get<std::size_t>()),
-                         p["steps"].get<std::int64_t>(), p["front"].get<bool>() ? "front" : "",
-                         others > busy ? fmt::format(" ({:.1f} cores busy with other work)", others) : "");
-    }
+    const auto also = study.value("also", std::vector<std::string>{});
+    std::string further, rule;
+    for (const std::string& metric : also) further += metric + " | ", rule += "---|";
+    s += fmt::format("\n| setting | {} | s per simulated s | ms a step | MB | steps | {}|\n|---|---|---|---|---|---|{}---|\n",
+                     study["error"].get<std::string>(), further, rule);
+    for (const auto& p : study["points"]) s += markdown_row(p, also);
     s += "\n";
     for (const auto& note : study.value("notes", json::array())) s += note.get<std::string>() + " ";
     s += fmt::format("Every number: [csv/{}.csv](csv/{}.csv). {} thread(s), {} size, commit {}, on {}.\n\n", name, name,

@@ -25,21 +25,27 @@ double abscissa(const json& study, const json& point) {
     return seconds > 0 ? 1 / seconds : 0;
 }
 
-/// One curve a method in the order of the study's cheapest first, and the front.
+/// One curve a method through its settings, both in the order of the study, and the front.
 Panel panel_of(const json& study) {
     const std::string unit = text_at(study, "unit");
     Panel panel{.title = text_at(study, "question"),
                 .x = {by_step(study) ? "computing time a step [ms]" : "real-time factor: simulated seconds a second of computing", true},
                 .y = {text_at(study, "error") + (unit.empty() ? "" : " [" + unit + "]"), true}};
     Curve front{.label = "Pareto front: nothing is both cheaper and more accurate", .dashed = true};
+    std::vector<const json*> ordered;
     for (const json& p : study["points"]) {
         if (failed(p)) continue;
-        const std::string method = text_at(p, p.contains("label") ? "label" : "method");
+        ordered.push_back(&p);
+        if (p.value("front", false))
+            front.x.push_back(abscissa(study, p)), front.y.push_back(number_at(p, "error").value_or(0)),
+                front.names.push_back(text_at(p, "name"));
+    }
+    std::stable_sort(ordered.begin(), ordered.end(), [](auto* p, auto* q) { return p->value("order", 0) < q->value("order", 0); });
+    for (const json* p : ordered) {
+        const std::string method = text_at(*p, p->contains("label") ? "label" : "method");
         auto at = std::find_if(panel.curves.begin(), panel.curves.end(), [&](const Curve& c) { return c.label == method; });
         if (at == panel.curves.end()) at = panel.curves.insert(at, Curve{.label = method});
-        at->x.push_back(abscissa(study, p)), at->y.push_back(number_at(p, "error").value_or(0)), at->names.push_back(text_at(p, "name"));
-        if (p.value("front", false))
-            front.x.push_back(at->x.back()), front.y.push_back(at->y.back()), front.names.push_back(at->names.back());
+        at->x.push_back(abscissa(study, *p)), at->y.push_back(number_at(*p, "error").value_or(0)), at->names.push_back(text_at(*p, "name"));
     }
     panel.curves.push_back(std::move(front));
     panel.shade = {number_at(study, "known_to").value_or(0), "the reference itself is known no better"};
@@ -49,23 +55,27 @@ Panel panel_of(const json& study) {
 std::vector<Mark> marks_of(const json& study) { return by_step(study) ? std::vector<Mark>{} : std::vector<Mark>{{1, "real time"}}; }
 
 std::string table_of(const json& study) {
-    HtmlTable table({"setting", text_at(study, "error"), "× real time", "ms of a 60 Hz frame", "ms a step", "MB", "steps", "on the front"},
-                    "All settings of " + text_at(study, "study"));
+    std::vector<std::string> heads = {"setting", text_at(study, "error"), "× real time", "ms of a 60 Hz frame", "ms a step", "MB", "steps"};
+    const auto also = study.value("also", std::vector<std::string>{});
+    heads.insert(heads.end(), also.begin(), also.end());
+    heads.push_back("on the front");
+    HtmlTable table(heads, "All settings of " + text_at(study, "study"));
     for (const json& p : study["points"]) {
         const auto bytes = number_at(p, "bytes");
-        const auto memory = value(bytes ? std::optional(*bytes / 1e6) : std::nullopt);
-        if (failed(p)) {
-            table.row({word(text_at(p, "name")), raw(escaped(text_at(p, "failure"))), value({}), value({}), value({}), memory,
-                       value(number_at(p, "steps")), word("")},
-                      "fail");
-            continue;
-        }
+        const bool broken = failed(p), front = p.value("front", false);
         const double seconds = number_at(p, "seconds_per_second").value_or(0);
-        const bool front = p.value("front", false);
-        table.row({word(text_at(p, "name")), value(number_at(p, "error")), value(seconds > 0 ? std::optional(1 / seconds) : std::nullopt),
-                   value(seconds * 1000 / 60), value(number_at(p, "ms_per_step")), memory, value(number_at(p, "steps")),
-                   raw(front ? "front" : "", front ? 0 : 1)},
-                  front ? "front" : "");
+        const auto if_run = [&](double v) { return value(broken ? std::nullopt : std::optional(v)); };
+        std::vector<HtmlTable::Cell> cells = {word(text_at(p, "name")),
+                                              broken ? raw(escaped(text_at(p, "failure"))) : value(number_at(p, "error")),
+                                              value(seconds > 0 ? std::optional(1 / seconds) : std::nullopt),
+                                              if_run(seconds * 1000 / 60),
+                                              value(number_at(p, "ms_per_step")),
+                                              value(bytes ? std::optional(*bytes / 1e6) : std::nullopt),
+                                              value(number_at(p, "steps"))};
+        const json measured = p.value("also", json::object());
+        for (const std::string& metric : also) cells.push_back(value(number_at(measured, metric.c_str())));
+        cells.push_back(raw(front ? "front" : "", front ? 0 : 1));
+        table.row(std::move(cells), broken ? "fail" : front ? "front" : "");
     }
     return table.html();
 }

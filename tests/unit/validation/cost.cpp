@@ -83,7 +83,7 @@ TEST("the front holds the points that no other beats in both error and time; fai
     EXPECT_FALSE(points[1].on_front || points[3].on_front);
 }
 
-TEST("of errors that cannot be told apart the cheaper one is on the front: below what the reference is known to, or alike to a hundredth") {
+TEST("of errors that cannot be told apart the cheaper one is on the front: below what the reference is known to, or alike to a twentieth") {
     std::vector<CostPoint> points = {point("cheap", 0.08, 1), point("alike", 0.0795, 2), point("known", 0.04, 3), point("below", 0.01, 4)};
     mark_front(points, {.name = "s", .known_to = 0.05});
     EXPECT_TRUE(points[0].on_front && points[2].on_front);
@@ -181,6 +181,25 @@ TEST("a backend that is not here leaves its row with the reason, and the study g
     EXPECT_EQ(advice(result).back(), "1 of 2 settings could not be run here: the table says why.");
     EXPECT_NE(cost_table(result).find("not run: no OpenCL device here: install one"), std::string::npos);
     EXPECT_EQ(notes(result).front(), "here: 3 threads.");
+}
+
+TEST("a run that ends with finite nonsense has diverged, where the study says what nonsense is") {
+    const test::TemporaryFolder folder;
+    const auto study = add(folder.path(), head + "diverged_above = 2.0\ndiverged_why = \"wrong by itself\"\n[[methods]]\nname = \"a\"\n");
+    const StudyResult result = measure_study(read_study(study, Size::ci), {.repeats = 1}, test::fake_kinds());
+    EXPECT_EQ(result.points.at(0).failure.value_or(""), "diverged by step 5: velocity.max = 2.1 (wrong by itself)");
+    EXPECT_NE(refusal(head + "diverged_above = 3\n").find("\"diverged_above\" needs a \"diverged_why\""), std::string::npos);
+}
+
+TEST("a figure joins the settings of a method in the study's order, however their prices fell out") {
+    StudyResult result{.study = {.name = "s", .error = "e"}};
+    result.points = {point("b", 3, 0.3), point("b", 2, 0.1), point("b", 1, 0.2), point("a", 1, 0.01)};
+    mark_front(result.points, result.study);
+    const std::string figure = cost_figure(cost_json(result));
+    EXPECT_LT(figure.find("<title>b: 3.333, 3</title>"), figure.find("<title>b: 10, 2</title>"));
+    EXPECT_LT(figure.find("<title>b: 10, 2</title>"), figure.find("<title>b: 5, 1</title>"));
+    EXPECT_LT(figure.find("<title>b: 5, 1</title>"), figure.find("<title>a: 100, 1</title>"));
+    EXPECT_NE(figure.find("<title>a: 100, 1</title>"), std::string::npos);
 }
 
 TEST("a device is named with its settings, so that nobody takes a processor for a GPU") {
