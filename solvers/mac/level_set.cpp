@@ -6,6 +6,9 @@
 
 namespace weir::mac {
 
+/// Part of a cell's width: a marker nearer to the surface than this may be on either side of it.
+constexpr real sure_side = 0.1;
+
 template <int D>
 LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
     : phi(frame.cells), frame_(frame), layers_(reach + 4), reach_(reach), layer_(frame.cells), inside_(frame.cells) {
@@ -58,7 +61,7 @@ void LevelSet<D>::continue_into_solids() {
 
 template <int D>
 void LevelSet<D>::advect(const MacVelocity<D>& u, real dt) {
-    const real near = (reach_ + 2) * frame_.h_min();  // beyond, no point can come to lie beside the surface
+    const real near = (reach_ + 2) * frame_.h_max();  // beyond, no point can come to lie beside the surface
     resize_scratch(value_, band_.size());
     parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
         const Index<D>& I = band_[static_cast<std::size_t>(i)];
@@ -106,7 +109,7 @@ template <int D>
 std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     const real h = frame_.h_min();
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
-    const real margin = 0.1 * h;                     // Enright et al. 2002: nearer to the surface than this, no side is sure
+    const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
     refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
     markers.for_each_occupied_cell(frame_, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
         if (phi(I) < -norm(frame_.h)) return;
@@ -122,6 +125,10 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     std::size_t count = 0;
     for (std::size_t p = 0; p < markers.count(); ++p) {
         if (!escaped_[p]) continue;
+        if (!frame_.cubic() && !escaped_across(markers.position(p))) {
+            escaped_[p] = 0;
+            continue;
+        }
         ++count;
         join_sphere(markers.position(p), radius);
     }
@@ -134,6 +141,11 @@ std::size_t LevelSet<D>::count_airborne(const Markers<D>& markers) const {
     for (std::size_t p = 0; p < markers.count(); ++p)
         count += escaped_[p] && sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0;
     return count;
+}
+
+template <int D>
+bool LevelSet<D>::escaped_across(const Vec<D>& x) const {
+    return sample_cells(phi, Stencil<D>(frame_, x)) > sure_side * width_at(frame_.cell_of(x));
 }
 
 template <int D>

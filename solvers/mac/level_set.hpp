@@ -39,7 +39,7 @@ public:
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
 
-    real cap() const { return (layers_ + 1) * frame_.h_min(); }
+    real cap() const { return (layers_ + 1) * frame_.h_max(); }
     int layers() const { return layers_; }
     /// Cells of the band, layer by layer from the surface; layer 1 is beside it.
     const std::vector<Index<D>>& band() const { return band_; }
@@ -57,6 +57,10 @@ public:
 
 private:
     void continue_into_solids();
+    /// How wide the cell is across the surface next to it [m].
+    real width_at(const Index<D>& I) const;
+    /// In cells that are no cubes a marker has escaped when it is outside by a part of the cell's width in that direction.
+    bool escaped_across(const Vec<D>& x) const;
     void join_sphere(const Vec<D>& x, real radius);
     /// φ's change a cell towards the lower and the upper neighbour; beyond a wall, and
     /// where a neighbour's distance is not known, it goes on as on the other side.

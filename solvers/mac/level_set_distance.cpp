@@ -114,19 +114,32 @@ void LevelSet<D>::grow_band() {
     });
 }
 
-/// Two visits: from finished layers, then once more with the values found inside the layer. Layer 2 keeps values that motion left within
-/// 0.3 h of a distance: they are smooth to second order where first-order differences are not, and curvature looks at them.
+template <int D>
+real LevelSet<D>::width_at(const Index<D>& I) const {
+    const auto slope = slopes(I);
+    Vec<D> n;
+    for (int d = 0; d < D; ++d) n[d] = (slope[0][d] + slope[1][d]) * frame_.inv_h[d];
+    return frame_.width_along(n);
+}
+
+/// Two visits: from finished layers, then once more with the values found inside the layer; where cells are flat, as many more as a plane
+/// can cross cells of one column between two of the next: with fewer the distance is too long there, by up to half a cell's width, and
+/// the surface swells. Layer 2 keeps values that motion left within 0.3 h of a distance: they are smooth to second order where first-order
+/// differences are not, and curvature looks at them.
 template <int D>
 void LevelSet<D>::fill_layer(int layer) {
     const std::size_t from = layer_begin(layer);
     const int count = static_cast<int>(layer_end(layer) - from);
-    const real keep = layer == 2 ? 0.3 * frame_.h_min() : 0;
+    const bool cubic = frame_.cubic();
+    const int visits = cubic ? 2 : 1 + static_cast<int>(std::ceil(frame_.h_max() / frame_.h_min()));
+    const real keep = layer == 2 ? 0.3 : 0;
     resize_scratch(value_, band_.size());
-    for (int visit = 0; visit < 2; ++visit) {
+    for (int visit = 0; visit < visits; ++visit) {
         parallel_for(0, count, [&](int i) {
             const std::size_t at = from + static_cast<std::size_t>(i);
             const real distance = upwind_distance(band_[at], visit == 0 ? layer - 1 : layer), moved = phi(band_[at]);
-            value_[at] = std::abs(distance - moved) < keep ? moved : distance;
+            const real width = cubic || layer > 2 ? frame_.h_min() : width_at(band_[at]);
+            value_[at] = std::abs(distance - moved) < keep * width ? moved : distance;
         });
         parallel_for(0, count, [&](int i) {
             const std::size_t at = from + static_cast<std::size_t>(i);

@@ -47,6 +47,17 @@ struct Frame {
     bool periodic(int axis) const { return period[static_cast<std::size_t>(axis)] > 0; }
     /// The smallest cell size [m].
     real h_min() const { return *std::min_element(h.begin(), h.end()); }
+    /// The largest [m].
+    real h_max() const { return *std::max_element(h.begin(), h.end()); }
+    /// Whether cells are cubes, but for round-off of their edges.
+    bool cubic() const { return h_max() <= h_min() * (1 + 1e-9); }
+    /// Size of a cell across planes with this normal [m]: of the ellipsoid whose axes are its edges. The edge, where cells are cubes.
+    real width_along(const Vec<D>& n) const {
+        real sum = 0;
+        for (int d = 0; d < D; ++d) sum += n[d] * n[d] * h[d] * h[d];
+        const real length = norm(n);
+        return cubic() || !(length > 0) ? h_min() : std::sqrt(sum) / length;
+    }
     real cell_volume() const {
         real volume = 1;
         for (int d = 0; d < D; ++d) volume *= h[d];

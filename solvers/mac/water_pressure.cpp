@@ -15,7 +15,8 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
       b_(frame.cells),
       liquid_(b_.size() / static_cast<std::size_t>(frame.cells[0])),
       solver_(poisson::make_solver<D>(choice.method, choice.options)),
-      h2_(frame.h[0] * frame.h[0]) {
+      h2_(frame.h[0] * frame.h[0]),
+      largest_cut_(1 + frame.h_max() / frame.h_min() / thinnest) {
     A_.cells = Grid<Cell, D>(frame.cells, Cell::air);
     for (int a = 0; a < D; ++a) {
         A_.weight[static_cast<std::size_t>(a)] = Grid<real, D>(state.u[a].extent());
@@ -86,7 +87,7 @@ void SurfacePressure<D>::set_weights(const LevelSet<D>& surface, const MacState<
 template <int D>
 real SurfacePressure<D>::cut_weight(const LevelSet<D>& surface, std::size_t lower, std::size_t upper) const {
     if (A_.cells[lower] != Cell::fluid) std::swap(lower, upper);
-    return A_.cells[upper] == Cell::solid ? 0 : std::min(1 - surface.phi[upper] / surface.phi[lower], 1 + 1 / thinnest);
+    return A_.cells[upper] == Cell::solid ? 0 : std::min(1 - surface.phi[upper] / surface.phi[lower], largest_cut_);
 }
 
 /// On a side: closed, or p = 0 on the side itself, half a cell away. On the face that joins the ends of a periodic axis: as inside.

@@ -118,7 +118,7 @@ void Water<D>::redistribute_markers() {
     constexpr int every = 4, few = Markers<D>::per_cell / 2, many = 3 * Markers<D>::per_cell;
     if (!options_.reseed || steps_ % every != 0) return;
     const auto timed = passes_.time("redistribute markers");
-    const real deep = -1.5 * frame_.h_min();
+    const real deep = -1.5 * frame_.h_max();
     bool changed = false, heaps = false;
     const std::size_t cells = product(frame_.cells), before = markers_.count();
     for (std::size_t cell = 0; cell < cells; ++cell) {

@@ -2,6 +2,7 @@
 #include "mac/effects.hpp"
 #include "mac/initial.hpp"
 #include "mac/water.hpp"
+#include "scene/names.hpp"
 
 namespace weir::mac {
 
@@ -93,6 +94,16 @@ geometry::Solids<D> solids_of(const scene::Scene& scene) {
     return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
 }
 
+/// Beyond flattest_cell a splash has been seen to gain more than a fifth of its energy (cases/hard_water): a surface that falls by several
+/// cells from one column to the next is not resolved across them.
+template <int D>
+void refuse_flat_cells(const scene::Scene& scene, const Frame<D>& frame) {
+    const real ratio = frame.h_max() / frame.h_min();
+    if (ratio > flattest_cell * (1 + 1e-9))
+        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " times as long as thin; water stays stable up to " +
+                                       scene::number_text(flattest_cell) + " times");
+}
+
 template <int D>
 bool all_stick(const geometry::Solids<D>& solids) {
     for (std::size_t i = 0; i < solids.count(); ++i)
@@ -109,6 +120,7 @@ Water<D>::Water(const scene::Scene& scene)
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),
       effects_(body_forces<D>(scene)) {
+    refuse_flat_cells(scene, frame_);
     if (const auto* gravity = scene.effect("gravity")) gravity_ = gravity->template vec<D>("g");
     for (int d = 0; d < D; ++d)
         if (std::abs(gravity_[d]) > std::abs(gravity_[up_])) up_ = d;

@@ -102,6 +102,16 @@ TEST_IN_2D_AND_3D("liquid in free flight falls as a stone does, whatever the tra
     }
 }
 
+TEST("cells up to four times as long as thin are taken, flatter ones refused at the key that is wrong") {
+    EXPECT_NO_THROW(mac::Water<2>(water_scene(dam_break<2>(), {{"grid.cells", "[16, 64]"}})));
+    try {
+        mac::Water<2>(water_scene(dam_break<2>(), {{"grid.cells", "[16, 65]"}}));
+        ADD_FAILURE() << "flatter cells were taken";
+    } catch (const BadInput& bad) {
+        EXPECT_NE(std::string(bad.what()).find("times as long as thin; water stays stable up to 4 times"), std::string::npos) << bad.what();
+    }
+}
+
 TEST("scenes without liquid, with liquid inside solids, and with liquid outside are refused at the key that is wrong") {
     const std::string head = "solver = \"mac_water\"\ndim = 2\ngrid = { cells = [16, 16], size = [1.0, 1.0] }\ntime = { end = 1.0 }\n";
     const auto refusal = [&](const std::string& rest) -> std::string {
