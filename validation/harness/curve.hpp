@@ -32,7 +32,7 @@ struct Axis {
     bool log = false;
 };
 
-/// Where differences mean nothing: shaded from the bottom of a diagram up to `below`; 0: nowhere.
+/// Where differences mean nothing: shaded from the bottom of a diagram up to `below`; 0: nowhere. Of studies only (page/chart.hpp).
 struct Shade {
     real below = 0;
     std::string label{};

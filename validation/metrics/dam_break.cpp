@@ -72,6 +72,15 @@ std::vector<Metric> dam_break_metrics() {
                               .y = {"H = height / (2 a)"},
                               .curves = {ref.curve("height"), height(run, ref)}};
              }},
+        {.name = "collapse.error",
+         .unit = "",
+         .doc = "The larger of front.mean_error and height.mean_error: a column must do both, run along the floor and sink at the wall.",
+         .measure =
+             [](const RunRecord& run, const Reference& ref) {
+                 const real f = mean(compare(front(run, ref), ref.curve("front"), relative));
+                 const real h = mean(compare(height(run, ref), ref.curve("height"), difference));
+                 return std::isnan(f) ? f : std::max(h, f);  // a NaN of either stays
+             }},
         {.name = "height.max_error",
          .unit = "",
          .doc = "Largest |dH| of the column's height at the back wall over the table's rows, in units of the first height.",

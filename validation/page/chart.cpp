@@ -1,5 +1,6 @@
 #include "validation/page/chart.hpp"
 
+#include "validation/page/names.hpp"
 #include "validation/page/text.hpp"
 
 #include <fmt/format.h>
@@ -89,47 +90,14 @@ std::string axes(const Panel& p, const Scale& sx, const Scale& sy) {
 /// Colours have been used up once: the line is broken.
 bool again(std::size_t number) { return number >= colours; }
 
-struct Box {
-    double x0, y0, x1, y1;
-    bool meets(const Box& b) const { return x0 < b.x1 && b.x0 < x1 && y0 < b.y1 && b.y0 < y1; }
-};
-
-/// Writes names beside points, at the first of ten places where they cover nothing; a name without room is left to the pointer.
-class Names {
-public:
-    void keep_free(double x, double y) { taken_.push_back({x - 4, y - 4, x + 4, y + 4}); }
-    std::string beside(double x, double y, const std::string& name) {
-        const double w = 6.6 * static_cast<double>(name.size()), h = 14;
-        for (const auto& [dx, dy, anchor] : {std::tuple{8.0, -8.0, "start"},
-                                             {-8.0, 16.0, "end"},
-                                             {8.0, 16.0, "start"},
-                                             {-8.0, -8.0, "end"},
-                                             {0.0, -12.0, "middle"},
-                                             {0.0, 22.0, "middle"},
-                                             {0.0, -26.0, "middle"},
-                                             {0.0, 36.0, "middle"},
-                                             {-8.0, -22.0, "end"},
-                                             {8.0, 30.0, "start"}}) {
-            const double x0 = anchor[0] == 's' ? x + dx : anchor[0] == 'm' ? x - w / 2 : x + dx - w;
-            const Box box{x0, y + dy - h + 3, x0 + w, y + dy + 3};
-            if (box.x0 < left || box.x1 > width - 4 || box.y0 < 0 || box.y1 > height - bottom) continue;
-            if (std::any_of(taken_.begin(), taken_.end(), [&](const Box& b) { return b.meets(box); })) continue;
-            taken_.push_back(box);
-            return fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x + dx, y + dy, anchor,
-                               escaped(name));
-        }
-        return "";
-    }
-
-private:
-    std::vector<Box> taken_;
-};
-
 std::string curve_svg(const Panel& p, const Curve& c, std::size_t number, const Scale& sx, const Scale& sy, Names& names) {
     std::string line, dots;
+    double before_x = 0, before_y = 0;
     for (std::size_t i = 0; i < c.size(); ++i) {
         if (!drawable(p, c.x[i], c.y[i])) continue;
         const double x = sx(c.x[i]), y = sy(c.y[i]);
+        if (!line.empty() && !c.points) names.avoid_line(before_x, before_y, x, y);
+        before_x = x, before_y = y;
         line += fmt::format("{}{:.1f},{:.1f}", line.empty() ? "M" : "L", x, y);
         if (c.dashed) continue;
         names.keep_free(x, y);
@@ -162,7 +130,7 @@ std::string chart_svg(const Panel& p, const std::vector<Mark>& marks) {
         s += fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\"><title>{}</title></rect>\n", left,
                          sy(p.shade.below), width - right - left, height - bottom - sy(p.shade.below), escaped(p.shade.label));
     s += axes(p, sx, sy);
-    Names names;
+    Names names({left, 0, width - 4, height - bottom});
     for (const Mark& mark : marks)
         if (mark.at > sx.low && mark.at < sx.high)
             s += fmt::format("<path class=\"mark\" d=\"M{0:.1f},{1}V{2}\"/><text class=\"name\" x=\"{3:.1f}\" y=\"{4}\">{5}</text>\n",

@@ -94,7 +94,7 @@ std::string study_html(const json& study, const std::filesystem::path& results) 
     s += fmt::format("<p class=\"fine\"><code>./weir.sh cost {0} --size {1}</code> · {2} thread(s), commit {3}, {4}", escaped(name),
                      escaped(text_at(study, "size")), study.value("threads", 1), escaped(text_at(study, "commit")),
                      escaped(text_at(study, "machine")));
-    if (!text_at(study, "source").empty()) s += " · compared with " + escaped(text_at(study, "source"));
+    if (!study.contains("notes") && !text_at(study, "source").empty()) s += " · compared with " + escaped(text_at(study, "source"));
     if (const std::string csv = "cost/csv/" + name + ".csv"; std::filesystem::exists(results / csv))
         s += fmt::format(" · <a href=\"{}\">every number (CSV)</a>", escaped(csv));
     return s + "</p></article>\n";

@@ -19,7 +19,8 @@ std::string side_by_side(const std::filesystem::path& results, const std::string
     const json study = json_of(results / "cost" / "json" / "dam_break_martin_moyce.json");
     if (!study.is_object()) return "";
     std::string s = fmt::format(
-        "### {}\n![Error of the front against the real-time factor, for every water method]({}/cost/svg/dam_break_martin_moyce.svg)\n\n",
+        "### {}\n![Error of front and height against the real-time factor, for every water "
+        "method]({}/cost/svg/dam_break_martin_moyce.svg)\n\n",
         text_at(study, "question"), prefix);
     for (const json& sentence : study["advice"]) s += "- " + sentence.get<std::string>() + "\n";
     return s + fmt::format("\n{}, {} thread(s), {} size; every setting and the other studies: [{}/cost]({}/cost/index.md).\n\n",

@@ -82,7 +82,6 @@ std::string axes_of(const Panel& p) {
             const real at[2] = {c.x[i], c.y[i]};
             for (int a : {0, 1}) low[a] = std::min(low[a], at[a]), high[a] = std::max(high[a], at[a]);
         }
-    if (p.shade.below > 0) low[1] = std::min(low[1], p.shade.below), high[1] = std::max(high[1], p.shade.below);
     return "set autoscale; unset logscale\n" + axis("x", p.x.log, low[0], high[0]) + axis("y", p.y.log, low[1], high[1]);
 }
 
@@ -118,13 +117,7 @@ std::string panel_program(const Panel& p, std::size_t number) {
     std::string s = data + axes_of(p);
     s += fmt::format("set title {} noenhanced\nset xlabel {} noenhanced offset 0,0.5\nset ylabel {} noenhanced\n", quoted(p.title),
                      quoted(p.x.label), quoted(p.y.label));
-    s += "set key outside below maxcols 3 samplen 2 font ',11'\nunset object\n";  // never over the data
-    if (p.shade.below > 0) {
-        s +=
-            fmt::format("set object 1 rectangle from graph 0, graph 0 to graph 1, first {:.9g} fc rgb '#eceff2' fs solid noborder behind\n",
-                        p.shade.below);
-        plots += fmt::format(", \\\n     keyentry with boxes fc rgb '#eceff2' fs solid title {} noenhanced", quoted(p.shade.label));
-    }
+    s += "set key outside below maxcols 3 samplen 2 font ',11'\n";  // never over the data
     return s + plots + "\n";
 }
 
