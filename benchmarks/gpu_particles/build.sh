@@ -14,7 +14,7 @@ text() { sed -n "s/^set(kernels \(.*\)/\1/p; /^set(kernels/,/)/{/^set(kernels/d;
     echo '}; return texts; } }'
 } >"$work/kernel_text.cpp"
 cd "$root/solvers"
-sources=(core/checkpoint.cpp core/parallel.cpp geometry/*.cpp backend/choice.cpp backend/opencl.cpp pbf/device_solver.cpp pbf/options.cpp
-         particles/{cell_sort,device_fluid,device_memory,domain,fluid,kernels,walls}.cpp)
+sources=(core/{checkpoint,hex_number,parallel}.cpp geometry/*.cpp backend/choice.cpp backend/opencl.cpp pbf/device_solver.cpp pbf/options.cpp
+         particles/{cell_sort,device_fluid,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,kernels,walls}.cpp)
 "${CXX:-c++}" -std=c++20 -O2 -fopenmp -ffp-contract=off -ffunction-sections -fdata-sections -Wl,--gc-sections -static-libgcc -static-libstdc++ \
     -I. "$root/benchmarks/gpu_particles/gpu_particles.cpp" "$work/kernel_text.cpp" "${sources[@]}" "${2:--lOpenCL}" -o "$output"

@@ -4,7 +4,7 @@
 namespace weir::particles {
 
 template <int D>
-DeviceEffects<D>::DeviceEffects(const scene::Scene& scene) {
+DeviceEffects<D>::DeviceEffects(const scene::Scene& scene) : emitters(scene, Domain<D>(scene)), end(scene.number("time.end")) {
     if (const auto* e = scene.effect("gravity")) gravity = true, g = e->template vec<D>("g");
     if (const auto* e = scene.effect("central_force"))
         central_force = true, omega = e->number("omega"), centre = e->template vec<D>("centre");
@@ -33,12 +33,6 @@ void check_periods(const scene::Scene& scene, std::vector<scene::Problem>& probl
 
 void refuse_what_devices_lack(const scene::Scene& scene) {
     std::vector<scene::Problem> problems;
-    const auto refuse = [&](const std::string& key, const std::string& what) {
-        problems.push_back(scene.problem(key, "the backend opencl has no " + what,
-                                         "known to it: sides, solids, forces, effects; take scheme.backend = \"threads\""));
-    };
-    for (const char* list : {"emitters", "sinks"})
-        if (scene.has(list) && !scene.root().tables(list).empty()) refuse(list, list);
     if (scene.dim() == 2)
         check_periods<2>(scene, problems);
     else

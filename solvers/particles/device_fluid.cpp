@@ -96,14 +96,18 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
 template <int D>
 void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     std::string program = program_of({"prelude_opencl.h", "params.h", "state_params.h", "pair.inl", "pbf_pair.inl"});
-    if (solid_) program += program_of({"shapes.cl"}) + text_of(host_.domain.solids) + program_of({"solids.cl"});
+    const auto& sinks = effects_.emitters.sinks();
+    if (solid_ || !sinks.empty()) program += program_of({"shapes.cl"});
+    if (solid_) program += text_of(host_.domain.solids) + program_of({"solids.cl"});
+    if (!sinks.empty()) program += text_of<D>(sinks);
     std::vector<std::string> files{"state.cl", "sort.cl", "list.cl", "finish.cl"};
     if (solid_) files.insert(files.end() - 1, "solid_terms.cl");
     files.insert(files.end(), setup.files.begin(), setup.files.end());
     std::string defines = "-cl-std=CL1.2 -DWEIR_DIM=" + std::to_string(D) + " -DWEIR_KERNEL=" + std::to_string(setup.kernel) +
                           " -DWEIR_GROUP=" + std::to_string(group_) + " " + setup.defines;
     if (repeats_) defines += periods(host_.domain);
-    if (open_) defines += " -DWEIR_LEAVING";
+    if (open_) defines += " -DWEIR_OPEN";
+    if (!sinks.empty()) defines += " -DWEIR_SINKS";
     if (effects_.gravity) defines += " -DWEIR_GRAVITY";
     if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
     if (effects_.xsph) defines += " -DWEIR_XSPH";
@@ -113,10 +117,13 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
 
 template <int D>
 void DeviceFluid<D>::settle_in() {
-    const auto particles = static_cast<std::size_t>(host_.count());
+    auto particles = most_particles();
+    if (stride_ > 1 && host_.count() > stride_) particles += static_cast<std::size_t>(host_.count()) / 4;  // more than was foreseen
+    particles = std::max<std::size_t>(particles, 1);
     plan_.check(device_->info(), particles);
     plan_.allocate(*device_, particles);
-    stride_ = std::max(host_.count(), 1);
+    stride_ = static_cast<int>(particles);
+    room_ = static_cast<int>(list.bytes / (particles * sizeof(int)));
     device_is_old_ = true;
 }
 
@@ -255,6 +262,17 @@ std::vector<int> DeviceFluid<D>::sorted_order() const {
     std::vector<int> owners(static_cast<std::size_t>(sorted_count_));
     device_->download(owners.data(), order, owners.size() * sizeof(int));
     return owners;
+}
+
+template <int D>
+void DeviceFluid<D>::save(Checkpoint& to) const {
+    host().save(to);
+    effects_.emitters.save(to);
+}
+template <int D>
+void DeviceFluid<D>::restore(const Checkpoint& from) {
+    change().restore(from);
+    effects_.emitters.restore(from);
 }
 
 template <int D>

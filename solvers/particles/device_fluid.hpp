@@ -5,7 +5,7 @@
 #include "core/passes.hpp"
 #include "particles/cell_sort.hpp"
 #include "particles/device_memory.hpp"
-#include "particles/fluid.hpp"
+#include "particles/emitters.hpp"
 #include "particles/passes.hpp"
 
 #include <memory>
@@ -35,6 +35,8 @@ struct DeviceEffects {
     Vec<D> centre{};       // [m]
     real smoothing = 0;    // c of XSPH
     real confinement = 0;  // epsilon of vorticity [m/s]
+    Emitters<D> emitters;  // and sinks
+    real end = 0;          // of the run: until then they let in [s]
 
     DeviceEffects() = default;
     explicit DeviceEffects(const scene::Scene& scene);
@@ -43,6 +45,10 @@ struct DeviceEffects {
 /// The distances to solids at rest as text of a device's program (kernels/solids.cl).
 template <int D>
 std::string text_of(const geometry::Solids<D>& solids);
+
+/// Whether a place is in a sink, likewise.
+template <int D>
+std::string text_of(const std::vector<geometry::ShapePtr<D>>& sinks);
 
 /// Everything of a scene that only the processor's path has, as problems at its keys: throws BadScene if there is any.
 void refuse_what_devices_lack(const scene::Scene& scene);
@@ -77,6 +83,8 @@ public:
         device_->upload(memory, &value, sizeof value);
         return memory;
     }
+    /// Everything that enters in (time, time + dt], and out what has reached a sink.
+    void let_in(real dt);
     /// v += dt f of the scene's forces; x* = x + dt v.
     void predict(real dt);
     /// Time goes on, and solids that move with it.
@@ -118,6 +126,8 @@ public:
     /// Kernel times since the last call, as passes.
     void record(Passes& passes);
     std::size_t bytes() const { return host_.bytes() + device_->allocated(); }
+    void save(Checkpoint& to) const;
+    void restore(const Checkpoint& from);
     const backend::Device& device() const { return *device_; }
     DevicePlan& plan() { return plan_; }
     const DevicePlan& plan() const { return plan_; }
@@ -141,7 +151,9 @@ private:
     void cross_sides();
     void place_solids();
     void meet_solids();
-    void take_out();
+    void append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities);
+    bool take_out(std::string_view find_stayers);
+    std::size_t most_particles() const;
 
     std::unique_ptr<backend::Device> device_;
     mutable Fluid<D> host_;

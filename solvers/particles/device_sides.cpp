@@ -1,32 +1,99 @@
-// What crosses the sides of the domain on a device: back into the period, or out of the state.
+// What makes particles more or fewer on a device: emitters and sinks, sides that are open; and sides that repeat.
 #include "particles/device_fluid.hpp"
 
+#include <algorithm>
+
 namespace weir::particles {
+
+template <int D>
+std::string text_of(const std::vector<geometry::ShapePtr<D>>& sinks) {
+    std::string any = "0";
+    for (const auto& sink : sinks) any += " || " + sink->code() + " < 0";
+    return "WEIR_FN int in_a_sink(double4 x) { return " + any + "; }\n";
+}
+
+template <int D>
+void DeviceFluid<D>::let_in(real dt) {
+    auto& emitters = effects_.emitters;
+    if (emitters.empty()) return;
+    std::array<std::vector<real>, D> places, velocities;
+    emitters.emit(host_.time, dt, [&](const Vec<D>& at, const Vec<D>& velocity) {
+        const Vec<D> kept = host_.domain.kept(at);
+        for (std::size_t axis = 0; axis < D; ++axis) places[axis].push_back(kept[axis]), velocities[axis].push_back(velocity[axis]);
+    });
+    append(places, velocities);
+    if (!emitters.sinks().empty() && count() > 0) take_out("find_what_is_in_no_sink");
+}
+
+/// Behind the last particle. Where there is no room, through the host, which takes more memory before it uploads again.
+template <int D>
+void DeviceFluid<D>::append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities) {
+    const auto n = places[0].size();
+    if (n == 0) return;
+    if (device_is_old_ || static_cast<std::size_t>(count_) + n > static_cast<std::size_t>(stride_)) {
+        Fluid<D>& fluid = change();
+        for (std::size_t i = 0; i < n; ++i) {
+            Vec<D> at, velocity;
+            for (std::size_t axis = 0; axis < D; ++axis) at[axis] = places[axis][i], velocity[axis] = velocities[axis][i];
+            fluid.add(at, velocity);
+        }
+        return;
+    }
+    const auto first = static_cast<std::size_t>(count_), row = static_cast<std::size_t>(stride_);
+    for (std::size_t axis = 0; axis < D; ++axis) {
+        device_->upload(x, places[axis].data(), n * sizeof(real), (axis * row + first) * sizeof(real));
+        device_->upload(v, velocities[axis].data(), n * sizeof(real), (axis * row + first) * sizeof(real));
+    }
+    std::vector<int> ids(n);
+    for (int& id : ids) id = static_cast<int>(host_.next_id++);
+    device_->upload(id_, ids.data(), n * sizeof(int), first * sizeof(int));
+    device_->upload(density, std::vector<real>(n, host_.rho0).data(), n * sizeof(real), first * sizeof(real));
+    device_->upload(carried, std::vector<real>(n, 0).data(), n * sizeof(real), first * sizeof(real));
+    count_ += static_cast<int>(n);
+    host_is_old_ = true;
+}
 
 template <int D>
 void DeviceFluid<D>::cross_sides() {
     if (count() == 0) return;
     if (repeats_) run("wrap", {count(), stride_, state_params, x});
-    if (open_) take_out();
+    if (open_ && take_out("find_what_stays")) max_speed();  // of what is left: steps are advised by it
 }
 
-/// The others keep their order. Waits for how many they are.
+/// The others keep their order. Waits for how many they are. Returns whether there are fewer.
 template <int D>
-void DeviceFluid<D>::take_out() {
-    run("find_stayers", {count(), stride_, state_params, x, cell_});
+bool DeviceFluid<D>::take_out(std::string_view find_stayers) {
+    run(find_stayers, {count(), stride_, state_params, x, cell_});
     exclusive_sums(count(), cell_, names_);
     int before = 0, last = 0;
     const auto end = static_cast<std::size_t>(count() - 1) * sizeof(int);
     device_->download(&before, names_, sizeof before, end);
     device_->download(&last, cell_, sizeof last, end);
-    if (before + last == count()) return;
+    if (before + last == count()) return false;
     run("list_stayers", {count(), cell_, names_, order});
     count_ = before + last;
     if (count_ > 0) reorder();
-    max_speed();  // of what is left: steps are advised by it
+    return true;
 }
 
+/// That the scene can come to have: those at first and those that enter, but no more than fill the domain, and a tenth. (Where sinks or
+/// open sides let out what enters, a run may let in far more than there ever is.)
+template <int D>
+std::size_t DeviceFluid<D>::most_particles() const {
+    const auto& domain = host_.domain;
+    real cells = 1;
+    for (int axis = 0; axis < D; ++axis) cells *= std::round((domain.hi[axis] - domain.lo[axis]) / domain.spacing);
+    const real first = host_.count(), let_in = effects_.emitters.entered(effects_.end);
+    return static_cast<std::size_t>(std::min(first + let_in, std::max(first, 1.1 * cells)));
+}
+
+template std::string text_of(const std::vector<geometry::ShapePtr<2>>&);
+template std::string text_of(const std::vector<geometry::ShapePtr<3>>&);
+template void DeviceFluid<2>::let_in(real);
+template void DeviceFluid<3>::let_in(real);
 template void DeviceFluid<2>::cross_sides();
 template void DeviceFluid<3>::cross_sides();
+template std::size_t DeviceFluid<2>::most_particles() const;
+template std::size_t DeviceFluid<3>::most_particles() const;
 
 }  // namespace weir::particles

@@ -51,20 +51,22 @@ Emitters<D>::Emitters(const scene::Scene& scene, const Domain<D>& domain) {
 
 template <int D>
 void Emitters<D>::apply(Fluid<D>& fluid, real dt) {
-    for (std::size_t e = 0; e < emitters_.size(); ++e) {
-        const Emitter& emitter = emitters_[e];
-        for (;; ++layers_[e]) {
-            const real born = emitter.start + static_cast<real>(layers_[e]) * emitter.period;
-            if (born > emitter.end || born > fluid.time + dt) break;
-            const real age = std::max<real>(0, fluid.time - born);  // layers due within a step are spread along the flow
-            for (const auto& site : emitter.sites) fluid.add(fluid.domain.kept(site + age * emitter.velocity), emitter.velocity);
-        }
-    }
+    emit(fluid.time, dt, [&](const Vec<D>& x, const Vec<D>& u) { fluid.add(fluid.domain.kept(x), u); });
     if (!sinks_.empty())
         fluid.remove_if([&](int i) {
             const Vec<D> x = fluid.position(i);
             return std::any_of(sinks_.begin(), sinks_.end(), [&](const auto& s) { return s->contains(x); });
         });
+}
+
+template <int D>
+real Emitters<D>::entered(real time) const {
+    real sum = 0;
+    for (const Emitter& e : emitters_) {
+        const real last = std::min(e.end, time);
+        if (last >= e.start) sum += static_cast<real>(e.sites.size()) * (std::floor((last - e.start) / e.period) + 1);
+    }
+    return sum;
 }
 
 template <int D>

@@ -3,6 +3,8 @@
 #pragma once
 #include "particles/fluid.hpp"
 
+#include <algorithm>
+
 namespace weir::particles {
 
 template <int D>
@@ -14,6 +16,12 @@ public:
     bool empty() const { return emitters_.empty() && sinks_.empty(); }
     /// Everything that enters in (time, time + dt], and everything that has reached a sink.
     void apply(Fluid<D>& fluid, real dt);
+    /// add(x, u) for everything that enters in (time, time + dt].
+    template <class F>
+    void emit(real time, real dt, F&& add);
+    /// How many particles will have entered until then.
+    real entered(real time) const;
+    const std::vector<geometry::ShapePtr<D>>& sinks() const { return sinks_; }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
 
@@ -27,5 +35,19 @@ private:
     std::vector<geometry::ShapePtr<D>> sinks_;
     std::vector<std::int64_t> layers_;  // that each emitter has let in
 };
+
+template <int D>
+template <class F>
+void Emitters<D>::emit(real time, real dt, F&& add) {
+    for (std::size_t e = 0; e < emitters_.size(); ++e) {
+        const Emitter& emitter = emitters_[e];
+        for (;; ++layers_[e]) {
+            const real born = emitter.start + static_cast<real>(layers_[e]) * emitter.period;
+            if (born > emitter.end || born > time + dt) break;
+            const real age = std::max<real>(0, time - born);  // layers due within a step are spread along the flow
+            for (const auto& site : emitter.sites) add(site + age * emitter.velocity, emitter.velocity);
+        }
+    }
+}
 
 }  // namespace weir::particles

@@ -2,7 +2,7 @@
 // periodic sides and a sliced neighbour list. The state in double precision stays where it is; position k here is state particle owner(k).
 #pragma once
 #include "core/types.hpp"
-#include "particles/cell_sort.hpp"
+#include "particles/frame.hpp"
 #include "particles/isa.hpp"
 #include "particles/sliced_list.hpp"
 
@@ -10,19 +10,6 @@
 #include <vector>
 
 namespace weir::particles {
-
-/// Where the fast path's coordinates start, and which axes repeat.
-struct Frame {
-    std::array<real, 3> centre{0, 0, 0};
-    std::array<real, 3> lo{0, 0, 0}, period{0, 0, 0};  // period 0: the axis does not repeat
-
-    bool periodic() const { return period[0] > 0 || period[1] > 0 || period[2] > 0; }
-    /// Particles closer than this to a side that repeats have an image beyond the other one: the radius, and as far as particles of this
-    /// box have gone beyond a side.
-    real band(std::size_t axis, const Box& particles, real radius) const;
-    /// The cells for particles of this box and their images.
-    CellGrid cover(const Box& particles, int count, real radius) const;
-};
 
 class Pairs {
 public:

@@ -53,6 +53,7 @@ DevicePbfSolver<D>::DevicePbfSolver(const Options& options, particles::Fluid<D> 
 /// Numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport DevicePbfSolver<D>::step(real dt) {
+    fluid_.let_in(dt);
     fluid_.predict(dt);                     //  1-4
     fluid_.find_neighbours(fluid_.x_star);  //  5-7
     warm_start(dt);
@@ -161,12 +162,12 @@ std::vector<Integral> DevicePbfSolver<D>::integrals() const {
 
 template <int D>
 void DevicePbfSolver<D>::save(Checkpoint& to) const {
-    fluid_.host().save(to);
+    fluid_.save(to);
     to.put_value("pbf.last_dt", last_dt_);
 }
 template <int D>
 void DevicePbfSolver<D>::restore(const Checkpoint& from) {
-    fluid_.change().restore(from);
+    fluid_.restore(from);
     last_dt_ = from.get_value<real>("pbf.last_dt");
 }
 

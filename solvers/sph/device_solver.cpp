@@ -82,6 +82,7 @@ DeviceSphSolver<D>::DeviceSphSolver(const scene::Scene& scene, Fluid<D> start, c
 /// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
 template <int D>
 StepReport DeviceSphSolver<D>::step(real dt) {
+    fluid_.let_in(dt);
     rho_rest_ = rest_density_.at(fluid_.time());
     fluid_.find_neighbours(fluid_.x);
     if (!options_.continuity) find_densities();  // eq. 3
@@ -180,12 +181,12 @@ std::vector<Integral> DeviceSphSolver<D>::integrals() const {
 
 template <int D>
 void DeviceSphSolver<D>::save(Checkpoint& to) const {
-    fluid_.host().save(to);
+    fluid_.save(to);
     to.put_value("sph.max_acceleration", max_acceleration_);
 }
 template <int D>
 void DeviceSphSolver<D>::restore(const Checkpoint& from) {
-    fluid_.change().restore(from);
+    fluid_.restore(from);
     max_acceleration_ = from.get_value<real>("sph.max_acceleration");
 }
 

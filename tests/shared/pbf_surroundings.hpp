@@ -75,3 +75,16 @@ TEST_IN_2D_AND_3D("along sides that repeat momentum stays; through an open one p
     for (int s = 0; s < 200; ++s) out->step(0.008);
     for (int i = 0; i < out->fluid().count(); ++i) ASSERT_LE(out->fluid().position(i)[0], 1);
 }
+
+TEST_IN_2D_AND_3D("a jet lets in density times area times speed, and what reaches a drain is gone") {
+    NEEDS_BACKEND;
+    auto solver = on_backend<D>(test::box<D>(1, 1, 1), "", test::jet_and_drain<D>());
+    const int at_first = solver->fluid().count();
+    for (int s = 0; s < 10; ++s) solver->step(0.008);
+    const auto& fluid = solver->fluid();
+    // two rows, of four in 3D; one spacing of 1/8 m each 1/64 s, the first at once
+    EXPECT_EQ(fluid.next_id, at_first + (D == 2 ? 2 : 8) * 6);
+    EXPECT_LT(fluid.count(), fluid.next_id);  // the drain was full of liquid
+    EXPECT_GT(fluid.count(), at_first / 2);
+    EXPECT_EQ(test::integral(*solver, "mass"), fluid.count() * fluid.mass);
+}

@@ -53,10 +53,18 @@ std::string moving_solids(const std::string& more = "") {
     return fmt::format("solids = [{}, {}]\n", ball, bar);
 }
 
+/// A jet along the box above the liquid, and a drain in a corner.
+template <int D>
+std::string jet_and_drain() {
+    return fmt::format(
+        "emitters = [{{ shape = \"box\", min = {}, max = {}, velocity = {} }}]\nsinks = [{{ shape = \"box\", min = {}, max = {} }}]\n",
+        list<D>(0.1, 1.15, 0.25), list<D>(0.2, 1.4, 0.75), list<D>(8, 0, 0), list<D>(0.7, 0, 0), list<D>(1, 0.4, 1));
+}
+
 /// All of them, each by itself. solid: what is said of solids.
 template <int D>
 std::vector<std::string> surroundings(const std::string& solid = "") {
-    return {periodic_sides<D>(), open_sides<D>(), solids_at_rest<D>(solid), moving_solids<D>(solid)};
+    return {periodic_sides<D>(), open_sides<D>(), solids_at_rest<D>(solid), moving_solids<D>(solid), jet_and_drain<D>()};
 }
 
 namespace text {  // of the kernels, in double precision

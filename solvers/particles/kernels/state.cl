@@ -133,9 +133,9 @@ __kernel void wrap(int count, int stride, __constant StateParams* s, __global do
 }
 #endif
 
-#ifdef WEIR_LEAVING
+#ifdef WEIR_OPEN
 /* 1 for what stays: what has not left through an open side. */
-__kernel void find_stayers(int count, int stride, __constant StateParams* s, __global const double* x, __global int* stays) {
+__kernel void find_what_stays(int count, int stride, __constant StateParams* s, __global const double* x, __global int* stays) {
     const int i = get_global_id(0);
     if (i >= count) return;
     int stay = 1;
@@ -145,6 +145,19 @@ __kernel void find_stayers(int count, int stride, __constant StateParams* s, __g
     }
     stays[i] = stay;
 }
+#endif
+
+#ifdef WEIR_SINKS
+/* 1 for what is in no sink. */
+__kernel void find_what_is_in_no_sink(int count, int stride, __constant StateParams* s, __global const double* x, __global int* stays) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const double4 at = (double4)(x[i], x[(size_t)stride + i], WEIR_DIM == 3 ? x[(size_t)(WEIR_DIM - 1) * stride + i] : 0, 0);
+    stays[i] = !in_a_sink(at);
+}
+#endif
+
+#if defined(WEIR_OPEN) || defined(WEIR_SINKS)
 /* The stayers' numbers, in their order; `before`: how many stay before each particle. */
 __kernel void list_stayers(int count, __global const int* stays, __global const int* before, __global int* order) {
     const int i = get_global_id(0);
