@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/machine.hpp"
+#include "sim/registry.hpp"
 #include "validation/report/command.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numeric>
 #include <sstream>
 
 namespace weir::validation {
@@ -46,6 +48,22 @@ const Variant* method_named(const Study& study, const std::string& name) {
     for (const Variant& v : study.methods)
         if (v.name == name) return &v;
     return nullptr;
+}
+
+/// What settings of a method are multiples of: cells along the sweep's axis that leave whole numbers along the others, or iterations.
+real grain_of(const Variant& method) {
+    const Sweep& sweep = *method.sweep;
+    if (sweep.key.find("iterations") != std::string::npos) return 1;
+    if (sweep.key != "grid.cells") return 0;
+    Variant plain = method;
+    plain.sweep.reset();
+    const auto cells = scene_of(plain, 0, sim::schemas()).root().numbers("grid.cells");
+    const auto along = static_cast<std::int64_t>(cells.at(static_cast<std::size_t>(sweep.axis)));
+    std::int64_t common = along;
+    for (std::size_t a = 0; a < cells.size(); ++a)
+        if (std::find(sweep.keep.begin(), sweep.keep.end(), static_cast<int>(a)) == sweep.keep.end())
+            common = std::gcd(common, static_cast<std::int64_t>(cells[a]));
+    return static_cast<real>(along / common);
 }
 
 real by_power(real x, real x0, real x1, real y0, real y1) { return y0 * std::pow(y1 / y0, std::log(x / x0) / std::log(x1 / x0)); }
@@ -100,6 +118,7 @@ std::vector<CostCurve> read_cost_table(const Study& study, const std::filesystem
             const Variant* method = method_named(study, cell("method"));
             const bool iterations = method && method->sweep && method->sweep->key.find("iterations") != std::string::npos;
             curve = curves.insert(curves.end(), {cell("method"), iterations, {}});
+            if (method && method->sweep) curve->grain = grain_of(*method);
         }
         curve->points.push_back(
             {std::stod(cell("setting")), std::stod(cell("error")), std::stod(cell("seconds_per_second")), std::stod(cell("ms_per_step"))});
@@ -109,6 +128,17 @@ std::vector<CostCurve> read_cost_table(const Study& study, const std::filesystem
         std::sort(c.points.begin(), c.points.end(), [](const Priced& a, const Priced& b) { return a.setting < b.setting; });
     return curves;
 }
+
+namespace {
+
+/// A setting that can be asked for: a multiple of the grain, or a number of two digits.
+real rounded(real setting, real grain) {
+    if (grain > 0) return grain * std::round(setting / grain);
+    const real digit = std::pow(10, std::floor(std::log10(setting)) - 1);
+    return digit * std::round(setting / digit);
+}
+
+}  // namespace
 
 std::optional<Priced> predict(const CostCurve& curve, real setting) {
     const auto& p = curve.points;
@@ -142,7 +172,7 @@ Recommendation recommend(const std::vector<CostCurve>& curves, Price price, cons
             const real from = c.points[i - 1].setting, to = c.points[i].setting;
             real last = from;
             for (int k = 1; k < between; ++k) {
-                const real setting = std::round(by_power(k, 1, between, from, to));
+                const real setting = rounded(by_power(k, 1, between, from, to), c.grain);
                 if (setting <= last || setting >= to) continue;
                 last = setting;
                 if (const auto p = predict(c, setting)) consider(c, *p, false);
@@ -179,8 +209,11 @@ namespace {
 std::string setting_text(const Choice& c, const Study& study) {
     const Variant* method = method_named(study, c.curve->method);
     const std::string key = method && method->sweep ? method->sweep->key : "setting";
-    return fmt::format("{}{}{} = {:g}{}", c.curve->method, c.curve->method.empty() ? "" : ", ", key, c.at.setting,
-                       key == "grid.cells" ? " along x" : "");
+    std::string also;
+    if (method && method->sweep)
+        for (const auto& follower : method->sweep->also) also += fmt::format(" ({} goes with it)", follower.key);
+    return fmt::format("{}{}{} = {:g}{}{}", c.curve->method, c.curve->method.empty() ? "" : ", ", key, c.at.setting,
+                       key == "grid.cells" ? " along x" : "", also);
 }
 
 std::string priced_text(const Choice& c, const Study& study) {

@@ -21,6 +21,7 @@ struct CostCurve {
     std::string method;
     bool counts_iterations = false;  // the settings are iterations; otherwise a resolution
     std::vector<Priced> points;
+    real grain = 1;  // settings between entries are multiples of it: cells that keep a grid's proportions whole; 0: any number
 };
 
 /// The study's table, written by `weir cost` in `folder` or in its folder csv. Settings that failed are left out. Throws BadInput.

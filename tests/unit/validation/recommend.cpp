@@ -55,6 +55,22 @@ TEST("of what is good enough and within the budget the cheapest is taken; where 
     EXPECT_NEAR(seconds_of({10, 0, 0.001, 50}, Price::second, budget), 0.05, 1e-12) << "a frame takes at least a step";
 }
 
+TEST("what is recommended between two entries can be asked for: cells that keep a grid's proportions, time steps of two digits") {
+    const auto taken = [](CostCurve curve, real grain, real error) {
+        curve.grain = grain;
+        return recommend({curve}, Price::second, {.seconds = 1, .error = error, .frame = 1}).take->at.setting;
+    };
+    const real cells = taken(line("432 x 90", {{48, 0.16, 0.1, 1}, {72, 0.07, 0.2, 1}, {144, 0.01, 0.4, 1}}), 24, 0.03);
+    EXPECT_TRUE(cells == 96 || cells == 120) << cells << ": of 432 x 90 only multiples of 24 are whole along both axes";
+    const real dt = taken(line("steps", {{1e-3, 0.001, 0.4, 1}, {4e-3, 0.016, 0.1, 1}}), 0, 0.005);
+    EXPECT_GT(dt, 1e-3);
+    EXPECT_LT(dt, 4e-3);
+    EXPECT_NEAR(dt * 1e4, std::round(dt * 1e4), 1e-6) << "two digits";
+    const std::filesystem::path tables = std::filesystem::path(WEIR_SOURCE_DIR) / "results" / "cost";
+    const Study water = read_study(WEIR_SOURCE_DIR "/cases/dam_break_martin_moyce", Size::ci);
+    for (const CostCurve& curve : read_cost_table(water, tables)) EXPECT_EQ(curve.grain, 24) << curve.method;
+}
+
 TEST("a budget and an error are read with their units, or refused") {
     EXPECT_DOUBLE_EQ(parse_seconds("16ms"), 0.016);
     EXPECT_DOUBLE_EQ(parse_seconds("0.5 s"), 0.5);
