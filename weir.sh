@@ -6,7 +6,7 @@ set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 
 packages=(g++ cmake ninja-build ccache git libeigen3-dev libfmt-dev libgtest-dev libbenchmark-dev librapidcheck-dev libtomlplusplus-dev libcli11-dev
-          nlohmann-json3-dev opencl-headers ocl-icd-opencl-dev pocl-opencl-icd oclgrind libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libhypre-dev libnanoflann-dev libvtk9-dev xvfb xauth gnuplot-nox)
+          nlohmann-json3-dev opencl-headers ocl-icd-opencl-dev pocl-opencl-icd oclgrind libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libhypre-dev libnanoflann-dev libvtk9-dev xvfb xauth valgrind gnuplot-nox)
 
 install_missing() {
     if ! command -v dpkg-query >/dev/null; then

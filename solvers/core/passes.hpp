@@ -16,18 +16,25 @@ struct Pass {
     double seconds = 0;
 };
 
+/// Told of each pass as it begins and as it ends: for tools that count by pass what a clock cannot. None in an ordinary run.
+using PassWatch = void (*)(const Pass& pass, bool begins);
+inline PassWatch pass_watch = nullptr;
+
 class Passes {
 public:
     /// Measures from its construction to its destruction.
     class Timer {
     public:
-        explicit Timer(Passes& owner, std::size_t pass) : owner_(owner), pass_(pass), start_(clock::now()) {}
+        explicit Timer(Passes& owner, std::size_t pass) : owner_(owner), pass_(pass), start_(clock::now()) {
+            if (pass_watch) pass_watch(owner_.list_[pass_], true);
+        }
         Timer(const Timer&) = delete;
         Timer& operator=(const Timer&) = delete;
         ~Timer() {
             Pass& p = owner_.list_[pass_];
             ++p.calls;
             p.seconds += std::chrono::duration<double>(clock::now() - start_).count();
+            if (pass_watch) pass_watch(p, false);
         }
 
     private:
