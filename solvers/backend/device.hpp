@@ -19,7 +19,9 @@ struct DeviceInfo {
     std::size_t largest = 0;      // that one allocation may have [bytes]
     std::size_t group_limit = 1;  // work items a group may have
     int units = 0;
-    bool doubles = false;  // knows double precision (cl_khr_fp64)
+    bool doubles = false;    // knows double precision (cl_khr_fp64)
+    bool fused = false;      // rounds a product and a sum once
+    bool same_bits = false;  // and divides with correct rounding: pair passes end in the bits of AVX2 and AVX-512
 };
 
 /// Memory on the device; freed with its last copy.

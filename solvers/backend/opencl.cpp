@@ -95,6 +95,9 @@ DeviceInfo describe(cl_device_id device) {
     info.group_limit = device_number<std::size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE);
     info.units = static_cast<int>(device_number<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS));
     info.doubles = device_number<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
+    const auto single = device_number<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
+    info.fused = (single & CL_FP_FMA) != 0;
+    info.same_bits = info.fused && (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     return info;
 }
 
@@ -178,7 +181,9 @@ void OpenClDevice::compile(const std::string& program, const std::string& define
     const char* source = program.c_str();
     program_ = clCreateProgramWithSource(context_, 1, &source, nullptr, &error);
     require(error, "program");
-    error = clBuildProgram(program_, 1, &device_, defines.c_str(), nullptr, nullptr);
+    const std::string options =
+        defines + (info_.fused ? " -DWEIR_FMA" : "") + (info_.same_bits ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+    error = clBuildProgram(program_, 1, &device_, options.c_str(), nullptr, nullptr);
     if (error == CL_SUCCESS) return;
     std::size_t size = 0;
     clGetProgramBuildInfo(program_, device_, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);

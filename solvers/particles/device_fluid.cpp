@@ -95,7 +95,7 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
 
 template <int D>
 void DeviceFluid<D>::compile(const DeviceSetup& setup) {
-    std::string program = program_of({"prelude_opencl.h", "params.h", "state_params.h", "pair.inl", "pbf_pair.inl"});
+    std::string program = program_of({"prelude_opencl.h", "params.h", "state_params.h", "single.inl", "pair.inl", "pbf_pair.inl"});
     const auto& sinks = effects_.emitters.sinks();
     if (solid_ || !sinks.empty()) program += program_of({"shapes.cl"});
     if (solid_) program += text_of(host_.domain.solids) + program_of({"solids.cl"});

@@ -67,7 +67,6 @@ Params Domain<D>::walls(const Kernel<D>& density, const Kernel<D>& gradient) con
         if (walled(a, 1)) w.hi[a] = static_cast<Number>(hi[a] - middle), w.keep_hi[a] = static_cast<Number>(hi[a] - margin - middle);
     }
     w.inv_h = static_cast<Number>(1 / density.support());
-    w.reach = static_cast<Number>(density.support());
     const WallSeries fraction = behind_series(density), slope = plane_series(gradient);
     static_assert(wall_terms == WEIR_WALL_TERMS);
     for (std::size_t k = 0; k < fraction.size(); ++k) {

@@ -59,7 +59,7 @@ inline void pack(const ListJob& job, ListChunk& chunk, int cell, const Runs& run
             const Four p = load_block(job.positions + 4 * i);
             const vf x = max0(higher(lo[0] - p.x, p.x - hi[0])), y = max0(higher(lo[1] - p.y, p.y - hi[1]));
             const vf z = max0(higher(lo[2] - p.z, p.z - hi[2]));
-            const unsigned chosen = below(x * x + y * y + z * z, job.radius2) & block_lanes(runs.end[r] - i);
+            const unsigned chosen = below(square_length(x, y, z), job.radius2) & block_lanes(runs.end[r] - i);
             store_chosen(chunk.x + n, p.x, chosen);
             store_chosen(chunk.y + n, p.y, chosen);
             store_chosen(chunk.z + n, p.z, chosen);
@@ -74,7 +74,7 @@ inline void pack(const ListJob& job, ListChunk& chunk, int cell, const Runs& run
 inline int append(std::uint32_t* out, int n, const ListChunk& chunk, int c, vf x, vf y, vf z, float radius2, std::uint32_t self) {
     const vf dx = load_numbers(chunk.x, c) - x, dy = load_numbers(chunk.y, c) - y, dz = load_numbers(chunk.z, c) - z;
     const vf offsets = load_numbers(reinterpret_cast<const float*>(chunk.offset), c);
-    const unsigned hit = below(dx * dx + dy * dy + dz * dz, radius2) & ~same_bits(offsets, self);
+    const unsigned hit = below(square_length(dx, dy, dz), radius2) & ~same_bits(offsets, self);
     return n + store_chosen(reinterpret_cast<float*>(out + n), offsets, hit);
 }
 

@@ -13,11 +13,18 @@ namespace single = weir::particles::single;
 #define SCALAR float
 #define WEIR_PARAM const
 #define MAX0(x) max0(x)
-#define RSQRT(x) rsqrt(x)
+#define FMA(a, b, c) fma(lanes_of(a), lanes_of(b), lanes_of(c))
+#define FNMA(a, b, c) fnma(lanes_of(a), lanes_of(b), lanes_of(c))
+#define BITS(x) ((whole)(x))
+#define FROM_BITS(i) ((vf)(i))
+#define RSQRT(x) inverse_root(x)
 using single::PbfParams;
 using single::SphParams;
 using single::WallParams;
+// clang-format off
+#include "particles/kernels/single.inl"
 #include "particles/kernels/pair.inl"
+// clang-format on
 
 inline void prefetch(const std::uint32_t* row) { _mm_prefetch(reinterpret_cast<const char*>(row + 16 * lanes), _MM_HINT_T0); }
 inline int live(int first, int count) { return first + lanes <= count ? lanes : count - first; }
@@ -34,12 +41,12 @@ inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int
     bool any = solid != nullptr;
     for (int a = 0; a < 3; ++a) {
         const vf above = x[a] - w->lo[a], below = w->hi[a] - x[a];
-        if (any_below(above, w->reach)) {
+        if (any_below(-wall_depth(above, w->inv_h), 0)) {
             part[a] += wall_series(above, w->fraction, w->inv_h);
             pull[a] -= wall_series(above, w->slope, w->inv_h);
             any = true;
         }
-        if (any_below(below, w->reach)) {
+        if (any_below(-wall_depth(below, w->inv_h), 0)) {
             part[a] += wall_series(below, w->fraction, w->inv_h);
             pull[a] += wall_series(below, w->slope, w->inv_h);
             any = true;
@@ -57,8 +64,8 @@ inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int
 
 namespace muller {
 #define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
-#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h, (p)->guard)
+#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h)
 #include "particles/kernels/pbf_passes.inl"
 
 #include "particles/kernels/sph_passes.inl"
@@ -67,9 +74,9 @@ namespace muller {
 #undef WEIR_LAPLACIAN
 }  // namespace muller
 namespace spline {
-#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h, (p)->guard)
-#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h)
+#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h)
 #include "particles/kernels/pbf_passes.inl"
 
 #include "particles/kernels/sph_passes.inl"
@@ -78,9 +85,9 @@ namespace spline {
 #undef WEIR_LAPLACIAN
 }  // namespace spline
 namespace c2 {
-#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h, (p)->guard)
-#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h)
+#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h)
 #include "particles/kernels/pbf_passes.inl"
 
 #include "particles/kernels/sph_passes.inl"

@@ -16,8 +16,8 @@ using plain::WallParams;
 
 namespace muller {
 #define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
-#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h, (p)->guard)
+#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h)
 #include "particles/kernels/pbf_pair.inl"
 
 #include "particles/kernels/sph_pair.inl"
@@ -26,9 +26,9 @@ namespace muller {
 #undef WEIR_LAPLACIAN
 }  // namespace muller
 namespace spline {
-#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h, (p)->guard)
-#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h)
+#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h)
 #include "particles/kernels/pbf_pair.inl"
 
 #include "particles/kernels/sph_pair.inl"
@@ -37,9 +37,9 @@ namespace spline {
 #undef WEIR_LAPLACIAN
 }  // namespace spline
 namespace c2 {
-#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h, (p)->guard)
-#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h)
+#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h)
 #include "particles/kernels/pbf_pair.inl"
 
 #include "particles/kernels/sph_pair.inl"
@@ -52,17 +52,17 @@ struct Functions {
     double (*density)(double, const PbfParams*);
     double (*slope)(double, const PbfParams*);
     double (*correction)(double, double, const PbfParams*);
-    double (*sph_density)(double, const SphParams*);
+    double (*sph_add_density)(double, double, const SphParams*);
     double (*sph_rate)(double, double, double, const SphParams*);
     double (*sph_diffusion)(double, double, double, const SphParams*);
     double (*sph_push)(double, double, double, double, const SphParams*);
     double (*sph_drag)(double, double, const SphParams*);
     double (*sph_colour)(double, double, const SphParams*);
 };
-#define WEIR_FUNCTIONS(k)                                                                                                          \
-    {                                                                                                                              \
-        k::pbf_density, k::pbf_slope, k::pbf_correction_with_pressure, k::sph_density, k::sph_rate, k::sph_diffusion, k::sph_push, \
-            k::sph_drag, k::sph_colour                                                                                             \
+#define WEIR_FUNCTIONS(k)                                                                                                              \
+    {                                                                                                                                  \
+        k::pbf_density, k::pbf_slope, k::pbf_correction_with_pressure, k::sph_add_density, k::sph_rate, k::sph_diffusion, k::sph_push, \
+            k::sph_drag, k::sph_colour                                                                                                 \
     }
 constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(spline), WEIR_FUNCTIONS(c2)};
 
@@ -91,13 +91,14 @@ Point apart(const Point& a, const Point& b, const Point& period) {
     return d;
 }
 double square(const Point& d) { return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]; }
+double apart2(const Point& d, const SphParams& p) { return distance2(d[0], d[1], d[2], p.guard); }
 
 /// f(j, x_i - x_j, r^2) for every neighbour.
 template <class F>
 void each_neighbour(const ReferencePbf& r, const std::vector<Point>& x, std::size_t i, F&& f) {
     for (const std::size_t j : r.neighbours[i]) {
         const Point d = apart(x[i], x[j], r.period);
-        f(j, d, square(d));
+        f(j, d, distance2(d[0], d[1], d[2], r.p.guard));
     }
 }
 
@@ -157,7 +158,7 @@ std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
     for (std::size_t i = 0; i < x.size(); ++i) {
         rho[i] = p.self + p.wall_rho * walls_at(*this, x[i], i)[3];
         for (std::size_t j = 0; j < x.size(); ++j)
-            if (j != i) rho[i] += functions[kernel].sph_density(square(apart(x[i], x[j], period)), &p);
+            if (j != i) rho[i] = functions[kernel].sph_add_density(rho[i], apart2(apart(x[i], x[j], period), p), &p);
     }
     return rho;
 }
@@ -173,8 +174,8 @@ std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::
             if (j == i || square(d) >= p.h2) continue;
             double excess = (rho[j] - rho0) - (rho[i] - rho0);
             for (std::size_t b = 0; b < 3; ++b) excess += p.layers[b] * d[b];
-            relative += functions[kernel].sph_rate(square(d), d[0] * u[0] + d[1] * u[1] + d[2] * u[2], 1 / rho[j], &p);
-            spread += functions[kernel].sph_diffusion(square(d), excess, 1 / rho[j], &p);
+            relative += functions[kernel].sph_rate(apart2(d, p), d[0] * u[0] + d[1] * u[1] + d[2] * u[2], 1 / rho[j], &p);
+            spread += functions[kernel].sph_diffusion(apart2(d, p), excess, 1 / rho[j], &p);
         }
         rate[i] = rho[i] * relative + spread;
     }
@@ -189,7 +190,7 @@ std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std
         for (std::size_t j = 0; j < x.size(); ++j) {
             const Point d = apart(x[i], x[j], period);
             if (j == i || square(d) >= p.h2) continue;
-            const double f = functions[kernel].sph_colour(square(d), 1 / rho[j], &p);
+            const double f = functions[kernel].sph_colour(apart2(d, p), 1 / rho[j], &p);
             for (std::size_t b = 0; b < 3; ++b) q[i][b] += f * d[b];
         }
         const double scale = muller::sph_normal(square(q[i]), &p);
@@ -199,7 +200,7 @@ std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std
         for (std::size_t j = 0; j < x.size(); ++j) {
             const Point d = apart(x[i], x[j], period);
             if (j == i || square(d) >= p.h2) continue;
-            const double f = muller::sph_tension(square(d), 1 / (rho[i] * rho[j]), &p), both = square(q[i]) + square(q[j]);
+            const double f = muller::sph_tension(apart2(d, p), 1 / (rho[i] * rho[j]), &p), both = square(q[i]) + square(q[j]);
             const double own = q[i][0] * d[0] + q[i][1] * d[1] + q[i][2] * d[2], other = q[j][0] * d[0] + q[j][1] * d[1] + q[j][2] * d[2];
             for (std::size_t b = 0; b < 3; ++b) a[i][b] += f * (both * d[b] - own * q[i][b] - other * q[j][b]);
         }
@@ -215,8 +216,8 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
         for (std::size_t b = 0; b < 3; ++b) a[i][b] -= 2 * pressure[i] / rho[i] * wall[b];
         for (std::size_t j = 0; j < x.size(); ++j) {
             const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
-            const double r2 = square(d), approach = d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
-            if (j == i || r2 >= p.h2) continue;
+            const double r2 = apart2(d, p), approach = d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
+            if (j == i || square(d) >= p.h2) continue;
             const double pressures = summed ? pressure[i] / (rho[i] * rho[i]) + pressure[j] / (rho[j] * rho[j])
                                             : (pressure[i] + pressure[j]) / (rho[i] * rho[j]);
             const double push = functions[kernel].sph_push(r2, approach, pressures, 0.5 / rho[i] + 0.5 / rho[j], &p);

@@ -16,6 +16,7 @@ inline constexpr int lanes = 4;
 #endif
 
 typedef float vf __attribute__((vector_size(4 * lanes), may_alias));
+typedef int whole __attribute__((vector_size(4 * lanes), may_alias));
 
 /// The four components of `lanes` particles.
 struct Four {
@@ -32,17 +33,15 @@ inline vf broadcast(float a) { return (vf)_mm512_set1_ps(a); }
 inline vf max0(vf a) { return (vf)_mm512_max_ps((__m512)a, _mm512_setzero_ps()); }
 inline vf lower(vf a, vf b) { return (vf)_mm512_min_ps((__m512)a, (__m512)b); }
 inline vf higher(vf a, vf b) { return (vf)_mm512_max_ps((__m512)a, (__m512)b); }
-/// 1 / sqrt(a): 14-bit estimate and one Newton step.
-inline vf rsqrt(vf a) {
-    const vf r = (vf)_mm512_rsqrt14_ps((__m512)a);
-    return r * (1.5f - 0.5f * a * r * r);
+/// a b + c and c - a b, rounded once.
+inline vf fma(vf a, vf b, vf c) { return (vf)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c); }
+inline vf fnma(vf a, vf b, vf c) { return (vf)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c); }
+/// Four quarters, one a particle, into one register, by halves: cheaper than a masked broadcast for each.
+inline __m256 half(const float* base, std::uint32_t first, std::uint32_t second) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(at(base, first))), _mm_load_ps(at(base, second)), 1);
 }
-/// Four quarters, one a particle, into one register.
 inline __m512 quarters(const float* base, const std::uint32_t* o) {
-    __m512 r = _mm512_castps128_ps512(_mm_load_ps(at(base, o[0])));
-    r = _mm512_mask_broadcast_f32x4(r, 0x00f0, _mm_load_ps(at(base, o[4])));
-    r = _mm512_mask_broadcast_f32x4(r, 0x0f00, _mm_load_ps(at(base, o[8])));
-    return _mm512_mask_broadcast_f32x4(r, 0xf000, _mm_load_ps(at(base, o[12])));
+    return _mm512_insertf32x8(_mm512_castps256_ps512(half(base, o[0], o[4])), half(base, o[8], o[12]), 1);
 }
 /// Gathers by 128-bit loads and a 4 x 4 transpose in each quarter: a hardware gather makes every pass twice as slow.
 inline Four gather(const float* base, const std::uint32_t* o) {
@@ -59,10 +58,8 @@ inline vf broadcast(float a) { return (vf)_mm256_set1_ps(a); }
 inline vf max0(vf a) { return (vf)_mm256_max_ps((__m256)a, _mm256_setzero_ps()); }
 inline vf lower(vf a, vf b) { return (vf)_mm256_min_ps((__m256)a, (__m256)b); }
 inline vf higher(vf a, vf b) { return (vf)_mm256_max_ps((__m256)a, (__m256)b); }
-inline vf rsqrt(vf a) {
-    const vf r = (vf)_mm256_rsqrt_ps((__m256)a);
-    return r * (1.5f - 0.5f * a * r * r);
-}
+inline vf fma(vf a, vf b, vf c) { return (vf)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c); }
+inline vf fnma(vf a, vf b, vf c) { return (vf)_mm256_fnmadd_ps((__m256)a, (__m256)b, (__m256)c); }
 inline __m256 halves(const float* base, const std::uint32_t* o) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(at(base, o[0]))), _mm_load_ps(at(base, o[4])), 1);
 }
@@ -80,10 +77,9 @@ inline vf broadcast(float a) { return (vf)_mm_set1_ps(a); }
 inline vf max0(vf a) { return (vf)_mm_max_ps((__m128)a, _mm_setzero_ps()); }
 inline vf lower(vf a, vf b) { return (vf)_mm_min_ps((__m128)a, (__m128)b); }
 inline vf higher(vf a, vf b) { return (vf)_mm_max_ps((__m128)a, (__m128)b); }
-inline vf rsqrt(vf a) {
-    const vf r = (vf)_mm_rsqrt_ps((__m128)a);
-    return r * (1.5f - 0.5f * a * r * r);
-}
+/// SSE2 has none: the one instruction set whose bits are its own.
+inline vf fma(vf a, vf b, vf c) { return a * b + c; }
+inline vf fnma(vf a, vf b, vf c) { return c - a * b; }
 inline Four gather(const float* base, const std::uint32_t* o) {
     __m128 a = _mm_load_ps(at(base, o[0])), b = _mm_load_ps(at(base, o[1])), c = _mm_load_ps(at(base, o[2])),
            d = _mm_load_ps(at(base, o[3]));
@@ -92,6 +88,12 @@ inline Four gather(const float* base, const std::uint32_t* o) {
 }
 
 #endif
+
+inline vf lanes_of(vf a) { return a; }
+inline vf lanes_of(float a) { return broadcast(a); }
+inline vf square_length(vf x, vf y, vf z) { return fma(z, z, fma(y, y, x * x)); }
+/// 0 in the lanes whose gate is not positive.
+inline vf where_positive(vf gate, vf value) { return (vf)((whole)value & (gate > broadcast(0))); }
 
 /// Particles first, first + 1, ... of an array of four floats each.
 inline Four load(const float* base, int first) {

@@ -20,14 +20,16 @@ inline int store_chosen(float* to, vf a, unsigned chosen) {
     _mm512_storeu_ps(to, _mm512_maskz_compress_ps(static_cast<__mmask16>(chosen), (__m512)a));
     return __builtin_popcount(chosen);
 }
-/// `lanes` particles in a row. Lane l holds particle block_lane(l): the order in which a 4 x 4 transpose leaves them.
-inline constexpr int block_lane(int l) { return 4 * (l % 4) + l / 4; }
+/// `lanes` particles in a row, in their order: the neighbours of a particle are listed alike on all machines, and so their sums are.
+inline vf in_order(__m512 a, __m512 b, int which) {
+    const __m512i order = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+    return (vf)_mm512_permutexvar_ps(order, which ? _mm512_shuffle_ps(a, b, 0xee) : _mm512_shuffle_ps(a, b, 0x44));
+}
 inline Four load_block(const float* p) {
     const __m512 a = _mm512_loadu_ps(p), b = _mm512_loadu_ps(p + 16), c = _mm512_loadu_ps(p + 32), d = _mm512_loadu_ps(p + 48);
     const __m512 ab_lo = _mm512_unpacklo_ps(a, b), ab_hi = _mm512_unpackhi_ps(a, b);
     const __m512 cd_lo = _mm512_unpacklo_ps(c, d), cd_hi = _mm512_unpackhi_ps(c, d);
-    return {(vf)_mm512_shuffle_ps(ab_lo, cd_lo, 0x44), (vf)_mm512_shuffle_ps(ab_lo, cd_lo, 0xee), (vf)_mm512_shuffle_ps(ab_hi, cd_hi, 0x44),
-            (vf)_mm512_shuffle_ps(ab_hi, cd_hi, 0xee)};
+    return {in_order(ab_lo, cd_lo, 0), in_order(ab_lo, cd_lo, 1), in_order(ab_hi, cd_hi, 0), in_order(ab_hi, cd_hi, 1)};
 }
 
 #elif WEIR_ISA == 256
@@ -57,13 +59,15 @@ inline int store_chosen(float* to, vf a, unsigned chosen) {
     _mm256_storeu_ps(to, _mm256_permutevar8x32_ps((__m256)a, first));
     return __builtin_popcount(chosen);
 }
-inline constexpr int block_lane(int l) { return 2 * (l % 4) + l / 4; }
+inline vf in_order(__m256 a, __m256 b, int which) {
+    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    return (vf)_mm256_permutevar8x32_ps(which ? _mm256_shuffle_ps(a, b, 0xee) : _mm256_shuffle_ps(a, b, 0x44), order);
+}
 inline Four load_block(const float* p) {
     const __m256 a = _mm256_loadu_ps(p), b = _mm256_loadu_ps(p + 8), c = _mm256_loadu_ps(p + 16), d = _mm256_loadu_ps(p + 24);
     const __m256 ab_lo = _mm256_unpacklo_ps(a, b), ab_hi = _mm256_unpackhi_ps(a, b);
     const __m256 cd_lo = _mm256_unpacklo_ps(c, d), cd_hi = _mm256_unpackhi_ps(c, d);
-    return {(vf)_mm256_shuffle_ps(ab_lo, cd_lo, 0x44), (vf)_mm256_shuffle_ps(ab_lo, cd_lo, 0xee), (vf)_mm256_shuffle_ps(ab_hi, cd_hi, 0x44),
-            (vf)_mm256_shuffle_ps(ab_hi, cd_hi, 0xee)};
+    return {in_order(ab_lo, cd_lo, 0), in_order(ab_lo, cd_lo, 1), in_order(ab_hi, cd_hi, 0), in_order(ab_hi, cd_hi, 1)};
 }
 
 #else
@@ -82,7 +86,6 @@ inline int store_chosen(float* to, vf a, unsigned chosen) {
     }
     return n;
 }
-inline constexpr int block_lane(int l) { return l; }
 inline Four load_block(const float* p) {
     __m128 a = _mm_loadu_ps(p), b = _mm_loadu_ps(p + 4), c = _mm_loadu_ps(p + 8), d = _mm_loadu_ps(p + 12);
     _MM_TRANSPOSE4_PS(a, b, c, d);
@@ -91,20 +94,16 @@ inline Four load_block(const float* p) {
 
 #endif
 
-/// Lane numbers of a block, and for each count of particles left in a run the lanes that hold them.
 struct Block {
     int byte_offset[lanes];
-    unsigned first[lanes + 1];
-    constexpr Block() : byte_offset{}, first{} {
-        for (int l = 0; l < lanes; ++l) byte_offset[l] = 16 * block_lane(l);
-        for (int left = 0; left <= lanes; ++left)
-            for (int l = 0; l < lanes; ++l)
-                if (block_lane(l) < left) first[left] |= 1u << l;
+    constexpr Block() : byte_offset{} {
+        for (int l = 0; l < lanes; ++l) byte_offset[l] = 16 * l;
     }
 };
 alignas(64) constexpr Block block;
 
-inline unsigned block_lanes(int left) { return block.first[left < lanes ? left : lanes]; }
+/// The lanes of a block that hold the particles which are left in a run.
+inline unsigned block_lanes(int left) { return left < lanes ? (1u << left) - 1 : (1u << (lanes - 1) << 1) - 1; }
 /// Byte offsets of the float4 of a block that begins at particle i, as the bits of lanes.
 inline vf block_offsets(int i) {
     typedef int vi __attribute__((vector_size(4 * lanes), may_alias));

@@ -188,7 +188,7 @@ void PbfSolver<D>::update(real dt, real slow) {
         const int i = pairs_.owner(k);
         const Vec<D> predicted = particles::Fluid<D>::get(x_star_, i);
         Vec<D> x = predicted;
-        for (int a = 0; a < D; ++a) x[a] += static_cast<real>(now[4 * k + a]) - static_cast<real>(pairs_.local(x[a], a));
+        for (int a = 0; a < D; ++a) x[a] += static_cast<real>(now[4 * k + a]) - pairs_.rounded(x[a], a);
         x = fluid_.domain.kept(x);
         if (dt > 0) particles::Fluid<D>::put(fluid_.v, i, (x - fluid_.position(i)) / dt - too_fast * (x - predicted));
         particles::Fluid<D>::put(fluid_.x, i, x);

@@ -38,7 +38,11 @@ __kernel void smooth(int count, int stride, __constant PbfParams* p, double c, _
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
         const float4 d = APART(me, at[j]);
-        sum += xsph_factor(SQUARE(d), p) * (velocities[j] - u);
+        const float4 other = velocities[j] - u;
+        const float f = xsph_factor(DISTANCE2(d, p), p);
+        sum.x = FMA(f, other.x, sum.x);
+        sum.y = FMA(f, other.y, sum.y);
+        sum.z = FMA(f, other.z, sum.z);
     }
     add_change(i, stride, c, sum, order, v);
 }
@@ -55,12 +59,12 @@ __kernel void curl(int count, int stride, __constant PbfParams* p, __global cons
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
         const float4 d = APART(me, at[j]), u = velocities[j] - own;
-        const float f = curl_factor(SQUARE(d), p);
+        const float f = curl_factor(DISTANCE2(d, p), p);
         sum.x += f * (u.y * d.z - u.z * d.y);
         sum.y += f * (u.z * d.x - u.x * d.z);
         sum.z += f * (u.x * d.y - u.y * d.x);
     }
-    const float length2 = sum.x * sum.x + sum.y * sum.y + sum.z * sum.z;
+    const float length2 = dot3(sum.x, sum.y, sum.z, sum.x, sum.y, sum.z);
     sum.w = length2 * RSQRT(length2 + 1e-20f);
     omega[i] = sum;
 }
@@ -76,9 +80,12 @@ __kernel void confine(int count, int stride, __constant PbfParams* p, double str
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
         const float4 d = APART(me, at[j]);
-        eta += pbf_slope(SQUARE(d), p) * omega[j].w * d;
+        const float f = pbf_slope(DISTANCE2(d, p), p) * omega[j].w;
+        eta.x = FMA(f, d.x, eta.x);
+        eta.y = FMA(f, d.y, eta.y);
+        eta.z = FMA(f, d.z, eta.z);
     }
-    const float4 n = RSQRT(eta.x * eta.x + eta.y * eta.y + eta.z * eta.z + 1e-20f) * eta;
+    const float4 n = RSQRT(dot3(eta.x, eta.y, eta.z, eta.x, eta.y, eta.z) + 1e-20f) * eta;
     add_change(i, stride, strength, (float4)(n.y * w.z - n.z * w.y, n.z * w.x - n.x * w.z, n.x * w.y - n.y * w.x, 0.0f), order, v);
 }
 #endif

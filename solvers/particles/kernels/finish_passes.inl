@@ -12,26 +12,26 @@ static void finish(const FinishPass& a, const ListChunk& chunk) {
         for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
             const Four j = gather(a.positions, row), w = gather(a.values, row);
             prefetch(row);
-            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = distance2(dx, dy, dz, p->guard);
             const vf ux = w.x - u.x, uy = w.y - u.y, uz = w.z - u.z;
             if constexpr (What == 0) {
                 const vf f = xsph_factor(r2, p);
-                x += f * ux, y += f * uy, z += f * uz;
+                x = FMA(f, ux, x), y = FMA(f, uy, y), z = FMA(f, uz, z);
             } else if constexpr (What == 1) {
                 const vf f = curl_factor(r2, p);
                 x += f * (uy * dz - uz * dy), y += f * (uz * dx - ux * dz), z += f * (ux * dy - uy * dx);
             } else {
                 const vf f = pbf_slope(r2, p) * w.w;
-                x += f * dx, y += f * dy, z += f * dz;
+                x = FMA(f, dx, x), y = FMA(f, dy, y), z = FMA(f, dz, z);
             }
         }
         if constexpr (What == 2) { /* N x omega, N = eta / |eta| */
-            const vf scale = rsqrt(x * x + y * y + z * z + broadcast(1e-20f));
+            const vf scale = RSQRT(dot3(x, y, z, x, y, z) + broadcast(1e-20f));
             const vf nx = scale * x, ny = scale * y, nz = scale * z;
             x = ny * u.z - nz * u.y, y = nz * u.x - nx * u.z, z = nx * u.y - ny * u.x;
         }
-        const vf length2 = x * x + y * y + z * z;
-        store(a.to, first, live(first, a.count), {x, y, z, length2 * rsqrt(length2 + broadcast(1e-20f))});
+        const vf length2 = dot3(x, y, z, x, y, z);
+        store(a.to, first, live(first, a.count), {x, y, z, length2 * RSQRT(length2 + broadcast(1e-20f))});
     }
 }
 

@@ -73,12 +73,12 @@ WEIR_FN float4 walls_at(float4 at, __constant WallParams* w, __global const floa
     int any = 0;
     for (int a = 0; a < WEIR_DIM; ++a) {
         const float above = x[a] - w->lo[a], below = w->hi[a] - x[a];
-        if (above < w->reach) {
+        if (wall_depth(above, w->inv_h) > 0) {
             part[a] += wall_series(above, w->fraction, w->inv_h);
             pull[a] -= wall_series(above, w->slope, w->inv_h);
             any = 1;
         }
-        if (below < w->reach) {
+        if (wall_depth(below, w->inv_h) > 0) {
             part[a] += wall_series(below, w->fraction, w->inv_h);
             pull[a] += wall_series(below, w->slope, w->inv_h);
             any = 1;

@@ -1,7 +1,13 @@
 /* What every particle method shares: kernels as functions of the squared distance, and walls.
    A C subset over REAL (a scalar or a vector of lanes) and SCALAR: no references, templates or overloads. A prelude defines WEIR_FN,
-   REAL, SCALAR, WEIR_PARAM (where parameters live), MAX0(x) = max(0, x) and RSQRT(x) = 1 / sqrt(x). Factors such as sigma m / rho0
-   stand in the parameters, so the functions here are the bare profiles. A slope s means: gradient of W at i = s (x_i - x_j), s <= 0. */
+   REAL, SCALAR, WEIR_PARAM (where parameters live), MAX0(x) = max(0, x), RSQRT(x) = 1 / sqrt(x) and FMA(a, b, c) = a b + c and FNMA(a, b, c) = c - a b, rounded once.
+   No compiler may contract anything else: lanes and devices then compute the same bits. Factors such as sigma m / rho0 stand in the
+   parameters, so the functions here are the bare profiles. A slope s means: gradient of W at i = s (x_i - x_j), s <= 0. */
+
+/* Square of the distance, and what keeps coincident particles finite: what the kernels here are functions of. */
+WEIR_FN REAL distance2(REAL dx, REAL dy, REAL dz, SCALAR guard) { return FMA(dz, dz, FMA(dy, dy, FMA(dx, dx, guard))); }
+/* Of the vectors a and b */
+WEIR_FN REAL dot3(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) { return FMA(az, bz, FMA(ay, by, ax * bx)); }
 
 /* poly6: (h^2 - r^2)^3                                                                            Mueller et al. 2003, eq. 20 */
 WEIR_FN REAL poly6(REAL r2, SCALAR h2) {
@@ -10,51 +16,53 @@ WEIR_FN REAL poly6(REAL r2, SCALAR h2) {
 }
 
 /* spiky, slope of (h - r)^3 without its factor -3: (h - r)^2 / r                                  Mueller et al. 2003, eq. 21 */
-WEIR_FN REAL spiky_slope(REAL r2, SCALAR h, SCALAR guard) {
-    REAL inv_r = RSQRT(r2 + guard);
-    REAL d = MAX0(h - r2 * inv_r);
+WEIR_FN REAL spiky_slope(REAL r2, SCALAR h) {
+    REAL inv_r = RSQRT(r2);
+    REAL d = MAX0(FNMA(r2, inv_r, h));
     return d * d * inv_r;
 }
 
 /* viscosity kernel: Laplacian h - r                                                               Mueller et al. 2003, eq. 22 */
-WEIR_FN REAL linear_laplacian(REAL r2, SCALAR h, SCALAR guard) { return MAX0(h - r2 * RSQRT(r2 + guard)); }
+WEIR_FN REAL linear_laplacian(REAL r2, SCALAR h) { return MAX0(FNMA(r2, RSQRT(r2), h)); }
 
-/* cubic spline as truncated powers: (h - r)^3 - 4 (h/2 - r)^3, and its slope without -3 */
-WEIR_FN REAL cubic(REAL r2, SCALAR h, SCALAR guard) {
-    REAL r = r2 * RSQRT(r2 + guard);
-    REAL outer = MAX0(h - r), inner = MAX0((SCALAR)0.5 * h - r);
-    return outer * outer * outer - (SCALAR)4 * inner * inner * inner;
+/* cubic spline as truncated powers: (h - r)^3 - 4 (h/2 - r)^3, and its slope without -3. near is the second one's base times 4^(1/3). */
+WEIR_FN REAL cubic(REAL r2, SCALAR h) {
+    REAL inv_r = RSQRT(r2);
+    REAL outer = MAX0(FNMA(r2, inv_r, h)), near = MAX0(FMA(outer, (SCALAR)1.5874010519681994, h * (SCALAR)-0.7937005259840998));
+    return FNMA(near * near, near, outer * outer * outer);
 }
-WEIR_FN REAL cubic_slope(REAL r2, SCALAR h, SCALAR guard) {
-    REAL inv_r = RSQRT(r2 + guard);
-    REAL r = r2 * inv_r;
-    REAL outer = MAX0(h - r), inner = MAX0((SCALAR)0.5 * h - r);
-    return (outer * outer - (SCALAR)4 * inner * inner) * inv_r;
+WEIR_FN REAL cubic_slope(REAL r2, SCALAR h) {
+    REAL inv_r = RSQRT(r2);
+    REAL outer = MAX0(FNMA(r2, inv_r, h)), near = MAX0(FMA(outer, (SCALAR)1.5874010519681994, h * (SCALAR)-0.7937005259840998));
+    return FNMA(near * near, (SCALAR)1.5874010519681994, outer * outer) * inv_r;
 }
 
 /* Wendland C2: (h - r)^4 (h + 4 r), and its slope without -20: (h - r)^3 */
-WEIR_FN REAL wendland(REAL r2, SCALAR h, SCALAR guard) {
-    REAL r = r2 * RSQRT(r2 + guard);
+WEIR_FN REAL wendland(REAL r2, SCALAR h) {
+    REAL r = r2 * RSQRT(r2);
     REAL d = MAX0(h - r);
-    return d * d * d * d * (h + (SCALAR)4 * r);
+    return d * d * d * d * FMA(r, (SCALAR)4, h);
 }
-WEIR_FN REAL wendland_slope(REAL r2, SCALAR h, SCALAR guard) {
-    REAL d = MAX0(h - r2 * RSQRT(r2 + guard));
+WEIR_FN REAL wendland_slope(REAL r2, SCALAR h) {
+    REAL d = MAX0(FNMA(r2, RSQRT(r2), h));
     return d * d * d;
 }
 
+/* How deep the kernel reaches into a wall at distance s, over its support: 0 where it does not. */
+WEIR_FN REAL wall_depth(REAL s, SCALAR inv_h) { return MAX0(FNMA(s, inv_h, (SCALAR)1)); }
+
 /* A function of the distance s to a wall that vanishes beyond the support: u^2 sum_k c_k T_k(2 u - 1), u = 1 - s / h (Clenshaw 1955). */
 WEIR_FN REAL wall_series(REAL s, WEIR_PARAM SCALAR* c, SCALAR inv_h) {
-    REAL u = MAX0((SCALAR)1 - s * inv_h);
+    REAL u = wall_depth(s, inv_h);
     REAL t = (SCALAR)2 * u - (SCALAR)1;
     REAL b1 = t * (SCALAR)0, b2 = b1;
     int k;
     for (k = WEIR_WALL_TERMS - 1; k > 0; --k) {
-        REAL b0 = (SCALAR)2 * t * b1 - b2 + c[k];
+        REAL b0 = FMA(t + t, b1, c[k] - b2);
         b2 = b1;
         b1 = b0;
     }
-    return u * u * (t * b1 - b2 + c[0]);
+    return u * u * FMA(t, b1, c[0] - b2);
 }
 
 /* Along one axis: the part of the kernel that lies behind the two walls, and the gradient of that part along the axis. The gradient of

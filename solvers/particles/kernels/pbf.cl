@@ -1,6 +1,5 @@
 /* The passes of Position Based Fluids (Macklin & Mueller 2013): pbf_pair.inl over every particle's neighbours. Positions are float4 with
    lambda as their fourth number; lambda reads A and writes B, correct reads B and writes A. */
-#pragma OPENCL FP_CONTRACT ON
 
 #ifdef WEIR_KEEP
 /* B = A with what the iterations start from; factor: the kept part times dt^2. */
@@ -26,20 +25,20 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
         const float4 d = APART(me, from[list[(size_t)k * stride + i]]);
-        const float r2 = SQUARE(d);
+        const float r2 = DISTANCE2(d, p);
         const float slope = pbf_slope(r2, p);
-        rho += pbf_density(r2, p);
-        neighbours2 += slope * slope * r2;
-        gx += slope * d.x;
-        gy += slope * d.y;
-        gz += slope * d.z;
+        rho = pbf_add_density(rho, r2, p);
+        neighbours2 = FMA(slope * slope, r2, neighbours2);
+        gx = FMA(slope, d.x, gx);
+        gy = FMA(slope, d.y, gy);
+        gz = FMA(slope, d.z, gz);
     }
     const float4 w = walls_at(me, walls, terms, i);
     rho += w.w;
     gx += w.x;
     gy += w.y;
     gz += w.z;
-    const float own2 = gx * gx + gy * gy + gz * gz;
+    const float own2 = dot3(gx, gy, gz, gx, gy, gz);
 #ifdef WEIR_KEEP
     const float before = multiplier[i];
 #else
@@ -64,18 +63,18 @@ __kernel void correct(int count, int stride, __constant PbfParams* p, __constant
     for (int k = 0; k < n; ++k) {
         const float4 other = from[list[(size_t)k * stride + i]], d = APART(me, other);
 #ifdef WEIR_PRESSURE
-        const float factor = pbf_correction_with_pressure(SQUARE(d), me.w + other.w, p);
+        const float factor = pbf_correction_with_pressure(DISTANCE2(d, p), me.w + other.w, p);
 #else
-        const float factor = pbf_correction(SQUARE(d), me.w + other.w, p);
+        const float factor = pbf_correction(DISTANCE2(d, p), me.w + other.w, p);
 #endif
-        cx += factor * d.x;
-        cy += factor * d.y;
-        cz += factor * d.z;
+        cx = FMA(factor, d.x, cx);
+        cy = FMA(factor, d.y, cy);
+        cz = FMA(factor, d.z, cz);
     }
     const float4 w = walls_at(me, walls, terms, i);
-    to[i] = (float4)(clamp(me.x + cx + me.w * w.x, walls->keep_lo[0], walls->keep_hi[0]),
-                     clamp(me.y + cy + me.w * w.y, walls->keep_lo[1], walls->keep_hi[1]),
-                     clamp(me.z + cz + me.w * w.z, walls->keep_lo[2], walls->keep_hi[2]), 0.0f);
+    to[i] = (float4)(clamp(me.x + FMA(me.w, w.x, cx), walls->keep_lo[0], walls->keep_hi[0]),
+                     clamp(me.y + FMA(me.w, w.y, cy), walls->keep_lo[1], walls->keep_hi[1]),
+                     clamp(me.z + FMA(me.w, w.z, cz), walls->keep_lo[2], walls->keep_hi[2]), 0.0f);
 }
 
 /* Density over rest density at the final positions. */
@@ -88,7 +87,7 @@ __kernel void densities(int count, int stride, __constant PbfParams* p, __consta
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
         const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
-        rho += pbf_density(SQUARE(d), p);
+        rho = pbf_add_density(rho, DISTANCE2(d, p), p);
     }
     density[i] = rho + walls_at(me, walls, terms, i).w;
 }

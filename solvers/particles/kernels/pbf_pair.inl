@@ -3,6 +3,8 @@
 
 /* m W(r) / rho0 of one neighbour                                                                                      eq. 2 */
 WEIR_FN REAL pbf_density(REAL r2, WEIR_PARAM PbfParams* p) { return p->density * WEIR_DENSITY(r2, p); }
+/* The same added to a sum */
+WEIR_FN REAL pbf_add_density(REAL sum, REAL r2, WEIR_PARAM PbfParams* p) { return FMA(WEIR_DENSITY(r2, p), p->density, sum); }
 
 /* s with (m / rho0) grad W = s (x_i - x_j)                                                                            eq. 8 */
 WEIR_FN REAL pbf_slope(REAL r2, WEIR_PARAM PbfParams* p) { return p->gradient * WEIR_SLOPE(r2, p); }

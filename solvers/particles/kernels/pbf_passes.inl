@@ -14,20 +14,20 @@ static void lambda(const PbfPass& a, const ListChunk& chunk) {
             const Four j = gather(a.from, row);
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
-            const vf r2 = dx * dx + dy * dy + dz * dz;
+            const vf r2 = distance2(dx, dy, dz, p->guard);
             const vf slope = pbf_slope(r2, p);
-            rho += pbf_density(r2, p);
-            neighbours2 += slope * slope * r2;
-            gx += slope * dx;
-            gy += slope * dy;
-            gz += slope * dz;
+            rho = pbf_add_density(rho, r2, p);
+            neighbours2 = FMA(slope * slope, r2, neighbours2);
+            gx = FMA(slope, dx, gx);
+            gy = FMA(slope, dy, gy);
+            gz = FMA(slope, dz, gz);
         }
         const Four w = walls_at(i, a.walls, a.solid, first);
         rho += w.w;
         gx += w.x;
         gy += w.y;
         gz += w.z;
-        const vf own2 = gx * gx + gy * gy + gz * gz;
+        const vf own2 = dot3(gx, gy, gz, gx, gy, gz);
         const vf before = a.multiplier ? load_numbers(a.multiplier, first) : broadcast(0);
         const vf sum = pbf_multiplier(before, rho, neighbours2, own2, p);
         if (a.multiplier) store_numbers(a.multiplier, first, live(first, a.count), sum);
@@ -49,16 +49,16 @@ static void correct(const PbfPass& a, const ListChunk& chunk) {
             const Four j = gather(a.from, row);
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
-            const vf r2 = dx * dx + dy * dy + dz * dz;
+            const vf r2 = distance2(dx, dy, dz, p->guard);
             const vf factor = Pressure ? pbf_correction_with_pressure(r2, i.w + j.w, p) : pbf_correction(r2, i.w + j.w, p);
-            cx += factor * dx;
-            cy += factor * dy;
-            cz += factor * dz;
+            cx = FMA(factor, dx, cx);
+            cy = FMA(factor, dy, cy);
+            cz = FMA(factor, dz, cz);
         }
         const Four w = walls_at(i, a.walls, a.solid, first);
-        cx += i.w * w.x;
-        cy += i.w * w.y;
-        cz += i.w * w.z;
+        cx = FMA(i.w, w.x, cx);
+        cy = FMA(i.w, w.y, cy);
+        cz = FMA(i.w, w.z, cz);
         store(a.to, first, live(first, a.count),
               {kept(i.x + cx, a.walls, 0), kept(i.y + cy, a.walls, 1), kept(i.z + cz, a.walls, 2), broadcast(0)});
     }
@@ -76,7 +76,7 @@ static void density(const PbfPass& a, const ListChunk& chunk) {
             const Four j = gather(a.from, row);
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
-            rho += pbf_density(dx * dx + dy * dy + dz * dz, p);
+            rho = pbf_add_density(rho, distance2(dx, dy, dz, p->guard), p);
         }
         store_numbers(a.density, first, live(first, a.count), rho + walls_at(i, a.walls, a.solid, first).w);
     }

@@ -4,4 +4,6 @@
 #define WEIR_PARAM const
 #define MAX0(x) weir_max0(x)
 #define RSQRT(x) (1.0 / std::sqrt(x))
+#define FMA(a, b, c) ((a) * (b) + (c))
+#define FNMA(a, b, c) ((c) - (a) * (b))
 static inline double weir_max0(double x) { return x > 0 ? x : 0; }

@@ -1,25 +1,37 @@
 /* Compiles the pair physics as OpenCL C 1.2, one particle a work item. Defines from the host: WEIR_DIM, WEIR_KERNEL (0: Mueller's, 1:
-   cubic, 2: Wendland), WEIR_GROUP (work items of a group that reduces or scans), and one for each effect that the scene names. */
+   cubic, 2: Wendland), WEIR_GROUP (work items of a group that reduces or scans), WEIR_FMA (the device has it), and one for each effect that
+   the scene names. */
+#pragma OPENCL FP_CONTRACT OFF
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #define SCALAR float
 #define REAL float
 #define WEIR_FN static inline
 #define WEIR_PARAM __constant
-#define MAX0(x) fmax((x), 0.0f)
-#define RSQRT(x) rsqrt(x)
+#define MAX0(x) weir_max0(x)
+#define RSQRT(x) inverse_root(x)
+#define BITS(x) as_int(x)
+#define FROM_BITS(i) as_float(i)
+#ifdef WEIR_FMA
+#define FMA(a, b, c) fma((a), (b), (c))
+#define FNMA(a, b, c) fma(-(a), (b), (c))
+#else /* none in hardware: right, but not to the processor's last bit */
+#define FMA(a, b, c) ((a) * (b) + (c))
+#define FNMA(a, b, c) ((c) - (a) * (b))
+#endif
+static inline float weir_max0(float x) { return x > 0.0f ? x : 0.0f; }
 
 #if WEIR_KERNEL == 0
 #define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
-#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h, (p)->guard)
+#define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) linear_laplacian(r2, (p)->h)
 #elif WEIR_KERNEL == 1
-#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h, (p)->guard)
-#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h, (p)->guard)
+#define WEIR_DENSITY(r2, p) cubic(r2, (p)->h)
+#define WEIR_SLOPE(r2, p) cubic_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) cubic_slope(r2, (p)->h)
 #else
-#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h, (p)->guard)
-#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
-#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h, (p)->guard)
+#define WEIR_DENSITY(r2, p) wendland(r2, (p)->h)
+#define WEIR_SLOPE(r2, p) wendland_slope(r2, (p)->h)
+#define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h)
 #endif
 
 /* From b to a; along axes that repeat (WEIR_PERIOD, as four numbers) to the nearest of its images. */
@@ -34,7 +46,9 @@ WEIR_FN float4 apart(float4 a, float4 b) {
 #endif
 
 #if WEIR_DIM == 3
-#define SQUARE(d) (d.x * d.x + d.y * d.y + d.z * d.z)
+#define SQUARE(d) FMA(d.z, d.z, FMA(d.y, d.y, d.x * d.x))
+#define DISTANCE2(d, p) distance2(d.x, d.y, d.z, (p)->guard)
 #else
-#define SQUARE(d) (d.x * d.x + d.y * d.y)
+#define SQUARE(d) FMA(d.y, d.y, d.x * d.x)
+#define DISTANCE2(d, p) FMA(d.y, d.y, FMA(d.x, d.x, (p)->guard))
 #endif

@@ -1,7 +1,6 @@
 /* The passes of SPH (Mueller, Charypar & Gross 2003): sph_pair.inl over every particle's neighbours. Positions are float4 with 1 / rho as their
    fourth number, velocities with pressure, or with the density's excess over rho0. Defines: WEIR_CONTINUITY (density by its rate; else it is
    summed), WEIR_TAIT, WEIR_PULL (pressure may be negative), WEIR_WALL_FORCES, WEIR_TENSION. */
-#pragma OPENCL FP_CONTRACT ON
 
 #ifndef WEIR_CONTINUITY
 /* rho_i = sum_j m W                                                                               Mueller et al. 2003, eq. 3 */
@@ -15,7 +14,7 @@ __kernel void sph_densities(int count, int stride, __constant SphParams* p, __co
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
         const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
-        rho += sph_density(SQUARE(d), p);
+        rho = sph_add_density(rho, DISTANCE2(d, p), p);
     }
     density[order[i]] = (double)(rho + wall_rho * walls_at(me, walls, terms, i).w);
 }
@@ -71,16 +70,16 @@ __kernel void sph_forces(int count, int stride, __constant SphParams* p, __const
     for (int k = 0; k < n; ++k) {
         const int j = list[(size_t)k * stride + i];
         const float4 other = at[j], v = velocities[j], d = APART(me, other), du = u - v;
-        const float r2 = SQUARE(d), approach = du.x * d.x + du.y * d.y + du.z * d.z, volumes = me.w * other.w;
+        const float r2 = DISTANCE2(d, p), approach = dot3(du.x, du.y, du.z, d.x, d.y, d.z), volumes = me.w * other.w;
 #ifdef WEIR_CONTINUITY
         const float pressures = (u.w + v.w) * volumes;
 #else
-        const float pressures = u.w * me.w * me.w + v.w * other.w * other.w;
+        const float pressures = FMA(v.w * other.w, other.w, u.w * me.w * me.w);
 #endif
         const float push = sph_push(r2, approach, pressures, 0.5f * (me.w + other.w), p), drag = sph_drag(r2, volumes, p);
-        ax += push * d.x - drag * du.x;
-        ay += push * d.y - drag * du.y;
-        az += push * d.z - drag * du.z;
+        ax = FMA(push, d.x, FNMA(drag, du.x, ax));
+        ay = FMA(push, d.y, FNMA(drag, du.y, ay));
+        az = FMA(push, d.z, FNMA(drag, du.z, az));
     }
     acceleration[i] = (float4)(ax, ay, az, 0.0f);
 }
@@ -117,13 +116,13 @@ __kernel void normals(int count, int stride, __constant SphParams* p, __constant
     q.w = 0;
     for (int k = 0; k < neighbours[i]; ++k) {
         const float4 other = at[list[(size_t)k * stride + i]], d = APART(me, other);
-        const float f = sph_colour(SQUARE(d), other.w, p);
-        q.x += f * d.x;
-        q.y += f * d.y;
-        q.z += f * d.z;
+        const float f = sph_colour(DISTANCE2(d, p), other.w, p);
+        q.x = FMA(f, d.x, q.x);
+        q.y = FMA(f, d.y, q.y);
+        q.z = FMA(f, d.z, q.z);
     }
-    q *= sph_normal(q.x * q.x + q.y * q.y + q.z * q.z, p);
-    q.w = q.x * q.x + q.y * q.y + q.z * q.z;
+    q *= sph_normal(dot3(q.x, q.y, q.z, q.x, q.y, q.z), p);
+    q.w = dot3(q.x, q.y, q.z, q.x, q.y, q.z);
     normal[i] = q;
 }
 
@@ -137,15 +136,13 @@ __kernel void tension(int count, int stride, __constant SphParams* p, double dt,
     for (int k = 0; k < neighbours[i]; ++k) {
         const int j = list[(size_t)k * stride + i];
         const float4 other = at[j], n = normal[j], d = APART(me, other);
-        const float f = sph_tension(SQUARE(d), me.w * other.w, p), both = q.w + n.w;
-        const float own = q.x * d.x + q.y * d.y + q.z * d.z, others = n.x * d.x + n.y * d.y + n.z * d.z;
+        const float f = sph_tension(DISTANCE2(d, p), me.w * other.w, p), both = q.w + n.w;
+        const float own = dot3(q.x, q.y, q.z, d.x, d.y, d.z), others = dot3(n.x, n.y, n.z, d.x, d.y, d.z);
         a += f * (both * d - own * q - others * n);
     }
     add_change(i, stride, dt, a, order, v);
 }
 #endif
-
-#pragma OPENCL FP_CONTRACT OFF
 
 /* The forces that the scene names, then v += dt a */
 __kernel void kick(int count, int stride, __constant StateParams* s, double dt, double pull, __global const int* order,
@@ -190,14 +187,14 @@ __kernel void advance_densities(int count, int stride, __constant StateParams* s
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = at[i], u = velocities[i], w = walls_at(me, walls, terms, i);
-    float rate = 2 * (w.x * u.x + w.y * u.y + w.z * u.z), spread = 0;
+    float rate = 2 * dot3(w.x, w.y, w.z, u.x, u.y, u.z), spread = 0;
     const int n = neighbours[i];
     for (int k = 0; k < n; ++k) {
         const int j = list[(size_t)k * stride + i];
         const float4 other = at[j], v = velocities[j], d = APART(me, other), du = u - v;
-        const float r2 = SQUARE(d);
-        rate += sph_rate(r2, du.x * d.x + du.y * d.y + du.z * d.z, other.w, p);
-        spread += sph_diffusion(r2, v.w - u.w + p->layers[0] * d.x + p->layers[1] * d.y + p->layers[2] * d.z, other.w, p);
+        const float r2 = DISTANCE2(d, p);
+        rate += sph_rate(r2, dot3(du.x, du.y, du.z, d.x, d.y, d.z), other.w, p);
+        spread += sph_diffusion(r2, v.w - u.w + sph_layers(d.x, d.y, d.z, p), other.w, p);
     }
     const double rho = density[order[i]];
     float whole = rate / me.w + spread;

@@ -1,8 +1,8 @@
 /* Smoothed particle hydrodynamics (Mueller, Charypar & Gross 2003): what one pair contributes. See pair.inl for the language.
    All pair terms are antisymmetric in i and j, so momentum is kept to round-off. */
 
-/* m W(r)                                                                                          Mueller et al. 2003, eq. 3 */
-WEIR_FN REAL sph_density(REAL r2, WEIR_PARAM SphParams* p) { return p->density * WEIR_DENSITY(r2, p); }
+/* sum + m W(r)                                                                                          Mueller et al. 2003, eq. 3 */
+WEIR_FN REAL sph_add_density(REAL sum, REAL r2, WEIR_PARAM SphParams* p) { return FMA(WEIR_DENSITY(r2, p), p->density, sum); }
 
 /* Continuity: the rate of rho_i over rho_i, m / rho_j (v_i - v_j).grad W                           Colagrossi & Landrini 2003, eq. 10
    approach: (v_i - v_j).(x_i - x_j); volume: 1 / rho_j */
@@ -16,6 +16,11 @@ WEIR_FN REAL sph_diffusion(REAL r2, REAL excess, REAL volume, WEIR_PARAM SphPara
     return -p->diffusion * p->gradient * WEIR_SLOPE(r2, p) * excess * volume;
 }
 
+/* By how much the liquid at rest is denser at j than at i */
+WEIR_FN REAL sph_layers(REAL dx, REAL dy, REAL dz, WEIR_PARAM SphParams* p) {
+    return FMA(dz, p->layers[2], FMA(dy, p->layers[1], dx * p->layers[0]));
+}
+
 /* Acceleration along x_i - x_j: -m ((p_i + p_j) / (rho_i rho_j) + Pi) s, grad W = s (x_i - x_j)              eq. 10 over rho_i
    without the 1/2 of eq. 10, under which a linear pressure would have half its gradient (Colagrossi & Landrini 2003, eq. 12)
    Pi = -alpha c h mu / rho, mu = v.x / (r^2 + eta^2) for approaching pairs                     artificial viscosity, Monaghan 1992
@@ -23,7 +28,7 @@ WEIR_FN REAL sph_diffusion(REAL r2, REAL excess, REAL volume, WEIR_PARAM SphPara
    volume: the mean of 1 / rho */
 WEIR_FN REAL sph_push(REAL r2, REAL approach, REAL pressures, REAL volume, WEIR_PARAM SphParams* p) {
     REAL closing = MAX0(-approach) / (r2 + p->soften);
-    return -(pressures + p->artificial * closing * volume) * p->gradient * WEIR_SLOPE(r2, p);
+    return -FMA(p->artificial * closing, volume, pressures) * p->gradient * WEIR_SLOPE(r2, p);
 }
 
 /* Acceleration along v_j - v_i: mu m lap W / (rho_i rho_j)                                                  eq. 14 over rho_i

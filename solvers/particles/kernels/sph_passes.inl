@@ -13,7 +13,7 @@ static void sph_densities(const SphPass& a, const ListChunk& chunk) {
             const Four j = gather(a.positions, row);
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
-            rho += sph_density(dx * dx + dy * dy + dz * dz, p);
+            rho = sph_add_density(rho, distance2(dx, dy, dz, p->guard), p);
         }
         store_numbers(a.density, first, live(first, a.count), rho + p->wall_rho * walls_at(i, a.walls, a.solid, first).w);
     }
@@ -27,14 +27,14 @@ static void sph_rates(const SphPass& a, const ListChunk& chunk) {
         const int first = s * lanes;
         const Four i = load(a.positions, first), u = load(a.velocities, first);
         const Four w = walls_at(i, a.walls, a.solid, first);
-        vf rate = broadcast(2) * (w.x * u.x + w.y * u.y + w.z * u.z), spread = broadcast(0);
+        vf rate = broadcast(2) * dot3(w.x, w.y, w.z, u.x, u.y, u.z), spread = broadcast(0);
         const std::uint32_t* row = chunk.entries + a.first[s];
         for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
             const Four j = gather(a.positions, row), v = gather(a.velocities, row);
             prefetch(row);
-            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
-            rate += sph_rate(r2, (u.x - v.x) * dx + (u.y - v.y) * dy + (u.z - v.z) * dz, j.w, p);
-            spread += sph_diffusion(r2, v.w - u.w + p->layers[0] * dx + p->layers[1] * dy + p->layers[2] * dz, j.w, p);
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = distance2(dx, dy, dz, p->guard);
+            rate += sph_rate(r2, dot3(u.x - v.x, u.y - v.y, u.z - v.z, dx, dy, dz), j.w, p);
+            spread += sph_diffusion(r2, v.w - u.w + sph_layers(dx, dy, dz, p), j.w, p);
         }
         store_numbers(a.density, first, live(first, a.count), rate / i.w + spread);
     }
@@ -57,21 +57,21 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
             const vf x[3] = {i.x, i.y, i.z}, v[3] = {u.x, u.y, u.z};
             vf more[3];
             sph_wall_force(x, v, u.w, w.w, a.walls, p, more);
-            ax += more[0], ay += more[1], az += more[2];
+            ax += where_positive(w.w, more[0]), ay += where_positive(w.w, more[1]), az += where_positive(w.w, more[2]);
         }
         const std::uint32_t* row = chunk.entries + a.first[s];
         for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
             const Four j = gather(a.positions, row), v = gather(a.velocities, row);
             prefetch(row);
-            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = distance2(dx, dy, dz, p->guard);
             const vf ux = u.x - v.x, uy = u.y - v.y, uz = u.z - v.z;
             const vf volumes = i.w * j.w;
-            const vf pressures = Summed ? u.w * i.w * i.w + v.w * j.w * j.w : (u.w + v.w) * volumes;
-            const vf push = sph_push(r2, ux * dx + uy * dy + uz * dz, pressures, half * (i.w + j.w), p);
+            const vf pressures = Summed ? FMA(v.w * j.w, j.w, u.w * i.w * i.w) : (u.w + v.w) * volumes;
+            const vf push = sph_push(r2, dot3(ux, uy, uz, dx, dy, dz), pressures, half * (i.w + j.w), p);
             const vf drag = sph_drag(r2, volumes, p);
-            ax += push * dx - drag * ux;
-            ay += push * dy - drag * uy;
-            az += push * dz - drag * uz;
+            ax = FMA(push, dx, FNMA(drag, ux, ax));
+            ay = FMA(push, dy, FNMA(drag, uy, ay));
+            az = FMA(push, dz, FNMA(drag, uz, az));
         }
         store(a.acceleration, first, live(first, a.count), {ax, ay, az, broadcast(0)});
     }
@@ -90,12 +90,12 @@ static void sph_normals(const SphPass& a, const ListChunk& chunk) {
             const Four j = gather(a.positions, row);
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
-            const vf f = sph_colour(dx * dx + dy * dy + dz * dz, j.w, p);
-            nx += f * dx, ny += f * dy, nz += f * dz;
+            const vf f = sph_colour(distance2(dx, dy, dz, p->guard), j.w, p);
+            nx = FMA(f, dx, nx), ny = FMA(f, dy, ny), nz = FMA(f, dz, nz);
         }
-        const vf scale = sph_normal(nx * nx + ny * ny + nz * nz, p);
+        const vf scale = sph_normal(dot3(nx, ny, nz, nx, ny, nz), p);
         nx *= scale, ny *= scale, nz *= scale;
-        store(a.acceleration, first, live(first, a.count), {nx, ny, nz, nx * nx + ny * ny + nz * nz});
+        store(a.acceleration, first, live(first, a.count), {nx, ny, nz, dot3(nx, ny, nz, nx, ny, nz)});
     }
 }
 
@@ -110,9 +110,9 @@ static void sph_tensions(const SphPass& a, const ListChunk& chunk) {
         for (int k = 0; k < a.rows[s]; ++k, row += lanes) {
             const Four j = gather(a.positions, row), n = gather(a.velocities, row);
             prefetch(row);
-            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = dx * dx + dy * dy + dz * dz;
+            const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = distance2(dx, dy, dz, p->guard);
             const vf f = sph_tension(r2, i.w * j.w, p), both = q.w + n.w;
-            const vf own = q.x * dx + q.y * dy + q.z * dz, other = n.x * dx + n.y * dy + n.z * dz;
+            const vf own = dot3(q.x, q.y, q.z, dx, dy, dz), other = dot3(n.x, n.y, n.z, dx, dy, dz);
             ax += f * (both * dx - own * q.x - other * n.x);
             ay += f * (both * dy - own * q.y - other * n.y);
             az += f * (both * dz - own * q.z - other * n.z);

@@ -1,6 +1,5 @@
-/* Passes over the state: double precision, one array an axis (axis a of particle i stands at a * stride + i). No contraction: the cell of a
+/* Passes over the state: double precision, one array an axis (axis a of particle i stands at a * stride + i). The cell of a
    particle is the one that the processor's path finds. */
-#pragma OPENCL FP_CONTRACT OFF
 
 /* The nearest place inside the walls; what is not a number stays so, and is found. */
 WEIR_FN double kept_inside(double x, __constant StateParams* s, int axis) {
