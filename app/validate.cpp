@@ -11,11 +11,9 @@ void add_validate(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<StudyArguments<validation::ValidateOptions>>("out/validate", "results");
     CLI::App* command = app.add_subcommand("validate", "Run cases and judge their claims; exit code 1 if one fails");
     arguments->add_to(*command, "Every case", "ci: minutes; full: as published", "Folder of verdicts.json, svg/, csv/ and frames");
-    auto backend = std::make_shared<std::string>();
-    command->add_option("--backend", *backend, "threads, or opencl[:N] (weir list devices), for cases of particles");
+    command->add_option("--backend", arguments->options.backend, "threads, or opencl[:N] (weir list devices), for all runs of particles");
     command->add_flag("--report", arguments->options.page, "Publish, and write all published results as one HTML page");
-    command->callback([arguments, backend, &exit_code] {
-        if (!backend->empty()) arguments->options.set.push_back({"scheme.backend", '"' + *backend + '"'});
+    command->callback([arguments, &exit_code] {
         arguments->publish |= arguments->options.page;
         exit_code = validation::validate_command(arguments->chosen());
     });

@@ -38,12 +38,6 @@ std::vector<std::string> metrics_of(const Variant& variant) {
     return names;
 }
 
-std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers) {
-    std::vector<scene::SolverSchema> list;
-    for (const auto& kind : solvers) list.push_back(kind.schema);
-    return list;
-}
-
 bool is_series(const std::string& metric, const Variant& variant) {
     for (const Criterion& c : variant.accept)
         if (c.metric == metric && c.is_monotone()) return true;
@@ -95,6 +89,12 @@ void take(RunResult& result, const RunRecord& record, const Reference& reference
 }
 
 }  // namespace
+
+std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers) {
+    std::vector<scene::SolverSchema> list;
+    for (const auto& kind : solvers) list.push_back(kind.schema);
+    return list;
+}
 
 RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers& solvers) {
     RunRecord record;

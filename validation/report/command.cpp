@@ -24,6 +24,18 @@ namespace {
 /// A folder named with a slash at its end has an empty last part.
 std::filesystem::path without_slash(const std::filesystem::path& p) { return p.has_filename() ? p : p.parent_path(); }
 
+/// A case may compare particles with a grid, which has no backend: its other scenes stay as they are.
+void move_to_backend(Case& c, const ValidateOptions& options, const Solvers& solvers) {
+    bool any = options.all;
+    for (Variant& variant : c.variants) {
+        if (!scene_of(variant, 0, schemas_of(solvers)).has("scheme.backend")) continue;
+        variant.overrides.push_back({"scheme.backend", '"' + options.backend + '"'});
+        any = true;
+    }
+    if (!any)
+        throw BadInput(fmt::format("--backend: no scene of the case {} has scheme.backend, which pbf and sph have", scene::quote(c.name)));
+}
+
 /// All case files and their scenes are read before one is run; the problems of all are shown together.
 std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solvers) {
     std::vector<Case> cases;
@@ -31,8 +43,7 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
     const auto found = [] { return find_cases(case_root()); };
     for (const auto& folder : chosen_folders("validate", options.names, options.all, options.list, found)) try {
             cases.push_back(read_case(folder, options.size));
-            for (Variant& variant : cases.back().variants)
-                variant.overrides.insert(variant.overrides.end(), options.set.begin(), options.set.end());
+            if (!options.list && !options.backend.empty()) move_to_backend(cases.back(), options, solvers);
             if (!options.list) check_case(cases.back(), solvers);
         } catch (const BadInput& wrong) {
             problems += (problems.empty() ? "" : "\n") + std::string(wrong.what());

@@ -19,7 +19,7 @@ struct ValidateOptions {
     std::filesystem::path publish{};             // folder of the published page; empty: not published
     bool page = false;                           // write its index.html too
     bool quiet = false;                          // no progress on the terminal
-    std::vector<scene::Override> set{};          // laid over every scene of every case
+    std::string backend{};                       // for every scene that has scheme.backend; empty: its own
 };
 
 /// Where cases lie: ./cases if there is one, else those of the source tree that this program was built from.
