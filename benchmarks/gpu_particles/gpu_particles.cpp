@@ -1,6 +1,7 @@
 // The cost of PBF on an OpenCL device: milliseconds of each kernel by the device's own clock, for dam breaks in 2D and 3D from 8 thousand
-// to 8 million particles, beside the copy bandwidth measured in the same run. Needs no scene, no VTK, no SuiteSparse: build.sh compiles it
-// with a C++ compiler and OpenCL headers alone.
+// to 8 million particles, beside the copy bandwidth measured in the same run; and two ways to sort them. Needs no scene, no VTK, no
+// SuiteSparse: build.sh compiles it with a C++ compiler and OpenCL headers alone.
+#include "benchmarks/gpu_particles/sorts.hpp"
 #include "pbf/device_solver.hpp"
 
 #include <algorithm>
@@ -19,7 +20,14 @@ struct Arguments {
     int device = 0, steps = 20, warm_up = 5;
     std::vector<int> dims{2, 3}, iterations{4, 8};
     std::vector<double> particles{8e3, 128e3, 1e6, 8e6};
-    std::string csv = "gpu_particles.csv";
+    double max_seconds = 120;  // a size that would take longer is skipped
+    std::string csv = "gpu_particles.csv", command;
+};
+
+/// Seconds of one particle in one step, by the size measured before: what a larger one will take at least.
+struct Pace {
+    double seconds = 0;
+    bool too_slow(const Arguments& a, double particles) const { return seconds * particles * (a.steps + a.warm_up) > a.max_seconds; }
 };
 
 /// A block of liquid, two spacings wide for each high (in 3D as deep as high), in a closed box of three times its width and twice its
@@ -93,7 +101,12 @@ double copy_bandwidth(int index) {
 }
 
 template <int D>
-void measure(const Arguments& arguments, double wanted, int iterations, double bandwidth, std::FILE* csv) {
+void measure(const Arguments& arguments, double wanted, int iterations, double bandwidth, std::FILE* csv, Pace& pace) {
+    if (pace.too_slow(arguments, wanted)) {
+        std::printf("%dD %9.0f particles %2d iterations: skipped, %.0f s at the pace of the size before, more than --max-seconds %g\n", D,
+                    wanted, iterations, pace.seconds * wanted * (arguments.steps + arguments.warm_up), arguments.max_seconds);
+        return;
+    }
     const auto start = dam_break<D>(wanted);
     pbf::Options options;
     options.backend.device = arguments.device;
@@ -124,6 +137,7 @@ void measure(const Arguments& arguments, double wanted, int iterations, double b
         kernels += 1e3 * p.seconds / arguments.steps, moved += each / arguments.steps;
     }
     const double median = ms[ms.size() / 2];
+    pace.seconds = 1e-3 * median / count;
     std::fprintf(csv, "%d,%.0f,%d,step,1,%.5f,%.4g,%.4f\n", D, count, iterations, median, moved, moved / (1e-3 * median) / bandwidth);
     std::printf(
         "%dD %9.0f particles %2d iterations: %9.3f ms a step (kernels %9.3f), %8.3g particles x iterations a second, %5.1f neighbours, "
@@ -131,6 +145,16 @@ void measure(const Arguments& arguments, double wanted, int iterations, double b
         D, count, iterations, median, kernels, count * iterations / (1e-3 * median), n, device.plan().bytes_per_particle(),
         100 * moved / (1e-3 * median) / bandwidth);
     std::fflush(stdout);
+}
+
+void measure_sorts(const Arguments& arguments, std::FILE* csv) {
+    for (const double n : arguments.particles) {
+        if (n > 2e6) continue;  // what it shows is shown
+        const auto t = bench::compare_sorts(arguments.device, static_cast<int>(n));
+        std::printf("sort %9.0f particles: bitonic %9.3f ms in %d launches, counting %9.3f ms\n", n, t.bitonic, t.launches, t.counting);
+        std::fprintf(csv, "0,%.0f,0,bitonic_sort,%d,%.5f,0,0\n0,%.0f,0,counting_sort,1,%.5f,0,0\n", n, t.launches, t.bitonic, n,
+                     t.counting);
+    }
 }
 
 template <class T>
@@ -145,6 +169,8 @@ std::vector<T> numbers(const char* text) {
 
 Arguments read(int argc, char** argv) {
     Arguments a;
+    for (int i = 0; i < argc; ++i) a.command += (i ? " " : "") + std::string(i ? argv[i] : "gpu_particles");
+    if (argc % 2 == 0) std::fprintf(stderr, "option %s needs a value\n", argv[argc - 1]), std::exit(2);
     for (int i = 1; i + 1 < argc; i += 2) {
         const std::string key = argv[i];
         const char* value = argv[i + 1];
@@ -158,6 +184,8 @@ Arguments read(int argc, char** argv) {
             a.iterations = numbers<int>(value);
         else if (key == "--particles")
             a.particles = numbers<double>(value);
+        else if (key == "--max-seconds")
+            a.max_seconds = std::atof(value);
         else if (key == "--csv")
             a.csv = value;
         else
@@ -179,14 +207,20 @@ int main(int argc, char** argv) try {
     std::printf("copy: %.1f GB/s read and written\n", 1e-9 * bandwidth);
     std::FILE* csv = std::fopen(arguments.csv.c_str(), "w");
     if (!csv) return std::fprintf(stderr, "cannot write %s\n", arguments.csv.c_str()), 2;
+    const auto& device = devices[static_cast<std::size_t>(arguments.device)];
+    std::fprintf(csv, "# %s\n# %s, %s, driver %s, copy %.1f GB/s\n", arguments.command.c_str(), device.name.c_str(), device.version.c_str(),
+                 device.driver.c_str(), 1e-9 * bandwidth);
     std::fprintf(csv, "dim,particles,iterations,kernel,calls_a_step,ms_a_step,bytes_a_step,fraction_of_copy\n");
+    measure_sorts(arguments, csv);
     for (const int dim : arguments.dims)
-        for (const double n : arguments.particles)
-            for (const int it : arguments.iterations) try {
-                    dim == 2 ? measure<2>(arguments, n, it, bandwidth, csv) : measure<3>(arguments, n, it, bandwidth, csv);
+        for (const int it : arguments.iterations) {
+            Pace pace;
+            for (const double n : arguments.particles) try {
+                    dim == 2 ? measure<2>(arguments, n, it, bandwidth, csv, pace) : measure<3>(arguments, n, it, bandwidth, csv, pace);
                 } catch (const BadInput& refused) {
                     std::printf("%dD %.0f particles: %s\n", dim, n, refused.what());
                 }
+        }
     std::fclose(csv);
     return 0;
 } catch (const std::exception& error) {
