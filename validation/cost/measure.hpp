@@ -50,7 +50,7 @@ struct StudyResult {
 
 struct MeasureOptions {
     int repeats = 3;  // of runs that take less than enough_seconds together
-    double enough_seconds = 3;
+    double enough_seconds = 2;
     double least_seconds = 0.3;  // runs that are over sooner are repeated up to most_repeats times: a median of milliseconds needs many
     int most_repeats = 21;
     double time_limit = 120;  // of one run; beyond it is a failure that stays in the table
