@@ -64,6 +64,10 @@ public:
     void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
         progress_.show(simulation.time(), simulation.steps());
+        for (; told_ < simulation.warnings().size(); ++told_) {
+            progress_.end();
+            std::fprintf(stderr, "%s\n", simulation.warnings()[told_].c_str());
+        }
     }
     void on_frame(const Simulation& simulation) override {
         if (frames_) frames_->write(simulation.fields(), simulation.time());
@@ -96,6 +100,7 @@ private:
     sim::ProbeFiles probes_;
     output::RunLog log_;
     Progress progress_;
+    std::size_t told_ = 0;  // warnings
     clock::time_point written_{};
     clock::duration write_time_{};
 };

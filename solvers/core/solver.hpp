@@ -74,6 +74,12 @@ struct Integral {
     real value = 0;
 };
 
+/// The step beyond which a method breaks, whatever its accuracy, and what it is that breaks.
+struct StepLimit {
+    real dt = infinity;  // [s]
+    std::string_view why{};
+};
+
 class Solver {
 public:
     virtual ~Solver() = default;
@@ -81,6 +87,10 @@ public:
     virtual StepReport step(real dt) = 0;
     /// The largest step that the solver and every effect in the scene advise now [s]; infinity where nothing limits.
     virtual real advised_dt() const = 0;
+    /// The largest step that is stable now, for a step that a scene prescribes; known from the last step, so that asking costs no pass.
+    virtual StepLimit stable_dt() const { return {}; }
+    /// What is wrong with using the method on the state of the moment, in one line, with its numbers; empty where nothing is.
+    virtual std::string concern() const { return {}; }
     virtual FieldSet fields() const = 0;
     /// Whether step() itself throws NumericalFailure where a field is no longer finite, so that nobody needs to look at all fields after
     /// every step: they may be far away, on a device.

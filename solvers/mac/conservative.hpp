@@ -16,6 +16,11 @@ struct Substep {
     real gamma = 1, zeta = 0;
     real fraction() const { return gamma + zeta; }
 };
+/// Cells that may be crossed in a step: the three stages are stable on the imaginary axis up to √3, and central differences stay below
+/// that.
+inline constexpr real runge_kutta_limit = 1.7320508075688772;
+inline constexpr const char* runge_kutta_limit_why = "sqrt(3) cells, for central fluxes in three Runge-Kutta stages";
+
 /// Three stages for `conservative`, one for schemes that follow characteristics.
 std::span<const Substep> substeps(Scheme scheme);
 

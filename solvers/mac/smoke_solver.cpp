@@ -194,8 +194,8 @@ real SmokeSolver<D>::rate() const {
 }
 
 template <int D>
-StepReport SmokeSolver<D>::report(real dt) const {
-    const real fastest = max_rate(state_.u);
+StepReport SmokeSolver<D>::report(real dt) {
+    const real fastest = fastest_ = max_rate(state_.u);
     if (!std::isfinite(fastest)) throw NumericalFailure("velocity", "the velocity is not finite");
     return {.dt = dt,
             .cfl = dt * fastest,
@@ -210,6 +210,14 @@ template <int D>
 real SmokeSolver<D>::advised_dt() const {
     const real fastest = rate();
     return std::min(fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_));
+}
+
+/// Central fluxes are stable while no fluid crosses more than √3 cells a step; paths traced back have no such limit.
+template <int D>
+StepLimit SmokeSolver<D>::stable_dt() const {
+    if (options_.scheme != Scheme::conservative) return {};
+    const real fastest = std::isnan(fastest_) ? rate() : std::max({fastest_, side_rate_, solids_.max_rate(state_)});
+    return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
 }
 
 template <int D>
@@ -253,6 +261,7 @@ void SmokeSolver<D>::save(Checkpoint& to) const {
 template <int D>
 void SmokeSolver<D>::restore(const Checkpoint& from) {
     state_.restore(from);
+    fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (!solids_.moving()) return;
     solids_.place(state_, state_.time);

@@ -21,6 +21,7 @@ public:
 
     StepReport step(real dt) override;
     real advised_dt() const override;
+    StepLimit stable_dt() const override;
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
@@ -46,7 +47,7 @@ private:
     void project(real dt);
     void clear_solids();
     real rate() const;
-    StepReport report(real dt) const;
+    StepReport report(real dt);
 
     Effects<MacState<D>> effects_;
     MacState<D> state_;
@@ -61,6 +62,7 @@ private:
     const poisson::Report* report_ = nullptr;
     Vec<D> impulse_{};  // of the pressure on all solids since the start [N s]
     real cfl_, side_rate_ = 0;
+    real fastest_ = not_applicable;  // max |u|/h after the last step; not known before the first [1/s]
     bool wants_vorticity_ = false, wants_divergence_ = false;
     mutable std::vector<Grid<real, D>> vorticity_;  // filled when somebody looks
     mutable Grid<real, D> divergence_;

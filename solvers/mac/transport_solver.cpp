@@ -54,7 +54,8 @@ StepReport TransportSolver<D>::step(real dt) {
     }
     state_.time += dt;
     set_velocity(state_.time);
-    return {.dt = dt, .cfl = dt * max_rate(state_.u)};
+    fastest_ = max_rate(state_.u);
+    return {.dt = dt, .cfl = dt * fastest_};
 }
 
 /// The face velocities at time t, which the fluxes use and the output shows.
@@ -70,6 +71,13 @@ template <int D>
 real TransportSolver<D>::advised_dt() const {
     const real rate = max_rate(state_.u);
     return rate > 0 ? cfl_ / rate : infinity;
+}
+
+template <int D>
+StepLimit TransportSolver<D>::stable_dt() const {
+    if (options_.scheme != Scheme::conservative) return {};
+    const real fastest = std::isnan(fastest_) ? max_rate(state_.u) : fastest_;
+    return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
 }
 
 template <int D>
@@ -89,6 +97,7 @@ std::vector<Integral> TransportSolver<D>::integrals() const {
 template <int D>
 void TransportSolver<D>::restore(const Checkpoint& from) {
     state_.restore(from);
+    fastest_ = not_applicable;
     set_velocity(state_.time);
 }
 

@@ -19,6 +19,7 @@ public:
     /// Dq/Dt = 0 for each field.
     StepReport step(real dt) override;
     real advised_dt() const override;
+    StepLimit stable_dt() const override;
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
@@ -37,6 +38,7 @@ private:
     PrescribedBacktrace<D> trace_;
     std::vector<StageBlend<D>> blend_;
     real cfl_;
+    real fastest_ = not_applicable;  // max |u|/h after the last step; not known before the first [1/s]
     Passes passes_;
 };
 

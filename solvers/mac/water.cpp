@@ -241,6 +241,25 @@ real Water<D>::advised_dt() const {
     return std::min(dt, effects_.max_dt(state_));
 }
 
+/// As advised_dt(), at the edge: two cells a step, the width of the hat through which markers and faces see each other, and ω dt = 2 for
+/// the shortest waves, whose surface moves with the velocity of before (gravity: ω² = g k, tension: ω² = σ k³/ρ, k = π/h).
+template <int D>
+StepLimit Water<D>::stable_dt() const {
+    constexpr real cells = 2;
+    const real h = frame_.h_min(), g = norm(gravity_);
+    const real rate = std::max(rate_, solids_.max_rate(state_)), motion = rate + std::sqrt(cells * g / h);
+    StepLimit limit;
+    const auto at_most = [&](real dt, std::string_view why) {
+        if (dt < limit.dt) limit = {dt, why};
+    };
+    if (motion > 0) at_most(cells / motion, "liquid or a body crosses two cells in it");
+    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the gravity wave of two cells turns by two radians in it");
+    if (options_.sigma > 0)
+        at_most(2 * std::sqrt(state_.rho * h * h * h / (pi * pi * pi * options_.sigma)),
+                "the capillary wave of two cells turns by two radians in it");
+    return limit;
+}
+
 template class Water<2>;
 template class Water<3>;
 

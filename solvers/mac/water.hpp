@@ -70,6 +70,7 @@ public:
 
     StepReport step(real dt) override;
     real advised_dt() const override;
+    StepLimit stable_dt() const override;
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }

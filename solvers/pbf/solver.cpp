@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace weir::pbf {
 
@@ -54,7 +55,7 @@ StepReport PbfSolver<D>::step(real dt) {
     update(dt, slow);                                   // 20-21, 23-24
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
     last_dt_ = dt;
-    const real speed = fluid_.max_speed();
+    const real speed = speed_ = fluid_.max_speed();
     const Compression c = compression();
     if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
     fluid_.cross_sides();
@@ -210,6 +211,13 @@ real PbfSolver<D>::advised_dt() const {
     return std::min(step_, effects_.max_dt(flow_));
 }
 
+/// A particle that crosses its support in a step passes those that should have stopped it before a correction sees them.
+template <int D>
+StepLimit PbfSolver<D>::stable_dt() const {
+    const real speed = std::isnan(speed_) ? fluid_.max_speed() : speed_;
+    return {speed > 0 ? options_.support * fluid_.domain.spacing / speed : infinity, "a particle crosses its support in it"};
+}
+
 template <int D>
 FieldSet PbfSolver<D>::fields() const {
     FieldSet set;
@@ -234,12 +242,14 @@ void PbfSolver<D>::save(Checkpoint& to) const {
     fluid_.save(to);
     emitters_.save(to);
     to.put_value("pbf.last_dt", last_dt_);
+    to.put_value("pbf.speed", speed_);
 }
 template <int D>
 void PbfSolver<D>::restore(const Checkpoint& from) {
     fluid_.restore(from);
     emitters_.restore(from);
     last_dt_ = from.get_value<real>("pbf.last_dt");
+    speed_ = from.has("pbf.speed") ? from.get_value<real>("pbf.speed") : not_applicable;  // the device does not keep it
 }
 
 template <int D>

@@ -22,6 +22,7 @@ public:
 
     StepReport step(real dt) override;
     real advised_dt() const override;
+    StepLimit stable_dt() const override;
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return fluid_.time; }
@@ -66,8 +67,9 @@ private:
     std::vector<float> density_;     // rho / rho0 of each sorted particle
     std::vector<float> multiplier_;  // sum of lambda of each sorted particle over this step, with warm start
     Passes passes_;
-    real step_ = infinity;  // advised [s]
-    real last_dt_ = 0;      // [s]
+    real step_ = infinity;         // advised [s]
+    real last_dt_ = 0;             // [s]
+    real speed_ = not_applicable;  // of the fastest particle after the last step; not known before the first [m/s]
 };
 
 }  // namespace weir::pbf

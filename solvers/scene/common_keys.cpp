@@ -107,7 +107,13 @@ Key time() {
                       .unit = "s",
                       .min = 0,
                       .min_open = true},
-                     {.name = "max_dt", .type = Type::number, .doc = "No step is longer.", .unit = "s", .min = 0, .min_open = true}},
+                     {.name = "max_dt", .type = Type::number, .doc = "No step is longer.", .unit = "s", .min = 0, .min_open = true},
+                     {.name = "guard",
+                      .type = Type::choice,
+                      .doc = "What happens to a step, from `dt` or `cfl`, that is longer than the solver is stable for. substep: it is "
+                             "taken in equal parts, and said so once; off: it is taken, for studies of where a method breaks.",
+                      .fallback = std::string("substep"),
+                      .choices = {"substep", "off"}}},
             .example = "time = { end = 1.0 }"};
 }
 

@@ -4,6 +4,8 @@
 #include "sim/finite.hpp"
 #include "sim/registry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,7 +53,8 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       solver_(sim::kind_named(scene_.solver(), kinds).make(scene_)),
       probes_(scene_, *solver_),
       end_(scene_.number("time.end")),
-      every_(scene_.root().number_or("output.every", infinity)) {
+      every_(scene_.root().number_or("output.every", infinity)),
+      guard_(scene_.text("time.guard") != "off") {
     check_output_fields(scene_, solver_->fields());
     probes_.sample(*solver_);
 }
@@ -66,7 +69,10 @@ StepReport Simulation::step_towards(real target) {
     const real frame_target = next_target();
     StepReport report;
     try {
-        const real dt = next_dt(target);
+        const real wanted = wanted_dt(target);
+        const StepLimit stable = limit();
+        const real dt = within_limit(wanted, stable);
+        if (dt < wanted && !split_) tell_of_parts(wanted, dt, stable);
         report = solver_->step(dt);
         sim::check_finite(solver_->checks_itself() ? FieldSet{} : fields(), report);
     } catch (NumericalFailure& failure) {
@@ -75,6 +81,10 @@ StepReport Simulation::step_towards(real target) {
         throw;
     }
     ++steps_;
+    if (std::string concern = concerned_ ? std::string() : solver_->concern(); !concern.empty()) {
+        concerned_ = true;
+        warnings_.push_back(scene_.file() + ": " + concern);
+    }
     at_frame_ = reached(frame_target);
     if (at_frame_) ++frame_;
     probes_.sample(*solver_);
@@ -92,7 +102,7 @@ real Simulation::next_target() const {
     return frame >= end_ - 1e-9 * every_ ? end_ : frame;
 }
 
-real Simulation::next_dt(real target) const {
+real Simulation::wanted_dt(real target) const {
     const real remaining = target - time();
     const scene::Table& root = scene_.root();
     const bool fixed = root.has("time.dt");
@@ -102,6 +112,24 @@ real Simulation::next_dt(real target) const {
     if (remaining <= 0) return dt;
     if (dt * stretch >= remaining) return remaining;
     return !fixed && 2 * dt > remaining ? remaining / 2 : dt;  // two equal steps rather than one step and a sliver
+}
+
+/// The step itself, bit for bit, where it is stable; else the longest of its equal parts that are.
+real Simulation::within_limit(real dt, const StepLimit& limit) const {
+    if (!(dt > limit.dt * stretch)) return dt;
+    const real part = dt / std::ceil(dt / limit.dt);
+    if (!(part > slack(time())))
+        throw NumericalFailure("time step", "the longest stable step is " + scene::number_text(limit.dt) + " s: time no longer advances");
+    return part;
+}
+
+void Simulation::tell_of_parts(real wanted, real dt, const StepLimit& limit) {
+    split_ = true;
+    const char* key = scene_.has("time.dt") ? "time.dt" : "time.cfl";
+    warnings_.push_back(
+        fmt::format("{}: {} asks for a step of {:.4g} s at t = {:.4g} s, and the solver is stable up to {:.4g} s ({}): from here on such "
+                    "steps are taken in parts, of {:.4g} s now (time.guard = \"off\" takes them whole)",
+                    scene_.file(), key, wanted, time(), limit.dt, limit.why, dt));
 }
 
 void Simulation::save(Checkpoint& to) const {

@@ -30,8 +30,12 @@ public:
     StepReport step();
     /// Steps until time t [s] is reached exactly; past the end of the scene too.
     void run_until(real t);
-    /// time.dt, or what solver and effects advise and time.max_dt allows; cut or halved so that frames and the end are hit exactly.
-    real next_dt() const { return next_dt(next_target()); }
+    /// time.dt, or what solver and effects advise and time.max_dt allows; cut or halved so that frames and the end are hit exactly; where
+    /// that is longer than the solver is stable for, an equal part of it (time.guard).
+    real next_dt() const { return within_limit(wanted_dt(next_target()), limit()); }
+    /// What a user should know, one line each, each kind once: the first step that was longer than the solver is stable for, with its
+    /// limit and why; the solver's own concern about the state.
+    const std::vector<std::string>& warnings() const { return warnings_; }
 
     bool finished() const { return reached(end_); }
     real time() const { return solver_->time(); }  // [s]
@@ -57,7 +61,10 @@ public:
 
 private:
     real next_target() const;
-    real next_dt(real target) const;
+    real wanted_dt(real target) const;
+    StepLimit limit() const { return guard_ ? solver_->stable_dt() : StepLimit{}; }
+    real within_limit(real dt, const StepLimit& limit) const;
+    void tell_of_parts(real wanted, real dt, const StepLimit& limit);
     bool reached(real t) const;
     StepReport step_towards(real target);
 
@@ -66,7 +73,9 @@ private:
     sim::Probes probes_;
     real end_ = 0, every_ = infinity;
     std::int64_t steps_ = 0, frame_ = 0;
-    bool at_frame_ = true;
+    bool at_frame_ = true, guard_ = true;
+    bool split_ = false, concerned_ = false;  // whether a step was taken in parts, or the solver had a concern
+    std::vector<std::string> warnings_;
 };
 
 /// The scene that a checkpoint was made from, as its text and overrides. Throws BadInput.

@@ -3,7 +3,10 @@
 #include "particles/fastest_flow.hpp"
 #include "sph/tension.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace weir::sph {
 
@@ -62,7 +65,7 @@ StepReport SphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
-    const real speed = fluid_.max_speed();
+    const real speed = speed_ = fluid_.max_speed();
     const real rest = rho_rest_;
     const int n = fluid_.count();
     const auto excess = [&](int i) { return std::max<real>(0, fluid_.density[static_cast<std::size_t>(i)] / rest - 1); };
@@ -232,6 +235,23 @@ real SphSolver<D>::advised_dt() const {
 }
 
 template <int D>
+StepLimit SphSolver<D>::stable_dt() const {
+    const real speed = std::isnan(speed_) ? fluid_.max_speed() : speed_;
+    return {0.5 * options_.support * fluid_.domain.spacing / (options_.sound + speed), "sound crosses half the support in it"};
+}
+
+/// Density changes by about the square of the Mach number: by a hundredth at 1/10, by a tenth at this one.
+template <int D>
+std::string SphSolver<D>::concern() const {
+    constexpr real most = 0.3;
+    if (!(speed_ > most * options_.sound)) return {};
+    return fmt::format(
+        "the fastest particle moves at {:.4g} m/s at t = {:.4g} s, Mach {:.2g} of a speed of sound of {:.4g} m/s: beyond Mach {:g} "
+        "density changes by more than a tenth; scheme.sound_speed = {:.4g} would keep it within a hundredth",
+        speed_, fluid_.time, speed_ / options_.sound, options_.sound, most, 10 * speed_);
+}
+
+template <int D>
 FieldSet SphSolver<D>::fields() const {
     FieldSet set;
     fluid_.show(set);
@@ -253,12 +273,14 @@ void SphSolver<D>::save(Checkpoint& to) const {
     fluid_.save(to);
     emitters_.save(to);
     to.put_value("sph.max_acceleration", max_acceleration_);
+    to.put_value("sph.speed", speed_);
 }
 template <int D>
 void SphSolver<D>::restore(const Checkpoint& from) {
     fluid_.restore(from);
     emitters_.restore(from);
     max_acceleration_ = from.get_value<real>("sph.max_acceleration");
+    speed_ = from.has("sph.speed") ? from.get_value<real>("sph.speed") : not_applicable;  // the device does not keep it
 }
 
 template <int D>

@@ -24,6 +24,8 @@ public:
 
     StepReport step(real dt) override;
     real advised_dt() const override;
+    StepLimit stable_dt() const override;
+    std::string concern() const override;
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return fluid_.time; }
@@ -66,6 +68,7 @@ private:
     bool sticky_solids_ = false;  // whether the liquid sticks to any
     real rho_rest_ = 1;
     real max_acceleration_ = 0;
+    real speed_ = not_applicable;  // of the fastest particle after the last step; not known before the first [m/s]
     Passes passes_;
     real max_dt_ = infinity;
 };

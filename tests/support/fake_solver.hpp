@@ -1,6 +1,6 @@
 // A solver without physics: fields on faces, cells and markers that change by a rule known exactly, so that the time loop, probes, output
 // and restarts can be tested apart from any fluid. Its advised step varies from step to step; at step `fail_at` it yields a NaN,
-// and after step `stall_at` its advised step is nothing.
+// and after step `stall_at` its advised step is nothing. It calls steps up to `stable_dt` stable, and is concerned after step 2.
 #pragma once
 #include "core/solver.hpp"
 #include "scene/solver_kind.hpp"
@@ -15,7 +15,10 @@ namespace weir::test {
 class FakeSolver final : public Solver {
 public:
     explicit FakeSolver(const scene::Scene& scene)
-        : dim_(scene.dim()), fail_at_(scene.integer("fail_at")), stall_at_(scene.integer("stall_at")) {
+        : dim_(scene.dim()),
+          fail_at_(scene.integer("fail_at")),
+          stall_at_(scene.integer("stall_at")),
+          stable_dt_(scene.root().number_or("stable_dt", infinity)) {
         grid_.dim = dim_;
         const auto cells = scene.index<3>("grid.cells");
         const auto size = scene.vec<3>("grid.size"), origin = scene.vec<3>("grid.origin");
@@ -42,6 +45,8 @@ public:
         return {.dt = dt, .cfl = memory_, .max_divergence = 1e-12, .iterations = static_cast<int>(step_)};
     }
     real advised_dt() const override { return step_ == stall_at_ ? 1e-20 : 0.01 + 0.02 * memory_; }
+    StepLimit stable_dt() const override { return {stable_dt_, "so it says"}; }
+    std::string concern() const override { return step_ < 2 ? "" : "concerned"; }
     FieldSet fields() const override {
         FieldSet set;
         set.grid = grid_;
@@ -102,6 +107,7 @@ private:
     }
     int dim_;
     std::int64_t fail_at_, stall_at_;
+    real stable_dt_;
     GridView grid_;
     std::vector<std::vector<real>> faces_, positions_;
     std::vector<real> pressure_, level_set_;
@@ -117,7 +123,8 @@ inline std::vector<scene::SolverKind> fake_kinds() {
     kind.schema.dims = {2, 3};
     kind.schema.keys = {
         {.name = "fail_at", .type = scene::Type::integer, .doc = "Step that yields a NaN.", .fallback = std::int64_t{-1}},
-        {.name = "stall_at", .type = scene::Type::integer, .doc = "Step after which none is advised.", .fallback = std::int64_t{-1}}};
+        {.name = "stall_at", .type = scene::Type::integer, .doc = "Step after which none is advised.", .fallback = std::int64_t{-1}},
+        {.name = "stable_dt", .type = scene::Type::number, .doc = "The longest stable step.", .unit = "s"}};
     kind.make = [](const scene::Scene& scene) { return std::make_unique<FakeSolver>(scene); };
     return {kind};
 }

@@ -1,5 +1,6 @@
 #include "sim/simulation.hpp"
 
+#include "sim/registry.hpp"
 #include "support/fake_solver.hpp"
 #include "support/test.hpp"
 
@@ -37,6 +38,61 @@ TEST("a fixed step is taken as given, and cut only before a frame or the end") {
     EXPECT_NEAR(simulation.step().dt, 0.05, 1e-15);  // the rest
     EXPECT_TRUE(simulation.finished());
     EXPECT_EQ(simulation.steps(), 3);
+}
+
+TEST("a fixed step longer than the solver is stable for is taken in equal parts, and that is said once, with both numbers") {
+    auto simulation = fake_simulation("time = { end = 1.0, dt = 0.1 }\nstable_dt = 0.03");
+    EXPECT_EQ(simulation.next_dt(), 0.1 / 4);
+    EXPECT_TRUE(simulation.warnings().empty());
+    for (int s = 0; s < 3; ++s) EXPECT_EQ(simulation.step().dt, 0.1 / 4);
+    ASSERT_EQ(simulation.warnings().size(), 2u);  // of the solver too
+    const std::string& warning = simulation.warnings()[0];
+    for (const char* part : {"time.dt", "0.1 s", "0.03 s", "so it says", "time.guard"})
+        EXPECT_NE(warning.find(part), std::string::npos) << warning;
+    EXPECT_EQ(simulation.warnings()[1], "fake.toml: concerned");
+    while (!simulation.finished()) simulation.step();
+    EXPECT_EQ(simulation.warnings().size(), 2u);
+    EXPECT_DOUBLE_EQ(simulation.time(), 1.0);
+}
+
+TEST("a stable step is taken bit for bit as without the guard, and the guard can be put off") {
+    auto stable = fake_simulation("time = { end = 1.0, dt = 0.1 }\nstable_dt = 0.1");
+    EXPECT_EQ(stable.step().dt, 0.1);
+    EXPECT_TRUE(stable.warnings().empty());
+    auto off = fake_simulation("time = { end = 1.0, dt = 0.1, guard = \"off\" }\nstable_dt = 0.03");
+    EXPECT_EQ(off.step().dt, 0.1);
+    EXPECT_TRUE(off.warnings().empty());
+}
+
+/// 0.25 m of liquid in a box of 1 m, 16 cells a side, that moves down at so many m/s in steps of 0.02 s.
+weir::Simulation falling(const std::string& solver, const std::string& speed, const std::string& more) {
+    const std::string text = "solver = \"" + solver + "\"\ndim = 2\ngrid = { cells = [16, 16], size = [1, 1] }\n" +
+                             "time = { end = 0.02, dt = 0.02 }\nfluid = { density = 1000.0 }\n" +
+                             "liquid = [ { shape = \"box\", min = [0.25, 0.5], max = [0.75, 0.75] } ]\n" +
+                             "initial.velocity = { name = \"constant\", value = [0, -" + speed + "] }\n" + more;
+    return weir::Simulation(weir::scene::parse(text, "falling.toml", weir::sim::schemas()));
+}
+
+TEST("solvers name the step that they are stable for: two cells of water, half a support of sound, a support of a particle's way") {
+    const real cell = 1.0 / 16, speed = 20;
+    EXPECT_DOUBLE_EQ(falling("mac_water", "20", "").solver().stable_dt().dt, 2 * cell / speed);
+    EXPECT_DOUBLE_EQ(falling("sph", "20", "scheme = { support = 4.0, sound_speed = 100.0 }").solver().stable_dt().dt,
+                     2 * cell / (100 + speed));
+    EXPECT_DOUBLE_EQ(falling("pbf", "20", "scheme.support = 2.0").solver().stable_dt().dt, 2 * cell / speed);
+    EXPECT_EQ(falling("mac_water", "0.1", "").next_dt(), 0.02);  // far below its limit: as given
+}
+
+TEST("particles of SPH faster than three tenths of sound are remarked once, with their speed and that of sound") {
+    auto fast = falling("sph", "20", "scheme.sound_speed = 50.0");
+    while (!fast.finished()) fast.step();
+    std::string all;
+    for (const std::string& line : fast.warnings()) all += line + "\n";
+    EXPECT_EQ(fast.warnings().size(), 2u) << all;  // and the step, taken in parts
+    for (const char* part : {"moves at 20", "Mach 0.4", "sound of 50 m/s", "Mach 0.3"}) EXPECT_NE(all.find(part), std::string::npos) << all;
+    auto slow = falling("sph", "20", "scheme.sound_speed = 200.0");
+    while (!slow.finished()) slow.step();
+    ASSERT_EQ(slow.warnings().size(), 1u);
+    EXPECT_EQ(slow.warnings()[0].find("Mach"), std::string::npos);
 }
 
 TEST("sums of rounded fixed steps leave no sliver before the end: 1000 steps of 0.001 make 1 s") {
