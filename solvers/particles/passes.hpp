@@ -86,6 +86,9 @@ struct SphPass {
     bool wall_forces = false;  // gravity behind walls, or walls that are stuck to
 };
 
+/// What SPH's force pass computes beside the gradient of pressure, and which form that has.
+enum SphTerm : unsigned { sph_summed = 1, sph_artificial = 2, sph_viscous = 4 };
+
 /// One instruction set's passes; each works on the slices of one chunk.
 struct PassTable {
     const char* name;
@@ -104,9 +107,8 @@ struct PassTable {
     } finish[3];
     struct Sph {
         void (*density)(const SphPass&, const ListChunk&);
-        void (*rate)(const SphPass&, const ListChunk&);
-        void (*force)(const SphPass&, const ListChunk&);
-        void (*force_summed)(const SphPass&, const ListChunk&);
+        void (*rate[2])(const SphPass&, const ListChunk&);   // without diffusion of density, and with it
+        void (*force[8])(const SphPass&, const ListChunk&);  // by the terms that the scene names: a sum of SphTerm
         void (*normal)(const SphPass&, const ListChunk&);
         void (*tension)(const SphPass&, const ListChunk&);
     } sph[3];

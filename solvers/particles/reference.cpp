@@ -55,14 +55,15 @@ struct Functions {
     double (*sph_add_density)(double, double, const SphParams*);
     double (*sph_rate)(double, double, double, const SphParams*);
     double (*sph_diffusion)(double, double, double, const SphParams*);
-    double (*sph_push)(double, double, double, double, const SphParams*);
+    double (*sph_add_artificial)(double, double, double, double, const SphParams*);
+    double (*sph_push)(double, double, const SphParams*);
     double (*sph_drag)(double, double, const SphParams*);
     double (*sph_colour)(double, double, const SphParams*);
 };
-#define WEIR_FUNCTIONS(k)                                                                                                              \
-    {                                                                                                                                  \
-        k::pbf_density, k::pbf_slope, k::pbf_correction_with_pressure, k::sph_add_density, k::sph_rate, k::sph_diffusion, k::sph_push, \
-            k::sph_drag, k::sph_colour                                                                                                 \
+#define WEIR_FUNCTIONS(k)                                                                                                 \
+    {                                                                                                                     \
+        k::pbf_density, k::pbf_slope, k::pbf_correction_with_pressure, k::sph_add_density, k::sph_rate, k::sph_diffusion, \
+            k::sph_add_artificial, k::sph_push, k::sph_drag, k::sph_colour                                                \
     }
 constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(spline), WEIR_FUNCTIONS(c2)};
 
@@ -220,7 +221,8 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
             if (j == i || square(d) >= p.h2) continue;
             const double pressures = summed ? pressure[i] / (rho[i] * rho[i]) + pressure[j] / (rho[j] * rho[j])
                                             : (pressure[i] + pressure[j]) / (rho[i] * rho[j]);
-            const double push = functions[kernel].sph_push(r2, approach, pressures, 0.5 / rho[i] + 0.5 / rho[j], &p);
+            const double damped = functions[kernel].sph_add_artificial(pressures, r2, approach, 0.5 / rho[i] + 0.5 / rho[j], &p);
+            const double push = functions[kernel].sph_push(r2, damped, &p);
             const double drag = functions[kernel].sph_drag(r2, 1 / (rho[i] * rho[j]), &p);
             for (std::size_t b = 0; b < 3; ++b) a[i][b] += push * d[b] - drag * u[b];
         }

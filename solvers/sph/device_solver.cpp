@@ -29,6 +29,9 @@ particles::DeviceSetup DeviceSphSolver<D>::setup(const Options& options, const F
     s.kernel = static_cast<int>(options.smoothing);
     s.files = {"sph_state.inl", "sph_pair.inl", "sph.cl"};
     if (options.continuity) s.defines += "-DWEIR_CONTINUITY ";
+    if (options.diffusion > 0) s.defines += "-DWEIR_DIFFUSION ";
+    if (options.artificial > 0) s.defines += "-DWEIR_ARTIFICIAL ";
+    if (options.viscosity > 0) s.defines += "-DWEIR_VISCOUS ";
     if (options.gamma != 1) s.defines += "-DWEIR_TAIT ";
     if (options.tension) s.defines += "-DWEIR_PULL ";
     if (options.wall_forces()) s.defines += "-DWEIR_WALL_FORCES ";

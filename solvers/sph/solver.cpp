@@ -122,7 +122,8 @@ void SphSolver<D>::advance_densities(real dt) {
     load([&](int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0; });
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
-    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.rate(job, chunk); });
+    const auto rate = table.rate[options_.diffusion > 0];
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { rate(job, chunk); });
     const auto& solids = fluid_.domain.solids;
     if (!solids.empty() && solids.moving())  // their walls' images move with them
         solids_.each_near(pairs_.a(), [&](int k, const Vec<D>& at, const float* term) {
@@ -170,7 +171,11 @@ void SphSolver<D>::find_forces() {
     const auto timed = passes_.time("forces");
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
-    const auto force = options_.continuity ? table.force : table.force_summed;
+    unsigned terms = 0;
+    if (!options_.continuity) terms |= particles::sph_summed;
+    if (options_.artificial > 0) terms |= particles::sph_artificial;
+    if (options_.viscosity > 0) terms |= particles::sph_viscous;
+    const auto force = table.force[terms];
     pairs_.list().each_chunk([&](const ListChunk& chunk) { force(job, chunk); });
     if (sticky_solids_) drag_at_solids();
 }

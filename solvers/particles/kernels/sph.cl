@@ -1,6 +1,7 @@
 /* The passes of SPH (Mueller, Charypar & Gross 2003): sph_pair.inl over every particle's neighbours. Positions are float4 with 1 / rho as their
    fourth number, velocities with pressure, or with the density's excess over rho0. Defines: WEIR_CONTINUITY (density by its rate; else it is
-   summed), WEIR_TAIT, WEIR_PULL (pressure may be negative), WEIR_WALL_FORCES, WEIR_TENSION. */
+   summed), WEIR_TAIT, WEIR_PULL (pressure may be negative), WEIR_WALL_FORCES, and the effects that the scene names: WEIR_DIFFUSION of density,
+   WEIR_ARTIFICIAL viscosity, WEIR_VISCOUS, WEIR_TENSION. */
 
 #ifndef WEIR_CONTINUITY
 /* rho_i = sum_j m W                                                                               Mueller et al. 2003, eq. 3 */
@@ -70,16 +71,25 @@ __kernel void sph_forces(int count, int stride, __constant SphParams* p, __const
     for (int k = 0; k < n; ++k) {
         const int j = list[(size_t)k * stride + i];
         const float4 other = at[j], v = velocities[j], d = APART(me, other), du = u - v;
-        const float r2 = DISTANCE2(d, p), approach = dot3(du.x, du.y, du.z, d.x, d.y, d.z), volumes = me.w * other.w;
+        const float r2 = DISTANCE2(d, p), volumes = me.w * other.w;
 #ifdef WEIR_CONTINUITY
-        const float pressures = (u.w + v.w) * volumes;
+        float pressures = (u.w + v.w) * volumes, push;
 #else
-        const float pressures = FMA(v.w * other.w, other.w, u.w * me.w * me.w);
+        float pressures = FMA(v.w * other.w, other.w, u.w * me.w * me.w), push;
 #endif
-        const float push = sph_push(r2, approach, pressures, 0.5f * (me.w + other.w), p), drag = sph_drag(r2, volumes, p);
-        ax = FMA(push, d.x, FNMA(drag, du.x, ax));
-        ay = FMA(push, d.y, FNMA(drag, du.y, ay));
-        az = FMA(push, d.z, FNMA(drag, du.z, az));
+#ifdef WEIR_ARTIFICIAL
+        pressures = sph_add_artificial(pressures, r2, dot3(du.x, du.y, du.z, d.x, d.y, d.z), 0.5f * (me.w + other.w), p);
+#endif
+#ifdef WEIR_VISCOUS
+        const float drag = sph_drag(r2, volumes, p);
+        ax = FNMA(drag, du.x, ax);
+        ay = FNMA(drag, du.y, ay);
+        az = FNMA(drag, du.z, az);
+#endif
+        push = sph_push(r2, pressures, p);
+        ax = FMA(push, d.x, ax);
+        ay = FMA(push, d.y, ay);
+        az = FMA(push, d.z, az);
     }
     acceleration[i] = (float4)(ax, ay, az, 0.0f);
 }
@@ -194,7 +204,9 @@ __kernel void advance_densities(int count, int stride, __constant StateParams* s
         const float4 other = at[j], v = velocities[j], d = APART(me, other), du = u - v;
         const float r2 = DISTANCE2(d, p);
         rate += sph_rate(r2, dot3(du.x, du.y, du.z, d.x, d.y, d.z), other.w, p);
+#ifdef WEIR_DIFFUSION
         spread += sph_diffusion(r2, v.w - u.w + sph_layers(d.x, d.y, d.z, p), other.w, p);
+#endif
     }
     const double rho = density[order[i]];
     float whole = rate / me.w + spread;

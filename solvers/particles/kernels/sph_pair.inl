@@ -24,12 +24,13 @@ WEIR_FN REAL sph_layers(REAL dx, REAL dy, REAL dz, WEIR_PARAM SphParams* p) {
 /* Acceleration along x_i - x_j: -m ((p_i + p_j) / (rho_i rho_j) + Pi) s, grad W = s (x_i - x_j)              eq. 10 over rho_i
    without the 1/2 of eq. 10, under which a linear pressure would have half its gradient (Colagrossi & Landrini 2003, eq. 12)
    Pi = -alpha c h mu / rho, mu = v.x / (r^2 + eta^2) for approaching pairs                     artificial viscosity, Monaghan 1992
-   pressures: (p_i + p_j) / (rho_i rho_j), or of a density that is summed p_i / rho_i^2 + p_j / rho_j^2; approach: (v_i - v_j).(x_i - x_j);
-   volume: the mean of 1 / rho */
-WEIR_FN REAL sph_push(REAL r2, REAL approach, REAL pressures, REAL volume, WEIR_PARAM SphParams* p) {
+   pressures: (p_i + p_j) / (rho_i rho_j), or of a density that is summed p_i / rho_i^2 + p_j / rho_j^2, and Pi where the scene names it;
+   approach: (v_i - v_j).(x_i - x_j); volume: the mean of 1 / rho */
+WEIR_FN REAL sph_add_artificial(REAL pressures, REAL r2, REAL approach, REAL volume, WEIR_PARAM SphParams* p) {
     REAL closing = MAX0(-approach) / (r2 + p->soften);
-    return -FMA(p->artificial * closing, volume, pressures) * p->gradient * WEIR_SLOPE(r2, p);
+    return FMA(p->artificial * closing, volume, pressures);
 }
+WEIR_FN REAL sph_push(REAL r2, REAL pressures, WEIR_PARAM SphParams* p) { return -pressures * p->gradient * WEIR_SLOPE(r2, p); }
 
 /* Acceleration along v_j - v_i: mu m lap W / (rho_i rho_j)                                                  eq. 14 over rho_i
    For the cubic and the Wendland kernel the Laplacian is -2 times the slope (Morris, Fox & Zhu 1997, eq. 22). */

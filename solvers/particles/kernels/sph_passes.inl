@@ -21,6 +21,7 @@ static void sph_densities(const SphPass& a, const ListChunk& chunk) {
 
 /* The rate of density of every particle, from `velocities` (whose fourth number is the excess rho - rho0). Behind a wall the velocity's
    image moves against the particle, as fast: the work of the wall's pressure is then what the particle's volume loses. */
+template <bool Diffusion>
 static void sph_rates(const SphPass& a, const ListChunk& chunk) {
     const single::SphParams* p = a.p;
     for (int s = chunk.begin; s < chunk.end; ++s) {
@@ -34,18 +35,18 @@ static void sph_rates(const SphPass& a, const ListChunk& chunk) {
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = distance2(dx, dy, dz, p->guard);
             rate += sph_rate(r2, dot3(u.x - v.x, u.y - v.y, u.z - v.z, dx, dy, dz), j.w, p);
-            spread += sph_diffusion(r2, v.w - u.w + sph_layers(dx, dy, dz, p), j.w, p);
+            if constexpr (Diffusion) spread += sph_diffusion(r2, v.w - u.w + sph_layers(dx, dy, dz, p), j.w, p);
         }
         store_numbers(a.density, first, live(first, a.count), rate / i.w + spread);
     }
 }
 
-/* All forces. Summed: of a density that is summed, between particles the gradient of the energy sum_i m e(rho_i), e' = p / rho^2 (Monaghan
-   1992, eq. 3.3); else the form that goes with continuity. */
-template <bool Summed>
+/* All forces that the scene names. Summed: of a density that is summed, between particles the gradient of the energy sum_i m e(rho_i),
+   e' = p / rho^2 (Monaghan 1992, eq. 3.3); else the form that goes with continuity. */
+template <unsigned Terms>
 static void sph_forces(const SphPass& a, const ListChunk& chunk) {
+    constexpr bool summed = (Terms & sph_summed) != 0, artificial = (Terms & sph_artificial) != 0, viscous = (Terms & sph_viscous) != 0;
     const single::SphParams* p = a.p;
-    const vf half = broadcast(0.5f);
     for (int s = chunk.begin; s < chunk.end; ++s) {
         const int first = s * lanes;
         const Four i = load(a.positions, first), u = load(a.velocities, first);
@@ -64,14 +65,17 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
             const Four j = gather(a.positions, row), v = gather(a.velocities, row);
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z, r2 = distance2(dx, dy, dz, p->guard);
-            const vf ux = u.x - v.x, uy = u.y - v.y, uz = u.z - v.z;
+            [[maybe_unused]] const vf ux = u.x - v.x, uy = u.y - v.y, uz = u.z - v.z;
             const vf volumes = i.w * j.w;
-            const vf pressures = Summed ? FMA(v.w * j.w, j.w, u.w * i.w * i.w) : (u.w + v.w) * volumes;
-            const vf push = sph_push(r2, dot3(ux, uy, uz, dx, dy, dz), pressures, half * (i.w + j.w), p);
-            const vf drag = sph_drag(r2, volumes, p);
-            ax = FMA(push, dx, FNMA(drag, ux, ax));
-            ay = FMA(push, dy, FNMA(drag, uy, ay));
-            az = FMA(push, dz, FNMA(drag, uz, az));
+            vf pressures = summed ? FMA(v.w * j.w, j.w, u.w * i.w * i.w) : (u.w + v.w) * volumes;
+            if constexpr (artificial)
+                pressures = sph_add_artificial(pressures, r2, dot3(ux, uy, uz, dx, dy, dz), broadcast(0.5f) * (i.w + j.w), p);
+            if constexpr (viscous) {
+                const vf drag = sph_drag(r2, volumes, p);
+                ax = FNMA(drag, ux, ax), ay = FNMA(drag, uy, ay), az = FNMA(drag, uz, az);
+            }
+            const vf push = sph_push(r2, pressures, p);
+            ax = FMA(push, dx, ax), ay = FMA(push, dy, ay), az = FMA(push, dz, az);
         }
         store(a.acceleration, first, live(first, a.count), {ax, ay, az, broadcast(0)});
     }
@@ -121,4 +125,9 @@ static void sph_tensions(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
-static constexpr PassTable::Sph sph_table{sph_densities, sph_rates, sph_forces<false>, sph_forces<true>, sph_normals, sph_tensions};
+static constexpr PassTable::Sph sph_table{sph_densities,
+                                          {sph_rates<false>, sph_rates<true>},
+                                          {sph_forces<0>, sph_forces<1>, sph_forces<2>, sph_forces<3>, sph_forces<4>, sph_forces<5>,
+                                           sph_forces<6>, sph_forces<7>},
+                                          sph_normals,
+                                          sph_tensions};
