@@ -27,9 +27,8 @@ std::string_view key_of(std::string_view line) {
     return equals == std::string_view::npos ? std::string_view{} : trimmed(line.substr(0, equals));
 }
 
-/// An earlier line with the same key under the same header; 0 where none is seen.
-int first_given(const SourceText& text, int line) {
-    const auto key = key_of(text.line(line));
+/// An earlier line with this key under the same header; 0 where none is seen.
+int first_given(const SourceText& text, int line, std::string_view key) {
     if (key.empty()) return 0;
     for (int n = line - 1; n >= 1; --n) {
         const auto other = key_of(text.line(n));
@@ -48,7 +47,17 @@ Problem given_twice(const std::string& name, Place place, const SourceText& text
         problem.place.column = count_characters(line.substr(0, at)) + 1;
         problem.width = count_characters(name);
     }
-    if (const int first = first_given(text, place.line)) problem.hint = fmt::format("first given in line {}", first);
+    if (const int first = first_given(text, place.line, key_of(line))) problem.hint = fmt::format("first given in line {}", first);
+    return problem;
+}
+
+/// "grid.periodic = ..." below "grid = { ... }": a table in braces takes no more keys.
+Problem added_to_braces(Place place, const SourceText& text) {
+    const auto key = key_of(text.line(place.line));
+    const std::string name(key.substr(0, key.find('.')));
+    Problem problem = given_twice(name, place, text);
+    if (const int first = first_given(text, place.line, name))
+        problem.hint = fmt::format("\"{}\" stands in braces in line {}: write this key there", name, first);
     return problem;
 }
 
@@ -132,6 +141,7 @@ Problem word_syntax_error(std::string description, Place place, const SourceText
 
     if (is("cannot redefine existing")) {
         const std::string name = after(description, "'");
+        if (name.empty()) return added_to_braces(place, text);
         return given_twice(name.substr(0, name.find('\'')), place, text);
     }
     if (open.line > 0 && letter_at(open, text) == '[' && is_key_at(place, text)) return unclosed(open, text, "']' is missing");
