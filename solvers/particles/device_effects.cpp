@@ -3,8 +3,31 @@
 
 namespace weir::particles {
 
+namespace {
+
+/// The kernels in which effects act, by scene.
+std::vector<EffectPlan> plans_of(const scene::Scene& scene) {
+    const std::string forces = scene.solver() == "pbf" ? "predict" : "kick";
+    std::vector<EffectPlan> list;
+    for (const auto& [name, kernel] : {std::pair<std::string, std::string>{"gravity", forces},
+                                       {"central_force", forces},
+                                       {"xsph", "smooth"},
+                                       {"vorticity", "confine"},
+                                       {"artificial_pressure", "correct"},
+                                       {"surface_tension", "tension"},
+                                       {"viscosity", "sph_forces"},
+                                       {"artificial_viscosity", "sph_forces"},
+                                       {"density_diffusion", "advance_densities"},
+                                       {"rest_density", "find_pressures"}})
+        if (scene.effect(name)) list.push_back({.name = name, .inside = kernel});
+    return list;
+}
+
+}  // namespace
+
 template <int D>
-DeviceEffects<D>::DeviceEffects(const scene::Scene& scene) : emitters(scene, Domain<D>(scene)), end(scene.number("time.end")) {
+DeviceEffects<D>::DeviceEffects(const scene::Scene& scene)
+    : emitters(scene, Domain<D>(scene)), end(scene.number("time.end")), plans(plans_of(scene)) {
     if (const auto* e = scene.effect("gravity")) gravity = true, g = e->template vec<D>("g");
     if (const auto* e = scene.effect("central_force"))
         central_force = true, omega = e->number("omega"), centre = e->template vec<D>("centre");

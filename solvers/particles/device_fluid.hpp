@@ -2,6 +2,7 @@
 // and vorticity, reductions. The passes over pairs are the text that the processor's path compiles too (kernels/). The host keeps a copy
 // that follows when somebody looks.
 #pragma once
+#include "core/effects.hpp"
 #include "core/passes.hpp"
 #include "particles/cell_sort.hpp"
 #include "particles/device_memory.hpp"
@@ -37,6 +38,7 @@ struct DeviceEffects {
     real confinement = 0;  // epsilon of vorticity [m/s]
     Emitters<D> emitters;  // and sinks
     real end = 0;          // of the run: until then they let in [s]
+    std::vector<EffectPlan> plans;
 
     DeviceEffects() = default;
     explicit DeviceEffects(const scene::Scene& scene);
@@ -126,6 +128,7 @@ public:
     /// Kernel times since the last call, as passes.
     void record(Passes& passes);
     std::size_t bytes() const { return host_.bytes() + device_->allocated(); }
+    const std::vector<EffectPlan>& effects() const { return effects_.plans; }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
     const backend::Device& device() const { return *device_; }
@@ -168,7 +171,7 @@ private:
     Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;
     Memory start_, members_, blocks_, parts_, needed_;
     std::size_t cells_room_ = 0;
-    std::vector<double> host_parts_;
+    std::vector<double> host_parts_, host_poses_;
 };
 
 }  // namespace weir::particles

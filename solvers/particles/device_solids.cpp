@@ -2,6 +2,7 @@
 #include "particles/device_fluid.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace weir::particles {
 
@@ -40,10 +41,15 @@ std::string text_of(const geometry::Solids<D>& solids) {
 template <int D>
 void DeviceFluid<D>::place_solids() {
     const auto& solids = host_.domain.solids;
-    std::vector<SolidPose> all;
-    for (std::size_t k = 0; k < solids.count(); ++k) all.push_back(pose_of(solids, k));
-    if (!poses.handle) poses = device_->alloc(all.size() * sizeof(SolidPose));
-    device_->upload(poses, all.data(), all.size() * sizeof(SolidPose));
+    constexpr std::size_t each = sizeof(SolidPose) / sizeof(double);
+    static_assert(each * sizeof(double) == sizeof(SolidPose));
+    host_poses_.resize(each * solids.count());
+    for (std::size_t k = 0; k < solids.count(); ++k) {
+        const SolidPose pose = pose_of(solids, k);
+        std::memcpy(host_poses_.data() + each * k, &pose, sizeof pose);
+    }
+    if (!poses.handle) poses = device_->alloc(host_poses_.size() * sizeof(double));
+    device_->upload(poses, host_poses_.data(), host_poses_.size() * sizeof(double));
 }
 
 template <int D>

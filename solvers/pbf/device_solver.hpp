@@ -25,6 +25,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override { return fluid_.bytes(); }
+    std::vector<EffectPlan> effects() const override { return fluid_.effects(); }
 
     particles::Fluid<D>& fluid() { return fluid_.change(); }
     const particles::DeviceFluid<D>& on_device() const { return fluid_; }

@@ -53,6 +53,8 @@ TEST_IN_2D_AND_3D("each effect does something, and five steps with it end within
     for (const std::string& effect : test::effects<D>()) {
         auto here = on_backend<D>(liquid, scheme, effect);
         auto there = test::on_sse2<D>(liquid, scheme, effect);
+        EXPECT_EQ(test::built(*here), test::built(*there));
+        EXPECT_GT(test::built(*here).size(), 1u);  // gravity, and it
         const real h = test::support<D>(*here);
         const Fluid<D> a = run(*here), b = run(*there);
         EXPECT_GT(test::farthest_apart(a, plain), 1e-3 * h) << effect;

@@ -28,6 +28,7 @@ TEST_IN_2D_AND_3D("ten steps with each term of the physics end within 1e-4 of th
     for (const Physics& physics : test::all_physics<D>()) {
         auto here = on_backend<D>(physics.scheme, physics.effects);
         auto there = test::on_sse2<D>(physics.scheme, physics.effects);
+        EXPECT_EQ(test::built(*here), test::built(*there));
         test::shake(here->fluid(), 0.1), test::shake(there->fluid(), 0.1);
         for (int s = 0; s < 10; ++s) {
             const StepReport a = here->step(0.001), b = there->step(0.001);

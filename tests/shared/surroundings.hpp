@@ -1,14 +1,24 @@
 // What can stand around a liquid, as lines of a scene (a box of 1 x 1.5 [x 1] m); and what of it the double reference takes.
 #pragma once
+#include "core/solver.hpp"
 #include "particles/domain.hpp"
 #include "particles/reference.hpp"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 namespace weir::test {
+
+/// The effects that a solver says it has built.
+inline std::vector<std::string> built(const Solver& solver) {
+    std::vector<std::string> names;
+    for (const EffectPlan& plan : solver.effects()) names.push_back(plan.name);
+    std::sort(names.begin(), names.end());
+    return names;
+}
 
 /// "x, y" in 2D, "x, y, z" in 3D.
 template <int D>
