@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Compiles gpu_particles with a C++ compiler and OpenCL headers alone: benchmarks/gpu_particles/build.sh OUTPUT [LIBRARY]
-# LIBRARY: the OpenCL loader to link (default: -lOpenCL). What has to do with scenes is dropped by the linker. CXX, CXXFLAGS (default: -O2).
-# Of shared libraries the binary needs the loader, libgomp and those of the C library: a loader is always a shared one.
+# Compiles gpu_particles with a C++ compiler and OpenCL headers alone, to be carried to another machine: benchmarks/gpu_particles/build.sh
+# OUTPUT. What has to do with scenes is dropped by the linker. CXX, CXXFLAGS (default: -O2).
+# What stays shared are the C library's own (libc, libm, and libdl before glibc 2.34), no older there than here: a loader that is found at
+# run time needs the machine's. OpenCL's loader is looked for when the benchmark starts (load_opencl.hpp); libstdc++ and libgcc are linked
+# in; there are no threads, so no libgomp: the device does the work.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/../.." && pwd)"
 output="$1"
@@ -14,15 +16,23 @@ text() { sed -n '/^set(kernels /,/)/p' "$root/solvers/particles/CMakeLists.txt" 
     for file in $(text); do printf '{"%s", R"kernel(' "$file"; cat "$root/solvers/particles/kernels/$file"; echo ')kernel"},'; done
     echo '}; return texts; } }'
 } >"$work/kernel_text.cpp"
+echo 'inline int omp_get_max_threads() { return 1; }' >"$work/omp.h"
 cd "$root/solvers"
-sources=(core/{checkpoint,hex_number,parallel}.cpp geometry/*.cpp backend/choice.cpp backend/opencl.cpp pbf/device_solver.cpp pbf/options.cpp
-         particles/{cell_sort,device_fluid,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,kernels,walls}.cpp)
-compile() { # SOURCE: to an object with the source's path for a name
-    ${CXX:-c++} -std=c++20 ${CXXFLAGS:--O2} -fopenmp -ffp-contract=off -ffunction-sections -fdata-sections -I. -I"$root" -c "$1" \
-        -o "$work/$(echo "$1" | tr / _).o"
+# In few pieces, since headers take most of a compiler's time. device_fluid.cpp has types in its unnamed namespace that device_solids.cpp has too.
+{
+    echo '#include "benchmarks/gpu_particles/load_opencl.hpp"'
+    printf '#include "%s"\n' core/{checkpoint,hex_number,parallel}.cpp geometry/*.cpp backend/{choice,opencl}.cpp pbf/options.cpp \
+        particles/{cell_sort,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,kernels,walls}.cpp
+} >"$work/solvers.cpp"
+printf '#include "%s"\n' particles/device_fluid.cpp pbf/device_solver.cpp "$work/kernel_text.cpp" >"$work/step.cpp"
+compile() { # NAME SOURCE
+    ${CXX:-c++} -std=c++20 ${CXXFLAGS:--O2} -ffp-contract=off -ffunction-sections -fdata-sections -I"$work" -I. -I"$root" -c "$2" \
+        -o "$work/$1.o"
 }
-export -f compile
-export root work
-printf '%s\n' "$root/benchmarks/gpu_particles/gpu_particles.cpp" "$work/kernel_text.cpp" "${sources[@]}" |
-    xargs -P "$(nproc)" -I{} bash -c 'set -e; compile {}'
-${CXX:-c++} -fopenmp -Wl,--gc-sections -static-libgcc -static-libstdc++ "$work"/*.o "${2:--lOpenCL}" -o "$output"
+pids=()
+for source in "$root/benchmarks/gpu_particles/gpu_particles.cpp" "$work/solvers.cpp" "$work/step.cpp"; do
+    compile "$(basename "$source" .cpp)" "$source" &
+    pids+=($!)
+done
+for pid in "${pids[@]}"; do wait "$pid"; done
+${CXX:-c++} -Wl,--gc-sections -static-libgcc -static-libstdc++ "$work"/*.o -ldl -o "$output"
