@@ -1,6 +1,7 @@
 // The cost of PBF on an OpenCL device: milliseconds of each kernel by the device's own clock, for dam breaks in 2D and 3D from 8 thousand
-// to 8 million particles, beside the copy bandwidth measured in the same run; and two ways to sort them. Needs no scene, no VTK, no
-// SuiteSparse: build.sh compiles it with a C++ compiler and OpenCL headers alone.
+// to 8 million particles, beside the copy bandwidth measured in the same run; two ways to sort them, a neighbour list beside cells, and
+// sizes of work groups. Needs no scene, no VTK, no SuiteSparse: build.sh compiles it with a C++ compiler and OpenCL headers alone.
+#include "benchmarks/gpu_particles/compare_pairs.hpp"
 #include "benchmarks/gpu_particles/sorts.hpp"
 #include "pbf/device_solver.hpp"
 
@@ -15,19 +16,21 @@
 namespace {
 
 using namespace weir;
+using bench::Csv;
 
 struct Arguments {
     int device = 0, steps = 20, warm_up = 5;
     std::vector<int> dims{2, 3}, iterations{4, 8};
     std::vector<double> particles{8e3, 128e3, 1e6, 8e6};
-    double max_seconds = 120;  // a size that would take longer is skipped
+    std::vector<std::size_t> groups;  // sizes of work groups that the passes over pairs are repeated with
+    double max_seconds = 120;         // a size that would take longer is skipped
     std::string csv = "gpu_particles.csv", command;
 };
 
 /// Seconds of one particle in one step, by the size measured before: what a larger one will take at least.
 struct Pace {
-    double seconds = 0;
-    bool too_slow(const Arguments& a, double particles) const { return seconds * particles * (a.steps + a.warm_up) > a.max_seconds; }
+    double seconds = 0, pairs = 0;  // of a step; of all that is done with the passes over pairs
+    double estimate(const Arguments& a, double particles) const { return particles * (seconds * (a.steps + a.warm_up) + pairs); }
 };
 
 /// A block of liquid, two spacings wide for each high (in 3D as deep as high), in a closed box of three times its width and twice its
@@ -100,22 +103,13 @@ double copy_bandwidth(int index) {
     return best;
 }
 
+/// Steps of the solver: its passes by the device's clock, steps by the wall's. Returns the particles as they are then.
 template <int D>
-void measure(const Arguments& arguments, double wanted, int iterations, double bandwidth, std::FILE* csv, Pace& pace) {
-    if (pace.too_slow(arguments, wanted)) {
-        std::printf("%dD %9.0f particles %2d iterations: skipped, %.0f s at the pace of the size before, more than --max-seconds %g\n", D,
-                    wanted, iterations, pace.seconds * wanted * (arguments.steps + arguments.warm_up), arguments.max_seconds);
-        return;
-    }
-    const auto start = dam_break<D>(wanted);
-    pbf::Options options;
-    options.backend.device = arguments.device;
-    options.iterations = iterations;
-    options.settle = 0;
+particles::Fluid<D> measure_steps(const Arguments& arguments, const pbf::Options& options, const particles::Fluid<D>& start, real dt,
+                                  double bandwidth, Csv& csv, Pace& pace) {
     particles::DeviceEffects<D> effects;
     effects.gravity = true;
-    effects.g[1] = -9.81;
-    const real dt = 0.05 * start.domain.spacing;
+    effects.g = start.gravity;
     pbf::DevicePbfSolver<D> solver(options, start, effects);
     for (int s = 0; s < arguments.warm_up; ++s) solver.step(dt);
     solver.passes().reset();
@@ -128,32 +122,52 @@ void measure(const Arguments& arguments, double wanted, int iterations, double b
     std::sort(ms.begin(), ms.end());
     const auto& device = solver.on_device();
     const double n = device.neighbour_counts().mean, count = device.count();
+    csv.particles = count;
     double kernels = 0, moved = 0;
     for (const Pass& p : solver.passes().list()) {
         const double each = bytes_of(p.name, D, n) * count * static_cast<double>(p.calls), rate = p.seconds > 0 ? each / p.seconds : 0;
-        std::fprintf(csv, "%d,%.0f,%d,%s,%.3f,%.5f,%.4g,%.4f\n", D, count, iterations, p.name.c_str(),
-                     static_cast<double>(p.calls) / arguments.steps, 1e3 * p.seconds / arguments.steps, each / arguments.steps,
-                     rate / bandwidth);
-        kernels += 1e3 * p.seconds / arguments.steps, moved += each / arguments.steps;
+        const double time = 1e3 * p.seconds / arguments.steps;
+        csv.row(p.name, static_cast<double>(p.calls) / arguments.steps, time, each / arguments.steps, rate / bandwidth);
+        kernels += time, moved += each / arguments.steps;
     }
     const double median = ms[ms.size() / 2];
     pace.seconds = 1e-3 * median / count;
-    std::fprintf(csv, "%d,%.0f,%d,step,1,%.5f,%.4g,%.4f\n", D, count, iterations, median, moved, moved / (1e-3 * median) / bandwidth);
+    csv.row("step", 1, median, moved, moved / (1e-3 * median) / bandwidth);
     std::printf(
         "%dD %9.0f particles %2d iterations: %9.3f ms a step (kernels %9.3f), %8.3g particles x iterations a second, %5.1f neighbours, "
         "%4zu bytes a particle, %4.1f%% of copy bandwidth\n",
-        D, count, iterations, median, kernels, count * iterations / (1e-3 * median), n, device.plan().bytes_per_particle(),
+        D, count, csv.iterations, median, kernels, count * csv.iterations / (1e-3 * median), n, device.plan().bytes_per_particle(),
         100 * moved / (1e-3 * median) / bandwidth);
     std::fflush(stdout);
+    return device.host();
 }
 
-void measure_sorts(const Arguments& arguments, std::FILE* csv) {
+template <int D>
+void measure(const Arguments& arguments, double wanted, int iterations, double bandwidth, std::FILE* file, Pace& pace) {
+    if (pace.estimate(arguments, wanted) > arguments.max_seconds) {
+        std::printf("%dD %9.0f particles %2d iterations: skipped, %.0f s at the pace of the size before, more than --max-seconds %g\n", D,
+                    wanted, iterations, pace.estimate(arguments, wanted), arguments.max_seconds);
+        return;
+    }
+    const auto start = dam_break<D>(wanted);
+    pbf::Options options;
+    options.backend.device = arguments.device;
+    options.iterations = iterations;
+    options.settle = 0;
+    const real dt = 0.05 * start.domain.spacing;
+    Csv csv{file, D, iterations, static_cast<double>(start.count())};
+    const auto moved = measure_steps<D>(arguments, options, start, dt, bandwidth, csv, pace);
+    pace.pairs = bench::compare_pairs<D>(arguments.groups, options, moved, dt, csv) / csv.particles;
+}
+
+void measure_sorts(const Arguments& arguments, std::FILE* file) {
     for (const double n : arguments.particles) {
         if (n > 2e6) continue;  // what it shows is shown
         const auto t = bench::compare_sorts(arguments.device, static_cast<int>(n));
         std::printf("sort %9.0f particles: bitonic %9.3f ms in %d launches, counting %9.3f ms\n", n, t.bitonic, t.launches, t.counting);
-        std::fprintf(csv, "0,%.0f,0,bitonic_sort,%d,%.5f,0,0\n0,%.0f,0,counting_sort,1,%.5f,0,0\n", n, t.launches, t.bitonic, n,
-                     t.counting);
+        const Csv csv{file, 0, 0, n};
+        csv.row("bitonic_sort", t.launches, t.bitonic);
+        csv.row("counting_sort", 1, t.counting);
     }
 }
 
@@ -184,6 +198,8 @@ Arguments read(int argc, char** argv) {
             a.iterations = numbers<int>(value);
         else if (key == "--particles")
             a.particles = numbers<double>(value);
+        else if (key == "--groups")
+            a.groups = numbers<std::size_t>(value);
         else if (key == "--max-seconds")
             a.max_seconds = std::atof(value);
         else if (key == "--csv")
@@ -210,7 +226,7 @@ int main(int argc, char** argv) try {
     const auto& device = devices[static_cast<std::size_t>(arguments.device)];
     std::fprintf(csv, "# %s\n# %s, %s, driver %s, copy %.1f GB/s\n", arguments.command.c_str(), device.name.c_str(), device.version.c_str(),
                  device.driver.c_str(), 1e-9 * bandwidth);
-    std::fprintf(csv, "dim,particles,iterations,kernel,calls_a_step,ms_a_step,bytes_a_step,fraction_of_copy\n");
+    std::fprintf(csv, "dim,particles,iterations,kernel,calls_a_step,ms_a_step,bytes_a_step,fraction_of_copy,group\n");
     measure_sorts(arguments, csv);
     for (const int dim : arguments.dims)
         for (const int it : arguments.iterations) {
