@@ -185,7 +185,8 @@ void add_run(CLI::App& app, int& exit_code) {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
     run->add_option("--threads", arguments->threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
-    run->add_option("--backend", arguments->backend, "threads, or opencl[:N] (weir list devices): the same as --set scheme.backend=...");
+    run->add_option("--backend", arguments->backend,
+                    "threads[:isa], opencl[:N] (weir list devices) or reference: the same as --set scheme.backend=...");
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");

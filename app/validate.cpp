@@ -11,7 +11,8 @@ void add_validate(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<StudyArguments<validation::ValidateOptions>>("out/validate", "results");
     CLI::App* command = app.add_subcommand("validate", "Run cases and judge their claims; exit code 1 if one fails");
     arguments->add_to(*command, "Every case", "ci: minutes; full: as published", "Folder of verdicts.json, svg/, csv/ and frames");
-    command->add_option("--backend", arguments->options.backend, "threads, or opencl[:N] (weir list devices), for all runs of particles");
+    command->add_option("--backend", arguments->options.backend,
+                        "threads[:isa], opencl[:N] (weir list devices) or reference, for all runs of particles");
     command->add_flag("--report", arguments->options.page, "Publish, and write all published results as one HTML page");
     command->callback([arguments, &exit_code] {
         arguments->publish |= arguments->options.page;

@@ -15,6 +15,10 @@ Choice parse_choice(std::string_view text) {
         for (const char* known : {"auto", "sse2", "avx2", "avx512"})
             if (more == known) return choice;
     }
+    if (text == "reference") {
+        choice.kind = Choice::Kind::reference;
+        return choice;
+    }
     if (name == "opencl") {
         choice.kind = Choice::Kind::opencl;
         if (colon == std::string_view::npos) return choice;
@@ -22,7 +26,7 @@ Choice parse_choice(std::string_view text) {
         if (error == std::errc() && end == more.data() + more.size() && choice.device >= 0) return choice;
     }
     throw BadInput("unknown backend \"" + std::string(text) +
-                   "\"; known: threads, threads:sse2, threads:avx2, threads:avx512, opencl, opencl:N (weir list devices)");
+                   "\"; known: threads, threads:sse2, threads:avx2, threads:avx512, opencl, opencl:N (weir list devices), reference");
 }
 
 }  // namespace weir::backend

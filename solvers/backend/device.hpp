@@ -73,9 +73,9 @@ std::vector<DeviceInfo> devices();
 /// Device number `index` of devices(). Throws BadInput saying what is missing and how to get it.
 std::unique_ptr<Device> open_device(int index);
 
-/// A backend by name: "threads", "threads:avx2" (an instruction set), "opencl", "opencl:1" (a device's number).
+/// A backend by name: "threads", "threads:avx2" (an instruction set), "opencl", "opencl:1" (a device's number), "reference".
 struct Choice {
-    enum class Kind { threads, opencl } kind = Kind::threads;
+    enum class Kind { threads, opencl, reference } kind = Kind::threads;
     std::string isa = "auto";
     int device = 0;
 };

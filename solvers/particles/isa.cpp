@@ -42,7 +42,8 @@ scene::Key backend_key() {
         .type = scene::Type::text,
         .doc =
             "threads: the processor, with the best of its instruction sets, or one by name: threads:sse2, threads:avx2, threads:avx512. "
-            "opencl: the first OpenCL device, or one by number: opencl:1 (weir list devices).",
+            "opencl: the first OpenCL device, or one by number: opencl:1 (weir list devices). reference: plain double precision over all "
+            "pairs on one thread, what the others are compared with; for at most a few thousand particles.",
         .fallback = std::string("threads")};
 }
 

@@ -94,6 +94,14 @@ Point apart(const Point& a, const Point& b, const Point& period) {
 double square(const Point& d) { return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]; }
 double apart2(const Point& d, const SphParams& p) { return distance2(d[0], d[1], d[2], p.guard); }
 
+Neighbours closer_than(double h2, const std::vector<Point>& x, const Point& period) {
+    Neighbours neighbours(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (std::size_t j = 0; j < x.size(); ++j)
+            if (j != i && square(apart(x[i], x[j], period)) < h2) neighbours[i].push_back(j);
+    return neighbours;
+}
+
 /// f(j, x_i - x_j, r^2) for every neighbour.
 template <class F>
 void each_neighbour(const ReferencePbf& r, const std::vector<Point>& x, std::size_t i, F&& f) {
@@ -105,12 +113,8 @@ void each_neighbour(const ReferencePbf& r, const std::vector<Point>& x, std::siz
 
 }  // namespace
 
-void ReferencePbf::find_neighbours(const std::vector<Point>& x) {
-    neighbours.assign(x.size(), {});
-    for (std::size_t i = 0; i < x.size(); ++i)
-        for (std::size_t j = 0; j < x.size(); ++j)
-            if (j != i && square(apart(x[i], x[j], period)) < p.h2) neighbours[i].push_back(j);
-}
+void ReferencePbf::find_neighbours(const std::vector<Point>& x) { neighbours = closer_than(p.h2, x, period); }
+void ReferenceSph::find_neighbours(const std::vector<Point>& x) { neighbours = closer_than(p.h2, x, period); }
 
 std::vector<double> ReferencePbf::densities(const std::vector<Point>& x) const {
     std::vector<double> rho(x.size());
@@ -158,8 +162,8 @@ std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
     std::vector<double> rho(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         rho[i] = p.self + p.wall_rho * walls_at(*this, x[i], i)[3];
-        for (std::size_t j = 0; j < x.size(); ++j)
-            if (j != i) rho[i] = functions[kernel].sph_add_density(rho[i], apart2(apart(x[i], x[j], period), p), &p);
+        for (const std::size_t j : neighbours[i])
+            rho[i] = functions[kernel].sph_add_density(rho[i], apart2(apart(x[i], x[j], period), p), &p);
     }
     return rho;
 }
@@ -170,9 +174,8 @@ std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
         double relative = 2 * (wall[0] * v[i][0] + wall[1] * v[i][1] + wall[2] * v[i][2]), spread = 0;
-        for (std::size_t j = 0; j < x.size(); ++j) {
+        for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
-            if (j == i || square(d) >= p.h2) continue;
             double excess = (rho[j] - rho0) - (rho[i] - rho0);
             for (std::size_t b = 0; b < 3; ++b) excess += p.layers[b] * d[b];
             relative += functions[kernel].sph_rate(apart2(d, p), d[0] * u[0] + d[1] * u[1] + d[2] * u[2], 1 / rho[j], &p);
@@ -188,9 +191,8 @@ std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
         q[i] = {wall[0], wall[1], wall[2]};
-        for (std::size_t j = 0; j < x.size(); ++j) {
+        for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period);
-            if (j == i || square(d) >= p.h2) continue;
             const double f = functions[kernel].sph_colour(apart2(d, p), 1 / rho[j], &p);
             for (std::size_t b = 0; b < 3; ++b) q[i][b] += f * d[b];
         }
@@ -198,9 +200,8 @@ std::vector<Point> ReferenceSph::tensions(const std::vector<Point>& x, const std
         for (double& c : q[i]) c *= scale;
     }
     for (std::size_t i = 0; i < x.size(); ++i)
-        for (std::size_t j = 0; j < x.size(); ++j) {
+        for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period);
-            if (j == i || square(d) >= p.h2) continue;
             const double f = muller::sph_tension(apart2(d, p), 1 / (rho[i] * rho[j]), &p), both = square(q[i]) + square(q[j]);
             const double own = q[i][0] * d[0] + q[i][1] * d[1] + q[i][2] * d[2], other = q[j][0] * d[0] + q[j][1] * d[1] + q[j][2] * d[2];
             for (std::size_t b = 0; b < 3; ++b) a[i][b] += f * (both * d[b] - own * q[i][b] - other * q[j][b]);
@@ -215,10 +216,9 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
         const auto wall = walls_at(*this, x[i], i);
         muller::sph_wall_force(x[i].data(), v[i].data(), pressure[i], wall[3], &walls, &p, a[i].data());
         for (std::size_t b = 0; b < 3; ++b) a[i][b] -= 2 * pressure[i] / rho[i] * wall[b];
-        for (std::size_t j = 0; j < x.size(); ++j) {
+        for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
             const double r2 = apart2(d, p), approach = d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
-            if (j == i || square(d) >= p.h2) continue;
             const double pressures = summed ? pressure[i] / (rho[i] * rho[i]) + pressure[j] / (rho[j] * rho[j])
                                             : (pressure[i] + pressure[j]) / (rho[i] * rho[j]);
             const double damped = functions[kernel].sph_add_artificial(pressures, r2, approach, 0.5 / rho[i] + 0.5 / rho[j], &p);
@@ -229,5 +229,71 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
     }
     return a;
 }
+
+template <class Reference, int D>
+void add_solids(Reference& reference, const Domain<D>& domain, const std::vector<Point>& x) {
+    if (domain.solids.empty()) return;
+    const auto& walls = reference.walls;
+    reference.solid.assign(x.size(), Point{0, 0, 0});
+    reference.solid_part.assign(x.size(), 0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const Vec<D> at = domain.centre() + vec_of<D>(x[i]);
+        const real phi = std::max<real>(0, domain.solids.distance(at));
+        if (phi * walls.inv_h >= 1) continue;
+        const Vec<D> n = domain.solids.normal(at, 1e-3 * domain.spacing);
+        for (std::size_t a = 0; a < D; ++a) reference.solid[i][a] = -wall_series(phi, walls.slope, walls.inv_h) * n[static_cast<int>(a)];
+        reference.solid_part[i] = wall_series(phi, walls.fraction, walls.inv_h);
+    }
+}
+
+namespace {
+
+/// Of two images of a neighbour within reach, apart() would see one.
+template <int D>
+void check_periods(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
+    const Domain<D> domain(scene);
+    const real shortest = 2 * scene.number("scheme.support") * domain.spacing;
+    for (int a = 0; a < D; ++a)
+        if (domain.sides.periodic(a) && domain.hi[a] - domain.lo[a] < shortest)
+            problems.push_back(scene.problem(
+                "grid.size", "the backend reference has no periods shorter than two supports",
+                "from scheme.support and the cells' size: " + std::to_string(shortest) + " m; or take scheme.backend = \"threads\""));
+}
+
+}  // namespace
+
+void refuse_what_the_reference_lacks(const scene::Scene& scene, const std::vector<std::string>& effects) {
+    std::vector<scene::Problem> problems;
+    std::string known;
+    for (const auto& name : effects) known += (known.empty() ? "" : ", ") + name;
+    if (scene.has("effects"))
+        for (const auto& name : scene.root().table("effects").keys())
+            if (scene.effect(name) && std::find(effects.begin(), effects.end(), name) == effects.end())
+                problems.push_back(scene.problem("effects." + name, "the backend reference has no effect \"" + name + "\"",
+                                                 "it has " + known + "; or take scheme.backend = \"threads\""));
+    if (scene.dim() == 2)
+        check_periods<2>(scene, problems);
+    else
+        check_periods<3>(scene, problems);
+    if (!problems.empty()) scene.refuse(std::move(problems));
+}
+
+void add_neighbour_counts(const Neighbours& neighbours, std::vector<Integral>& to) {
+    std::size_t sum = 0, most = 0;
+    for (const auto& list : neighbours) sum += list.size(), most = std::max(most, list.size());
+    to.push_back({"mean_neighbours", "1", neighbours.empty() ? 0 : static_cast<real>(sum) / static_cast<real>(neighbours.size())});
+    to.push_back({"max_neighbours", "1", static_cast<real>(most)});
+}
+
+std::size_t bytes_of(const Neighbours& neighbours) {
+    std::size_t sum = neighbours.capacity() * sizeof(Neighbours::value_type);
+    for (const auto& list : neighbours) sum += list.capacity() * sizeof(std::size_t);
+    return sum;
+}
+
+template void add_solids(ReferencePbf&, const Domain<2>&, const std::vector<Point>&);
+template void add_solids(ReferencePbf&, const Domain<3>&, const std::vector<Point>&);
+template void add_solids(ReferenceSph&, const Domain<2>&, const std::vector<Point>&);
+template void add_solids(ReferenceSph&, const Domain<3>&, const std::vector<Point>&);
 
 }  // namespace weir::particles

@@ -1,14 +1,18 @@
-// The plain double-precision path: every pair of particles, no neighbour list, no vectors. It compiles the same text of the pair physics
-// as the fast path and defines what is right.
+// The plain double-precision path: every pair of particles is looked at for the neighbours of a step, without threads or
+// vectors. It compiles the same text of the pair physics as the fast path and defines what is right. Steps made of it are the backend
+// "reference" (pbf/reference_solver.hpp, sph/reference_solver.hpp); its time grows with the square of the number of particles.
 #pragma once
-#include "particles/passes.hpp"
+#include "core/solver.hpp"
+#include "particles/domain.hpp"
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace weir::particles {
 
-using Point = std::array<double, 3>;
+using Point = std::array<double, 3>;  // from the centre of the domain; the third is 0 in 2D
+using Neighbours = std::vector<std::vector<std::size_t>>;
 
 /// The pair physics of PBF for one kernel (0: Müller's, 1: cubic, 2: Wendland), over all pairs.
 struct ReferencePbf {
@@ -18,7 +22,7 @@ struct ReferencePbf {
     Point period{0, 0, 0};     // of axes that repeat, at least two supports; 0: the axis does not
     std::vector<Point> solid;  // gradient of the part inside solids at each particle; empty: no solids
     std::vector<double> solid_part;
-    std::vector<std::vector<std::size_t>> neighbours;
+    Neighbours neighbours;
 
     /// Lines 5-7 of algorithm 1: all pairs closer than the support at the predicted positions; kept through the iterations.
     void find_neighbours(const std::vector<Point>& x);
@@ -39,6 +43,10 @@ struct ReferenceSph {
     std::vector<Point> solid;  // as for PBF
     std::vector<double> solid_part;
     bool summed = true;  // density by summation: pairs push by the gradient of its energy
+    Neighbours neighbours;
+
+    /// All pairs closer than the support, which the other functions go through.
+    void find_neighbours(const std::vector<Point>& x);
 
     std::vector<double> densities(const std::vector<Point>& x) const;
     /// d rho / dt by continuity and diffusion.
@@ -48,5 +56,28 @@ struct ReferenceSph {
     std::vector<Point> accelerations(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
                                      const std::vector<double>& pressure) const;
 };
+
+template <int D>
+Point point_of(const Vec<D>& v) {
+    Point p{0, 0, 0};
+    for (int a = 0; a < D; ++a) p[static_cast<std::size_t>(a)] = v[a];
+    return p;
+}
+template <int D>
+Vec<D> vec_of(const Point& p) {
+    Vec<D> v;
+    for (int a = 0; a < D; ++a) v[a] = p[static_cast<std::size_t>(a)];
+    return v;
+}
+/// What solids add at each place (solid_terms.hpp); nothing where the domain has none.
+template <class Reference, int D>
+void add_solids(Reference& reference, const Domain<D>& domain, const std::vector<Point>& x);
+
+/// Refuses, all at once, the effects that are not among `effects`, and periods in which a pair has two images within reach.
+void refuse_what_the_reference_lacks(const scene::Scene& scene, const std::vector<std::string>& effects);
+
+/// "mean_neighbours" and "max_neighbours".
+void add_neighbour_counts(const Neighbours& neighbours, std::vector<Integral>& to);
+std::size_t bytes_of(const Neighbours& neighbours);
 
 }  // namespace weir::particles

@@ -1,6 +1,7 @@
 // The registration of "pbf": its keys, its effects, its maker.
 #include "particles/isa.hpp"
 #include "pbf/device_solver.hpp"
+#include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
 
 namespace weir::pbf {
@@ -83,6 +84,12 @@ std::vector<scene::Variant> effects() {
     return list;
 }
 
+template <class In2D, class In3D>
+std::unique_ptr<Solver> made(const scene::Scene& scene) {
+    if (scene.dim() == 2) return std::make_unique<In2D>(scene);
+    return std::make_unique<In3D>(scene);
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -93,12 +100,14 @@ scene::SolverKind kind() {
     schema.effects = effects();
     return {schema,
             [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
-                if (particles::backend_of(scene).kind == backend::Choice::Kind::opencl) {
-                    if (scene.dim() == 2) return std::make_unique<DevicePbfSolver<2>>(scene);
-                    return std::make_unique<DevicePbfSolver<3>>(scene);
+                switch (particles::backend_of(scene).kind) {
+                    case backend::Choice::Kind::opencl:
+                        return made<DevicePbfSolver<2>, DevicePbfSolver<3>>(scene);
+                    case backend::Choice::Kind::reference:
+                        return made<ReferencePbfSolver<2>, ReferencePbfSolver<3>>(scene);
+                    default:
+                        return made<PbfSolver<2>, PbfSolver<3>>(scene);
                 }
-                if (scene.dim() == 2) return std::make_unique<PbfSolver<2>>(scene);
-                return std::make_unique<PbfSolver<3>>(scene);
             },
             {{"position", "velocity", "density", "id"},
              {"predict", "neighbours", "warm start", "lambda", "correct", "update"},

@@ -82,6 +82,14 @@ real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid) {
     return frame / std::max<real>(1, std::ceil(frame / longest * (1 - 1e-9)));
 }
 
+template <int D>
+StepLimit stable_step(const Options& o, const particles::Fluid<D>& fluid, real speed) {
+    if (std::isnan(speed)) speed = fluid.max_speed();
+    return {speed > 0 ? o.support * fluid.domain.spacing / speed : infinity, "a particle crosses its support in it"};
+}
+
+template StepLimit stable_step(const Options&, const particles::Fluid<2>&, real);
+template StepLimit stable_step(const Options&, const particles::Fluid<3>&, real);
 template real even_step(const scene::Scene&, particles::Fluid<2>&);
 template real even_step(const scene::Scene&, particles::Fluid<3>&);
 template Kernel<2> density_kernel(const Options&, real);

@@ -35,6 +35,10 @@ struct Options {
 template <int D>
 real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid);
 
+/// A particle that crosses its support in a step passes those that should have stopped it before a correction sees them.
+template <int D>
+StepLimit stable_step(const Options& options, const particles::Fluid<D>& fluid, real speed);
+
 /// What a scene is told whose walls are stuck to.
 inline constexpr const char* instead_of_sticking = "PBF has none: take slip = \"free\", or solver = \"sph\" with its viscosity";
 

@@ -211,11 +211,9 @@ real PbfSolver<D>::advised_dt() const {
     return std::min(step_, effects_.max_dt(flow_));
 }
 
-/// A particle that crosses its support in a step passes those that should have stopped it before a correction sees them.
 template <int D>
 StepLimit PbfSolver<D>::stable_dt() const {
-    const real speed = std::isnan(speed_) ? fluid_.max_speed() : speed_;
-    return {speed > 0 ? options_.support * fluid_.domain.spacing / speed : infinity, "a particle crosses its support in it"};
+    return stable_step(options_, fluid_, speed_);
 }
 
 template <int D>

@@ -1,6 +1,7 @@
 // The registration of "sph": its keys, its effects, its maker.
 #include "particles/isa.hpp"
 #include "sph/device_solver.hpp"
+#include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
 
 namespace weir::sph {
@@ -97,6 +98,12 @@ Key initial() {
     return key;
 }
 
+template <class In2D, class In3D>
+std::unique_ptr<Solver> made(const scene::Scene& scene) {
+    if (scene.dim() == 2) return std::make_unique<In2D>(scene);
+    return std::make_unique<In3D>(scene);
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -107,12 +114,14 @@ scene::SolverKind kind() {
     schema.effects = effects();
     return {schema,
             [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
-                if (particles::backend_of(scene).kind == backend::Choice::Kind::opencl) {
-                    if (scene.dim() == 2) return std::make_unique<DeviceSphSolver<2>>(scene);
-                    return std::make_unique<DeviceSphSolver<3>>(scene);
+                switch (particles::backend_of(scene).kind) {
+                    case backend::Choice::Kind::opencl:
+                        return made<DeviceSphSolver<2>, DeviceSphSolver<3>>(scene);
+                    case backend::Choice::Kind::reference:
+                        return made<ReferenceSphSolver<2>, ReferenceSphSolver<3>>(scene);
+                    default:
+                        return made<SphSolver<2>, SphSolver<3>>(scene);
                 }
-                if (scene.dim() == 2) return std::make_unique<SphSolver<2>>(scene);
-                return std::make_unique<SphSolver<3>>(scene);
             },
             {{"position", "velocity", "density", "id", "pressure"},
              {"neighbours", "density", "forces", "integrate"},

@@ -3,8 +3,6 @@
 #include "particles/fastest_flow.hpp"
 #include "sph/tension.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -217,21 +215,10 @@ void SphSolver<D>::kick(real dt) {
     });
 }
 
-/// x += dt v. What would enter a wall or a solid is put back and loses its speed into it.
 template <int D>
 void SphSolver<D>::drift(real dt) {
     const auto timed = passes_.time("integrate");
-    fluid_.time += dt;
-    const auto& domain = fluid_.domain;
-    if (!domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
-    parallel_for(0, fluid_.count(), [&](int i) {
-        const Vec<D> u = fluid_.velocity(i), free = fluid_.position(i) + dt * u, x = domain.kept(free);
-        Vec<D> kept = u;
-        for (int a = 0; a < D; ++a)
-            if (x[a] != free[a]) kept[a] = (x[a] - fluid_.position(i)[a]) / dt;
-        Fluid<D>::put(fluid_.v, i, kept);
-        Fluid<D>::put(fluid_.x, i, x);
-    });
+    sph::drift(fluid_, dt);
 }
 
 template <int D>
@@ -241,19 +228,12 @@ real SphSolver<D>::advised_dt() const {
 
 template <int D>
 StepLimit SphSolver<D>::stable_dt() const {
-    const real speed = std::isnan(speed_) ? fluid_.max_speed() : speed_;
-    return {0.5 * options_.support * fluid_.domain.spacing / (options_.sound + speed), "sound crosses half the support in it"};
+    return stable_step(options_, fluid_, speed_);
 }
 
-/// Density changes by about the square of the Mach number: by a hundredth at 1/10, by a tenth at this one.
 template <int D>
 std::string SphSolver<D>::concern() const {
-    constexpr real most = 0.3;
-    if (!(speed_ > most * options_.sound)) return {};
-    return fmt::format(
-        "the fastest particle moves at {:.4g} m/s at t = {:.4g} s, Mach {:.2g} of a speed of sound of {:.4g} m/s: beyond Mach {:g} "
-        "density changes by more than a tenth; scheme.sound_speed = {:.4g} would keep it within a hundredth",
-        speed_, fluid_.time, speed_ / options_.sound, options_.sound, most, 10 * speed_);
+    return too_fast(options_, speed_, fluid_.time);
 }
 
 template <int D>

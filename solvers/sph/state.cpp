@@ -1,5 +1,9 @@
 #include "sph/state.hpp"
 
+#include "core/parallel.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,6 +66,42 @@ real tension_limit(const Options& o, const particles::Fluid<D>& fluid) {
     return o.sigma > 0 ? 0.25 * std::sqrt(fluid.rho0 * s * s * s / (2 * pi * o.sigma)) : infinity;
 }
 
+template <int D>
+StepLimit stable_step(const Options& o, const particles::Fluid<D>& fluid, real speed) {
+    if (std::isnan(speed)) speed = fluid.max_speed();
+    return {0.5 * o.support * fluid.domain.spacing / (o.sound + speed), "sound crosses half the support in it"};
+}
+
+/// Density changes by about the square of the Mach number: by a hundredth at 1/10, by a tenth at this one.
+std::string too_fast(const Options& o, real speed, real time) {
+    constexpr real most = 0.3;
+    if (!(speed > most * o.sound)) return {};
+    return fmt::format(
+        "the fastest particle moves at {:.4g} m/s at t = {:.4g} s, Mach {:.2g} of a speed of sound of {:.4g} m/s: beyond Mach {:g} "
+        "density changes by more than a tenth; scheme.sound_speed = {:.4g} would keep it within a hundredth",
+        speed, time, speed / o.sound, o.sound, most, 10 * speed);
+}
+
+template <int D>
+void drift(particles::Fluid<D>& fluid, real dt) {
+    using particles::Fluid;
+    fluid.time += dt;
+    const auto& domain = fluid.domain;
+    if (!domain.solids.empty()) fluid.domain.solids.set_time(fluid.time);
+    parallel_for(0, fluid.count(), [&](int i) {
+        const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = domain.kept(free);
+        Vec<D> kept = u;
+        for (int a = 0; a < D; ++a)
+            if (x[a] != free[a]) kept[a] = (x[a] - fluid.position(i)[a]) / dt;
+        Fluid<D>::put(fluid.v, i, kept);
+        Fluid<D>::put(fluid.x, i, x);
+    });
+}
+
+template StepLimit stable_step(const Options&, const particles::Fluid<2>&, real);
+template StepLimit stable_step(const Options&, const particles::Fluid<3>&, real);
+template void drift(particles::Fluid<2>&, real);
+template void drift(particles::Fluid<3>&, real);
 template particles::single::PbfParams smoothing_params(const particles::single::SphParams&, const particles::Fluid<2>&);
 template particles::single::PbfParams smoothing_params(const particles::single::SphParams&, const particles::Fluid<3>&);
 template void start_pressure(const scene::Scene&, const Options&, particles::Fluid<2>&);

@@ -17,6 +17,7 @@ particles::single::PbfParams smoothing_params(const particles::single::SphParams
 class RestDensity {
 public:
     RestDensity(const scene::Scene& scene, real rho0);
+    explicit RestDensity(real rho0) : rho0_(rho0) {}
     bool constant() const { return times_.empty(); }
     real at(real time) const;
 
@@ -36,5 +37,15 @@ real step_limit(const Options& options, const particles::Fluid<D>& fluid, real s
 /// The period of the shortest capillary wave that the support holds (Brackbill, Kothe & Zemach 1992).
 template <int D>
 real tension_limit(const Options& options, const particles::Fluid<D>& fluid);
+
+/// Sound crosses half the support in it. speed: of the fastest particle after the last step; not a number before the first [m/s].
+template <int D>
+StepLimit stable_step(const Options& options, const particles::Fluid<D>& fluid, real speed);
+/// What is wrong with particles of this speed, in one line; empty where nothing is.
+std::string too_fast(const Options& options, real speed, real time);
+
+/// x += dt v. What would enter a wall or a solid is put back and loses its speed into it.
+template <int D>
+void drift(particles::Fluid<D>& fluid, real dt);
 
 }  // namespace weir::sph

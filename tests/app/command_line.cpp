@@ -48,6 +48,25 @@ TEST("a bad --set is refused with the key that was meant, and nothing is written
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
+TEST("--backend runs particles on the reference; what it has not got, and an unknown name, are refused with what is allowed") {
+    const std::string dam = std::string(WEIR_SOURCE_DIR) + "/tests/app/scenes/dam.toml";
+    TemporaryFolder folder;
+    const auto run = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"run", dam, "--out", folder.path() / "out"});
+        return weir_says(more);
+    };
+    auto answer = run({"--backend", "referee"});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.text.find("opencl:N (weir list devices), reference"), std::string::npos) << answer.text;
+    answer = run({"--backend", "reference", "--set", "effects.xsph.c=0.1"});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.text.find("it has gravity, artificial_pressure"), std::string::npos) << answer.text;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+    answer = run({"--backend", "reference"});
+    EXPECT_EQ(answer.code, 0) << answer.text;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out"));
+}
+
 TEST("--explain tells what was called for, what was built and what was left out, and writes nothing") {
     TemporaryFolder folder;
     const auto answer = weir_says({"run", smoke, "--explain", "--out", folder.path() / "out"});

@@ -35,7 +35,8 @@ TEST("a backend is known by name, with an instruction set or a device's number b
     EXPECT_EQ(parse_choice("threads:avx2").isa, "avx2");
     EXPECT_EQ(static_cast<int>(parse_choice("opencl").kind), static_cast<int>(Choice::Kind::opencl));
     EXPECT_EQ(parse_choice("opencl:3").device, 3);
-    for (const char* wrong : {"", "cuda", "threads:neon", "opencl:", "opencl:x", "opencl:-1", "opencl:1x", "opencl "})
+    EXPECT_EQ(static_cast<int>(parse_choice("reference").kind), static_cast<int>(Choice::Kind::reference));
+    for (const char* wrong : {"", "cuda", "threads:neon", "opencl:", "opencl:x", "opencl:-1", "opencl:1x", "opencl ", "reference:1"})
         EXPECT_TRUE(says(refusal([&] { parse_choice(wrong); }), "known: threads")) << wrong;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "scene/scene.hpp"
 #include "shared/surroundings.hpp"
+#include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
 
 #include <fmt/core.h>
@@ -15,7 +16,6 @@
 namespace weir::test {
 
 using particles::Fluid;
-using particles::Point;
 
 /// A block of liquid in a box of 8 x 12 [x 8] spacings of 1/8 m.
 template <int D>
@@ -41,92 +41,34 @@ void shake(Fluid<D>& fluid, real amount) {
     }
 }
 
-namespace text {
-#define WEIR_FN inline
-#include "particles/kernels/sph_state.inl"
-#undef WEIR_FN
-}  // namespace text
-
-/// The state in the reference's coordinates.
+/// The same step by the reference.
 template <int D>
-std::pair<std::vector<Point>, std::vector<Point>> points_of(const Fluid<D>& fluid) {
-    std::vector<Point> x, v;
-    for (int i = 0; i < fluid.count(); ++i) {
-        x.push_back({0, 0, 0}), v.push_back({0, 0, 0});
-        for (int a = 0; a < D; ++a) {
-            x.back()[static_cast<std::size_t>(a)] = fluid.position(i)[a] - fluid.domain.centre()[a];
-            v.back()[static_cast<std::size_t>(a)] = fluid.velocity(i)[a];
-        }
-    }
-    return {x, v};
+Fluid<D> reference_step(const sph::Options& o, const Fluid<D>& before, real dt) {
+    sph::ReferenceSphSolver<D> solver(o, before);
+    solver.step(dt);
+    return solver.fluid();
 }
 
-/// Of solids that are stuck to: 2 nu plane / phi along the surface (Morris et al. 1997, sec. 3.2).
-template <int D>
-void add_drag_of_solids(const sph::Options& o, const particles::ReferenceSph& reference, const Fluid<D>& fluid, std::vector<Point>& to) {
-    const auto& solids = fluid.domain.solids;
-    for (std::size_t i = 0; i < reference.solid.size(); ++i) {
-        const Vec<D> x = fluid.position(static_cast<int>(i));
-        Vec<D> pull;
-        for (int a = 0; a < D; ++a) pull[a] = reference.solid[i][static_cast<std::size_t>(a)];
-        const real plane = norm(pull), phi = std::max(solids.distance(x), 0.25 * fluid.domain.spacing);
-        if (plane == 0 || !solids[solids.nearest(x)].no_slip) continue;
-        const Vec<D> slip = solids.velocity(x) - fluid.velocity(static_cast<int>(i)),
-                     along = slip - dot(slip, pull) / (plane * plane) * pull;
-        for (int a = 0; a < D; ++a) to[i][static_cast<std::size_t>(a)] += 2 * o.viscosity * plane / phi * along[a];
-    }
-}
-
-/// One step by the double reference: densities, and positions before walls keep them.
-template <int D>
-std::pair<std::vector<double>, std::vector<Vec<D>>> reference_step(const sph::Options& o, const Fluid<D>& before, real dt) {
-    const real d = before.domain.spacing;
-    particles::ReferenceSph reference;
-    reference.p = sph::sph_params<particles::plain::SphParams, D>(o, d, before.rho0);
-    reference.walls =
-        before.domain.template walls<particles::plain::WallParams>(sph::density_kernel<D>(o, d), sph::gradient_kernel<D>(o, d));
-    reference.kernel = static_cast<int>(o.smoothing);
-    reference.period = periods(before.domain);
-    reference.summed = !o.continuity;
-    const auto [x, v] = points_of(before);
-    add_solids(reference, before.domain, x);
-    std::vector<double> rho = o.continuity ? before.density : reference.densities(x), pressure;
-    for (const double r : rho) pressure.push_back(o.pressure(r, before.rho0));
-    auto acceleration = reference.accelerations(x, v, rho, pressure);
-    add_drag_of_solids(o, reference, before, acceleration);
-    const auto tension = reference.tensions(x, rho);
-    std::vector<Point> moved = v;
-    std::vector<Vec<D>> after;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        after.push_back(before.position(static_cast<int>(i)));
-        for (std::size_t a = 0; a < D; ++a) {
-            moved[i][a] += dt * (acceleration[i][a] + tension[i][a] + o.gravity[a]);
-            after.back()[static_cast<int>(a)] += dt * moved[i][a];
-        }
-    }
-    if (o.continuity) {
-        auto rate = reference.rates(x, moved, before.density, before.rho0);
-        for (std::size_t i = 0; i < reference.solid.size(); ++i)
-            for (int a = 0; a < D; ++a)
-                rate[i] -= 2 * rho[i] * before.domain.solids.velocity(before.position(static_cast<int>(i)))[a] *
-                           reference.solid[i][static_cast<std::size_t>(a)];
-        for (std::size_t i = 0; i < rho.size(); ++i) rho[i] *= text::density_growth(dt * rate[i] / rho[i]);
-    }
-    return {rho, after};
-}
-
-/// The largest differences of a state from what is expected: densities, and places before walls and solids keep them.
+/// How far two states of the same particles are apart.
 struct Difference {
     real place = 0, density = 0;
     template <int D>
-    Difference(const particles::Domain<D>& domain, const Fluid<D>& fluid, const std::vector<double>& rho, const std::vector<Vec<D>>& free) {
-        for (int i = 0; i < fluid.count(); ++i) {
+    Difference(const Fluid<D>& a, const Fluid<D>& b) {
+        for (int i = 0; i < a.count(); ++i) {
             const auto at = static_cast<std::size_t>(i);
-            place = std::max(place, norm(apart(domain, fluid.position(i), domain.kept(free[at]))));
-            density = std::max(density, std::abs(fluid.density[at] - rho[at]));
+            place = std::max(place, norm(apart(a.domain, a.position(i), b.position(i))));
+            density = std::max(density, std::abs(a.density[at] - b.density[at]));
         }
     }
 };
+/// How far forces have moved any particle in a step.
+template <int D>
+real farthest_moved(const Fluid<D>& before, const Fluid<D>& after, real dt) {
+    real farthest = 0;
+    for (int i = 0; i < before.count(); ++i)
+        farthest = std::max(farthest, norm(after.position(i) - before.domain.kept(before.position(i) + dt * before.velocity(i))));
+    return farthest;
+}
 
 /// Each pair term, and each wall term, in some scene.
 struct Physics {

@@ -1,8 +1,7 @@
-// What can stand around a liquid, as lines of a scene (a box of 1 x 1.5 [x 1] m); and what of it the double reference takes.
+// What can stand around a liquid, as lines of a scene (a box of 1 x 1.5 [x 1] m).
 #pragma once
 #include "core/solver.hpp"
 #include "particles/domain.hpp"
-#include "particles/reference.hpp"
 
 #include <fmt/core.h>
 
@@ -75,43 +74,6 @@ std::string jet_and_drain() {
 template <int D>
 std::vector<std::string> surroundings(const std::string& solid = "") {
     return {periodic_sides<D>(), open_sides<D>(), solids_at_rest<D>(solid), moving_solids<D>(solid), jet_and_drain<D>()};
-}
-
-namespace text {  // of the kernels, in double precision
-#define SCALAR double
-#include "particles/kernels/prelude_double.h"
-using particles::plain::WallParams;
-#include "particles/kernels/pair.inl"
-#undef SCALAR
-#undef REAL
-#undef WEIR_FN
-#undef WEIR_PARAM
-#undef MAX0
-#undef RSQRT
-}  // namespace text
-
-/// What solids add at each place (particles/solid_terms.hpp).
-template <class Reference, int D>
-void add_solids(Reference& reference, const particles::Domain<D>& domain, const std::vector<particles::Point>& x) {
-    const auto& walls = reference.walls;
-    if (domain.solids.empty()) return;
-    reference.solid.assign(x.size(), particles::Point{0, 0, 0});
-    reference.solid_part.assign(x.size(), 0);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        Vec<D> at = domain.centre();
-        for (std::size_t a = 0; a < D; ++a) at[a] += x[i][a];
-        const real phi = std::max<real>(0, domain.solids.distance(at));
-        if (phi * walls.inv_h >= 1) continue;
-        const Vec<D> n = domain.solids.normal(at, 1e-3 * domain.spacing);
-        for (std::size_t a = 0; a < D; ++a) reference.solid[i][a] = -text::wall_series(phi, walls.slope, walls.inv_h) * n[a];
-        reference.solid_part[i] = text::wall_series(phi, walls.fraction, walls.inv_h);
-    }
-}
-
-/// Periods, for a reference.
-template <int D>
-particles::Point periods(const particles::Domain<D>& domain) {
-    return domain.frame().period;
 }
 
 /// From b to a along the shortest way.

@@ -24,19 +24,13 @@ TEST_IN_2D_AND_3D("every instruction set agrees with the double reference to 1e-
                                  physics.effects));
                 shake(solver.fluid(), 0.2);
                 const Fluid<D> before = solver.fluid();
-                const auto [rho, free] = reference_step<D>(solver.options(), before, dt);
+                const Fluid<D> expected = reference_step<D>(solver.options(), before, dt);
                 const real h = solver.options().support * before.domain.spacing;
                 solver.step(dt);
-                real worst = 0, farthest = 0, densest = 0;
-                for (int i = 0; i < before.count(); ++i) {
-                    const auto at = static_cast<std::size_t>(i);
-                    worst = std::max(worst, norm(solver.fluid().position(i) - before.domain.kept(free[at])));
-                    farthest = std::max(farthest, norm(free[at] - before.position(i) - dt * before.velocity(i)));
-                    densest = std::max(densest, std::abs(solver.fluid().density[at] - rho[at]));
-                }
-                EXPECT_GT(farthest, 1e-4 * h);  // forces must be there to be compared
-                EXPECT_LE(worst, 1e-5 * h) << table->name << " " << kernel << " " << physics.effects;
-                EXPECT_LE(densest, 1e-4 * before.rho0) << table->name << " " << kernel << " " << physics.effects;
+                const test::Difference worst(solver.fluid(), expected);
+                EXPECT_GT(test::farthest_moved(before, expected, dt), 1e-4 * h);  // forces must be there to be compared
+                EXPECT_LE(worst.place, 1e-5 * h) << table->name << " " << kernel << " " << physics.effects;
+                EXPECT_LE(worst.density, 1e-4 * before.rho0) << table->name << " " << kernel << " " << physics.effects;
             }
 }
 
