@@ -1,8 +1,7 @@
 // Milliseconds a step, and in each pass of it, of whole water simulations: two dam breaks, each after a start-up that is not measured.
 //   bench_water [--csv] [--steps N] [--threads N] [--dim 2|3]
 #include "core/parallel.hpp"
-#include "mac/kinds.hpp"
-#include "mac/water.hpp"
+#include "water/solver.hpp"
 
 #include <fmt/format.h>
 
@@ -43,7 +42,7 @@ real median(std::vector<real> list) {
 }
 
 void measure(const Problem& problem, int threads, int steps, bool csv) {
-    const auto kind = mac::water_kind();
+    const auto kind = water::kind();
     const std::vector<scene::SolverSchema> schemas{kind.schema};
     const auto solver = kind.make(scene::parse(problem.scene, problem.name, schemas));
     set_threads(threads);

@@ -1,16 +1,18 @@
 #include "sim/registry.hpp"
 
-#include "mac/kinds.hpp"
+#include "flow/solver.hpp"
 #include "pbf/solver.hpp"
 #include "sph/solver.hpp"
+#include "studies/kinds.hpp"
+#include "water/solver.hpp"
 
 #include <stdexcept>
 
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {mac::smoke_kind(),   mac::water_kind(), mac::transport_kind(),
-                                                         mac::poisson_kind(), pbf::kind(),       sph::kind()};
+    static const std::vector<scene::SolverKind> kinds = {flow::kind(), water::kind(), studies::transport_kind(), studies::poisson_kind(),
+                                                         pbf::kind(),  sph::kind()};
     return kinds;
 }
 

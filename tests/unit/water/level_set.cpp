@@ -1,10 +1,10 @@
-#include "mac/level_set.hpp"
-#include "mac/extrapolate.hpp"
-#include "mac/water.hpp"
+#include "water/level_set.hpp"
 #include "support.hpp"
+#include "water/extrapolate.hpp"
+#include "water/solver.hpp"
 
 using namespace weir;
-using namespace weir::mac;
+using namespace weir::water;
 
 namespace {
 

@@ -1,12 +1,12 @@
 // The markers of a cell are moved, and exchange momentum with the faces, together; here each is held against interpolation at its own
 // place.
-#include "mac/extrapolate.hpp"
-#include "mac/marker_motion.hpp"
-#include "mac/water_transfer.hpp"
 #include "support.hpp"
+#include "water/extrapolate.hpp"
+#include "water/marker_motion.hpp"
+#include "water/transfer.hpp"
 
 using namespace weir;
-using namespace weir::mac;
+using namespace weir::water;
 
 namespace {
 

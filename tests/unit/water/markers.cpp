@@ -1,11 +1,11 @@
-#include "mac/markers.hpp"
-#include "mac/marker_motion.hpp"
+#include "water/markers.hpp"
 #include "support.hpp"
+#include "water/marker_motion.hpp"
 
 #include <algorithm>
 
 using namespace weir;
-using namespace weir::mac;
+using namespace weir::water;
 
 namespace {
 

@@ -1,11 +1,11 @@
 // The pressure's passes run along lines and skip what holds no liquid; here they are held against the same formulas face by face.
-#include "mac/water_pressure.hpp"
+#include "water/pressure.hpp"
 #include "support.hpp"
 
 #include <algorithm>
 
 using namespace weir;
-using namespace weir::mac;
+using namespace weir::water;
 using poisson::Cell;
 
 namespace {

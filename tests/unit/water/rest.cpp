@@ -9,7 +9,7 @@ namespace {
 /// Largest speed and largest error of the pressure after 20 steps, scaled by √(g H) and ρ g H.
 template <int D>
 void stays_at_rest(const Vec<D>& point, const Vec<D>& normal, const std::string& transfer) {
-    mac::Water<D> water(water_scene(at_rest<D>(point, normal, transfer)));
+    water::Water<D> water(water_scene(at_rest<D>(point, normal, transfer)));
     for (int step = 0; step < 20; ++step) water.step(water.advised_dt());
     const real g = 9.81, depth = 0.5, rho = 1000;
     const Vec<D> n = normal / norm(normal);
@@ -50,7 +50,7 @@ TEST_IN_2D_AND_3D("liquid poured against walls has a level surface up to them: a
     text.replace(from, to - from,
                  fmt::format("liquid = [ {{ shape = \"box\", min = {}, max = {} }} ]", list({"0.0", "0.0", "0.0"}, D),
                              list({"1.25", "0.52", "0.75"}, D)));
-    mac::Water<D> water(water_scene(text));
+    water::Water<D> water(water_scene(text));
     for (int step = 0; step < 10; ++step) water.step(water.advised_dt());
     EXPECT_LT(std::sqrt(integral(water, "kinetic_energy") / 500), 1e-6 * std::sqrt(9.81 * 0.52));
     EXPECT_NEAR(integral(water, "top"), 0.52, 1e-9);

@@ -71,7 +71,7 @@ struct Limits {
 };
 
 template <int D>
-real fastest_marker(const mac::Water<D>& water) {
+real fastest_marker(const water::Water<D>& water) {
     real fastest = 0;
     for (std::size_t p = 0; p < water.markers().count(); ++p) {
         Vec<D> v;
@@ -86,7 +86,7 @@ real fastest_marker(const mac::Water<D>& water) {
 TEST_IN_2D_AND_3D("a layer that slides over a solid without friction keeps its speed, with every transfer") {
     // Exact for all of them: the velocity is constant, and the continued one inside the solid is the same constant.
     for (const std::string transfer : {"grid", "pic", "flip", "apic"}) {
-        mac::Water<D> water(water_scene(sliding_layer<D>(transfer)));
+        water::Water<D> water(water_scene(sliding_layer<D>(transfer)));
         for (int step = 0; step < 30; ++step) water.step(0.02);
         for (std::size_t p = 0; p < water.markers().count() && transfer != "grid"; ++p) {
             ASSERT_NEAR(water.markers().v[0][p], 1, 1e-9) << transfer << ", marker " << p;
@@ -99,7 +99,7 @@ TEST_IN_2D_AND_3D("a layer that slides over a solid without friction keeps its s
 TEST("a front that meets a pillar splashes, but neither feeds on its own splash nor loses its time step") {
     const Limits limits(0.4, 0.025);
     for (const auto& [transfer, radius] : {std::pair{"flip", 0.06}, {"flip", 0.08}, {"apic", 0.075}}) {
-        mac::Water<3> water(water_scene(pillar(transfer, radius)));
+        water::Water<3> water(water_scene(pillar(transfer, radius)));
         while (water.time() < 0.33) {
             const real dt = water.advised_dt();
             ASSERT_GT(dt, limits.dt) << transfer << ", radius " << radius << ", t = " << water.time();
@@ -113,7 +113,7 @@ TEST("a front that meets a pillar splashes, but neither feeds on its own splash 
 TEST_IN_2D_AND_3D("water that a moving solid stirs stays as calm as the solid is") {
     const Limits limits(0.2, 0.03125, 0.63);  // waves stay below half of the depth
     for (const std::string transfer : {"flip", "apic"}) {
-        mac::Water<D> water(water_scene(swinging_ball<D>(transfer)));
+        water::Water<D> water(water_scene(swinging_ball<D>(transfer)));
         while (water.time() < (D == 2 ? 2 : 0.6)) {
             const real dt = water.advised_dt();
             ASSERT_GT(dt, limits.dt) << transfer << ", t = " << water.time();
@@ -125,7 +125,7 @@ TEST_IN_2D_AND_3D("water that a moving solid stirs stays as calm as the solid is
 
 TEST("water at rest sees a body coming: without gravity too it goes a cell a step at most") {
     // cfl = 1: the body's own speed, 5 m/s, must not cross more than one of 32 cells of 1/32 m
-    mac::Water<2> water(water_scene(R"(solver = "mac_water"
+    water::Water<2> water(water_scene(R"(solver = "mac_water"
 dim = 2
 grid = { cells = [32, 32], size = [1.0, 1.0] }
 time = { end = 0.1, cfl = 1.0 }
@@ -140,7 +140,7 @@ solids = [ { shape = "sphere", centre = [0.2, 0.25], radius = 0.1, motion = { ki
 
 TEST("beside solids at rest and moving ones, one thread and three give the same bits") {
     for (const std::string& text : {pillar("flip", 0.08), swinging_ball<3>("flip"), swinging_ball<3>("apic")}) {
-        mac::Water<3> one(water_scene(text)), three(water_scene(text));
+        water::Water<3> one(water_scene(text)), three(water_scene(text));
         for (auto* water : {&one, &three}) {
             set_threads(water == &one ? 1 : 3);
             for (int step = 0; step < 12; ++step) water->step(water->advised_dt());

@@ -10,7 +10,7 @@ namespace {
 
 /// All that a later step depends on, byte for byte.
 template <int D>
-bool same_state(const mac::Water<D>& one, const mac::Water<D>& other) {
+bool same_state(const water::Water<D>& one, const water::Water<D>& other) {
     const auto same = [](const auto& a, const auto& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); };
     bool all = same(one.state().p.values(), other.state().p.values()) && same(one.surface().phi.values(), other.surface().phi.values());
     for (int a = 0; a < D; ++a)
@@ -30,7 +30,7 @@ void run(W& water, int steps) {
 TEST_IN_2D_AND_3D("one thread and three give the same bits, with every transfer") {
     for (const std::string transfer : {"grid", "pic", "flip", "apic"}) {
         const auto scene = water_scene(dam_break<D>(transfer));
-        mac::Water<D> one(scene), three(scene);
+        water::Water<D> one(scene), three(scene);
         set_threads(1);
         run(one, 25);
         set_threads(3);
@@ -44,7 +44,7 @@ TEST_IN_2D_AND_3D("one thread and three give the same bits, with every transfer"
 TEST_IN_2D_AND_3D("a run that is saved and restored goes on bit for bit") {
     for (const std::string transfer : {"grid", "flip", "apic"}) {
         const auto scene = water_scene(dam_break<D>(transfer));
-        mac::Water<D> whole(scene), first(scene), second(scene);
+        water::Water<D> whole(scene), first(scene), second(scene);
         run(whole, 30);
         run(first, 17);
         Checkpoint checkpoint;
@@ -58,7 +58,7 @@ TEST_IN_2D_AND_3D("a run that is saved and restored goes on bit for bit") {
 
 TEST_IN_2D_AND_3D("a collapse keeps its volume to 1%, and gains no energy") {
     for (const std::string transfer : {"grid", "pic", "flip", "apic"}) {
-        mac::Water<D> water(water_scene(dam_break<D>(transfer)));
+        water::Water<D> water(water_scene(dam_break<D>(transfer)));
         const real volume = integral(water, "volume");
         real energy = integral(water, "potential_energy");
         for (int step = 0; step < 40; ++step) {
@@ -75,7 +75,7 @@ TEST("a symmetric collapse stays symmetric to the tolerance of the pressure whil
     // The jitter is mirrored; red-black order and interpolation weights round differently on the two sides, so bits are not asked for.
     auto text = dam_break<2>();
     text.replace(text.find("min = [0.0, 0.0], max = [0.4, 0.6]"), 34, "min = [0.3, 0.0], max = [0.7, 0.6]");
-    mac::Water<2> water(water_scene(text, {{"scheme.poisson.tolerance", "1e-12"}}));
+    water::Water<2> water(water_scene(text, {{"scheme.poisson.tolerance", "1e-12"}}));
     run(water, 8);
     const auto& phi = water.surface().phi;
     real largest = 0;
@@ -93,7 +93,7 @@ TEST_IN_2D_AND_3D("liquid in free flight falls as a stone does, whatever the tra
         auto text = dam_break<D>(transfer);
         const auto from = text.find("liquid"), to = text.find('\n', from);
         text.replace(from, to - from, "liquid = [ { shape = \"sphere\", centre = " + list({"0.5", "0.7", "0.4"}, D) + ", radius = 0.2 } ]");
-        mac::Water<D> water(water_scene(text));
+        water::Water<D> water(water_scene(text));
         const real dt = 0.02;
         for (int step = 0; step < 8; ++step) water.step(dt);
         const real mass = 1000 * integral(water, "volume");
@@ -103,9 +103,9 @@ TEST_IN_2D_AND_3D("liquid in free flight falls as a stone does, whatever the tra
 }
 
 TEST("cells up to four times as long as thin are taken, flatter ones refused at the key that is wrong") {
-    EXPECT_NO_THROW(mac::Water<2>(water_scene(dam_break<2>(), {{"grid.cells", "[16, 64]"}})));
+    EXPECT_NO_THROW(water::Water<2>(water_scene(dam_break<2>(), {{"grid.cells", "[16, 64]"}})));
     try {
-        mac::Water<2>(water_scene(dam_break<2>(), {{"grid.cells", "[16, 65]"}}));
+        water::Water<2>(water_scene(dam_break<2>(), {{"grid.cells", "[16, 65]"}}));
         ADD_FAILURE() << "flatter cells were taken";
     } catch (const BadInput& bad) {
         EXPECT_NE(std::string(bad.what()).find("times as long as thin; water stays stable up to 4 times"), std::string::npos) << bad.what();
@@ -116,7 +116,7 @@ TEST("scenes without liquid, with liquid inside solids, and with liquid outside 
     const std::string head = "solver = \"mac_water\"\ndim = 2\ngrid = { cells = [16, 16], size = [1.0, 1.0] }\ntime = { end = 1.0 }\n";
     const auto refusal = [&](const std::string& rest) -> std::string {
         try {
-            mac::Water<2> water(water_scene(head + rest));
+            water::Water<2> water(water_scene(head + rest));
         } catch (const scene::BadScene& bad) {
             return bad.what();
         }

@@ -41,7 +41,7 @@ TEST_IN_2D_AND_3D("an emitter fills, an open side drains, and surface and marker
     for (const std::string& transfer : D == 2 ? std::vector<std::string>{"flip", "apic"} : std::vector<std::string>{"flip"}) {
         const std::string layer =
             "{ shape = \"box\", min = " + list({"0.0", "0.0", "0.0"}, D) + ", max = " + list({"1.5", "0.1", "1.0"}, D) + " }";
-        mac::Water<D> water(water_scene(poured_tank<D>(transfer, "x_max", layer)));
+        water::Water<D> water(water_scene(poured_tank<D>(transfer, "x_max", layer)));
         real last = most, worst = 0;
         while (water.time() < 3) {
             water.step(water.advised_dt());
@@ -62,7 +62,7 @@ TEST_IN_2D_AND_3D("an emitter fills, an open side drains, and surface and marker
 
 TEST_IN_2D_AND_3D("an emitter pours its cross-section times its speed, and what falls out of the tank leaves nothing behind") {
     for (const std::string transfer : {"grid", "flip"}) {
-        mac::Water<D> water(water_scene(poured_tank<D>(transfer, "y_min", "")));
+        water::Water<D> water(water_scene(poured_tank<D>(transfer, "y_min", "")));
         while (water.time() < 0.3) water.step(water.advised_dt());  // it takes 0.35 s to fall to the bottom
         // A ball's cross-section is that of half cells: right to half of one along the rim, averaged over the rim's many.
         EXPECT_NEAR(integral(water, "volume_target") / poured<D>(0.1, water.time()), 1, 0.05) << transfer;

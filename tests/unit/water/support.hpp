@@ -1,9 +1,8 @@
 // Scenes of water for the tests.
 #pragma once
 #include "core/parallel.hpp"
-#include "mac/kinds.hpp"
-#include "mac/water.hpp"
 #include "support/test.hpp"
+#include "water/solver.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +11,7 @@
 namespace weir::test {
 
 inline scene::Scene water_scene(const std::string& text, const std::vector<scene::Override>& changes = {}) {
-    static const std::vector<scene::SolverSchema> schemas{mac::water_kind().schema};
+    static const std::vector<scene::SolverSchema> schemas{water::kind().schema};
     return scene::parse(text, "water.toml", schemas, changes);
 }
 

@@ -32,7 +32,7 @@ scheme = {{ transfer = "{}" }}
 
 /// Width of the liquid along an axis through the middle [m].
 template <int D>
-real width(const mac::Water<D>& water, int axis) {
+real width(const water::Water<D>& water, int axis) {
     const auto& phi = water.surface().phi;
     const real h = water.state().u.h[axis];
     real sum = 0;
@@ -58,7 +58,7 @@ real width(const mac::Water<D>& water, int axis) {
 TEST_IN_2D_AND_3D("a drop at rest has the pressure of Laplace, and stays at rest") {
     // κ is made of second differences of a distance that is of first order beyond the cells beside the surface: its error does not fall
     // with h. 5% is asked for (1.0% in 2D, 1.8% in 3D), and of the surface's energy at most a thousandth may turn into spurious currents.
-    mac::Water<D> water(water_scene(drop<D>("flip", 0)));
+    water::Water<D> water(water_scene(drop<D>("flip", 0)));
     const real surface_energy = D == 2 ? 2 * pi * radius : 4 * pi * radius * radius;
     for (int step = 0; step < (D == 2 ? 100 : 25); ++step) water.step(water.advised_dt());
     real sum = 0;
@@ -77,7 +77,7 @@ TEST_IN_2D_AND_3D("a drop swings with the period of Rayleigh") {
     const real omega = std::sqrt((D == 2 ? 6 : 8) / (radius * radius * radius)), period = 2 * pi / omega;
     for (const std::string transfer : {"flip", "apic"}) {
         if (D == 3 && transfer == "apic") continue;  // time
-        mac::Water<D> water(water_scene(drop<D>(transfer, 0.05 * omega)));
+        water::Water<D> water(water_scene(drop<D>(transfer, 0.05 * omega)));
         real largest = 0, before = 0, t_before = 0, full = 0;
         while (full == 0 && water.time() < 1.5 * period) {
             water.step(water.advised_dt());
@@ -107,7 +107,7 @@ sides = { y_min = { kind = "wall", slip = "no" } }
 liquid = [ { shape = "box", min = [-1.0, 0.0], max = [2.0, 0.5] } ]
 effects = { gravity = { g = [1.0, -9.81] }, viscosity = {} }
 )";
-        mac::Water<2> water(water_scene(text + "scheme = { transfer = \"" + transfer + "\" }\n"));
+        water::Water<2> water(water_scene(text + "scheme = { transfer = \"" + transfer + "\" }\n"));
         while (water.time() < 6) water.step(dt);  // e^(−ν (π/2H)² t) = 0.003 of it is missing
         real worst = 0;
         for (int j = 0; j < 8; ++j) {

@@ -1,8 +1,8 @@
-#include "mac/water_transfer.hpp"
+#include "water/transfer.hpp"
 #include "support.hpp"
 
 using namespace weir;
-using namespace weir::mac;
+using namespace weir::water;
 
 namespace {
 

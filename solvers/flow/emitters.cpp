@@ -1,0 +1,86 @@
+#include "flow/emitters.hpp"
+
+#include "geometry/shape.hpp"
+
+#include <algorithm>
+
+namespace weir::flow {
+
+namespace {
+
+constexpr std::array<const char*, 2> settable{"smoke", "temperature"};
+
+template <int D, class Position>
+std::vector<std::size_t> covered(const geometry::Shape<D>& shape, const Index<D>& extent, Position position) {
+    std::vector<std::size_t> entries;
+    for (std::size_t i = 0; i < product(extent); ++i) {
+        Index<D> I;
+        std::size_t rest = i;
+        for (int d = 0; d < D; ++d) {
+            I[d] = static_cast<int>(rest % static_cast<std::size_t>(extent[d]));
+            rest /= static_cast<std::size_t>(extent[d]);
+        }
+        if (shape.contains(position(I))) entries.push_back(i);
+    }
+    return entries;
+}
+
+/// t < moment, where a sum of rounded steps that ends at the moment counts as there.
+bool before(real t, real moment) { return t < moment * (1 - 1e-9); }
+
+}  // namespace
+
+template <int D>
+FieldPlan& Emitters<D>::needs(const scene::Scene& scene, FieldPlan& plan) {
+    if (any(scene))
+        for (const auto& table : scene.root().tables("emitters"))
+            for (const char* name : settable)
+                if (table.has(name)) plan.advected(name);
+    return plan;
+}
+
+template <int D>
+Emitters<D>::Emitters(const scene::Scene& scene, const MacVelocity<D>& grid) : cfl_(scene.number("time.cfl")) {
+    for (const auto& table : scene.root().tables("emitters")) {
+        Emitter emitter{table.number("start"), table.number_or("end", infinity), {}};
+        const auto shape = geometry::make_shape<D>(table);
+        for (const char* name : settable)
+            if (table.has(name))
+                emitter.sets.push_back(
+                    {name, -1, table.number(name), covered(*shape, grid.cells, [&](const Index<D>& I) { return grid.cell_centre(I); })});
+        if (table.has("velocity")) {
+            const auto velocity = table.vec<D>("velocity");
+            for (int a = 0; a < D; ++a) {
+                emitter.sets.push_back(
+                    {"", a, velocity[a], covered(*shape, grid[a].extent(), [&](const Index<D>& I) { return grid.face_centre(a, I); })});
+                max_rate_ = std::max(max_rate_, std::abs(velocity[a]) / grid.h[a]);
+            }
+        }
+        emitters_.push_back(std::move(emitter));
+    }
+}
+
+template <int D>
+void Emitters<D>::apply(MacState<D>& s, real) {
+    for (const auto& emitter : emitters_) {
+        if (before(s.time, emitter.start) || !before(s.time, emitter.end)) continue;
+        for (const auto& set : emitter.sets) {
+            auto& values = set.axis < 0 ? s[set.field] : s.u[set.axis];
+            for (const std::size_t i : set.entries) values[i] = set.value;
+        }
+    }
+}
+
+/// No step crosses the moment at which an emitter opens: what it will heat and push is not known before.
+template <int D>
+real Emitters<D>::max_dt(const MacState<D>& s) const {
+    real limit = max_rate_ > 0 ? cfl_ / max_rate_ : infinity;
+    for (const auto& emitter : emitters_)
+        if (before(s.time, emitter.start)) limit = std::min(limit, emitter.start - s.time);
+    return limit;
+}
+
+template class Emitters<2>;
+template class Emitters<3>;
+
+}  // namespace weir::flow

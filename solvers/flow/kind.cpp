@@ -1,0 +1,48 @@
+// What a scene may say to the solver "mac".
+#include "staggered/kind.hpp"
+#include "flow/effects.hpp"
+#include "flow/solver.hpp"
+#include "staggered/inflow.hpp"
+#include "staggered/initial.hpp"
+
+namespace weir::flow {
+
+using scene::Key;
+using scene::Type;
+
+namespace {
+
+/// Inflow profiles are the names that this folder knows.
+Key sides_key() {
+    Key sides{.name = "sides", .type = Type::table};
+    for (const char* axis : {"x", "y", "z"})
+        for (const char* end : {"_min", "_max"}) {
+            Key side{.name = std::string(axis) + end, .type = Type::table};
+            side.variants = {{"inflow",
+                              "",
+                              {{.name = "profile",
+                                .type = Type::choice,
+                                .doc = "uniform; parabolic: the mean of 6 s (1 - s); kovasznay: the exact wake at Re = 1 / viscosity.",
+                                .fallback = std::string("uniform"),
+                                .choices = inflow_profiles()}}}};
+            sides.keys.push_back(std::move(side));
+        }
+    return sides;
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "mac";
+    schema.doc = "Incompressible fluid that fills the domain, on a staggered grid: laminar flows, smoke, heat, moving obstacles.";
+    std::vector<Key> methods = AdvectionOptions::keys();
+    methods.push_back(PoissonChoice::key());
+    schema.keys = {scheme_key(std::move(methods)), sides_key(), initial_keys()};
+    schema.effects = schemas_of(effect_kinds());
+    return {schema,
+            make_without_surface<FlowSolver>,
+            {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""}};
+}
+
+}  // namespace weir::flow

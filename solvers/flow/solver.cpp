@@ -1,0 +1,283 @@
+#include "flow/solver.hpp"
+
+#include "core/error.hpp"
+#include "flow/emitters.hpp"
+#include "staggered/diagnostics.hpp"
+#include "staggered/initial.hpp"
+
+#include <algorithm>
+
+namespace weir::flow {
+
+/// One step of the basic fluid algorithm (Bridson 2015, ch. 2), in one stage along characteristics or in the three of a Runge-Kutta
+/// scheme. Enters and leaves with ∇·u = 0 to the projection's tolerance.
+template <int D>
+StepReport FlowSolver<D>::step(real dt) {
+    real t = state_.time;
+    apply(Stage::source, dt);  // emitters
+    for (const Substep& stage : substeps(options_.scheme)) {
+        const real part = stage.fraction() * dt;
+        remember();                    // uⁿ, qⁿ with their ghosts
+        advect_fields(dt);             // Dq/Dt = 0    only fields that an effect asked for
+        advect_velocity(dt);           // Du/Dt = 0
+        apply(Stage::force, dt);       // u += dt f
+        blend(stage);                  // γ and ζ of a Runge-Kutta stage
+        apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
+        move_solids(t += part);        // u·n = u_solid·n
+        project(part);                 // ∇·u = 0
+    }
+    apply(Stage::finish, dt);
+    clear_solids();
+    state_.time += dt;
+    return report(dt);
+}
+
+namespace {
+
+/// What the scene's effects, emitters and initial values ask for.
+template <int D>
+FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& scene) {
+    FieldPlan plan = effects.plan();
+    Emitters<D>::needs(scene, plan);
+    for (const auto& name : initial_fields(scene)) plan.advected(name);
+    return plan;
+}
+
+/// Fastest crossing of a cell along a moving wall or through an inflow [1/s].
+template <int D>
+real fastest_side(const MacState<D>& s) {
+    real rate = 0;
+    for (int axis = 0; axis < D; ++axis)
+        for (int end = 0; end < 2; ++end)
+            for (int a = 0; a < D; ++a) rate = std::max(rate, std::abs(s.sides.side(axis, end).velocity[a]) / s.u.h[a]);
+    return rate;
+}
+
+/// Where nothing else is said, a room is as warm as its surroundings: the ambient temperature of buoyancy, or of cooling.
+real ambient_temperature(const scene::Scene& scene) {
+    for (const char* effect : {"buoyancy", "cooling"})
+        if (const auto* table = scene.effect(effect)) return table->number("ambient");
+    return 0;
+}
+
+bool lists(const scene::Scene& scene, const std::string& field) {
+    const auto& names = scene.root().texts("output.fields");
+    return std::find(names.begin(), names.end(), field) != names.end();
+}
+
+}  // namespace
+
+template <int D>
+FlowSolver<D>::FlowSolver(const scene::Scene& scene)
+    : effects_(make_effects<D>(effect_kinds(), scene)),
+      state_(scene, field_plan(effects_, scene)),
+      solids_(scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>(), state_),
+      options_(scene.root().table("scheme")),
+      characteristics_(options_),
+      trace_(state_.before, state_.u, state_.sides, options_.trace),
+      field_blend_(state_.fields.size()),
+      projection_(PoissonChoice(scene.root().table("scheme.poisson")), state_),
+      cfl_(scene.number("time.cfl")),
+      side_rate_(fastest_side(state_)),
+      wants_vorticity_(lists(scene, "vorticity")),
+      wants_divergence_(lists(scene, "divergence")) {
+    const auto& cells = state_.cells.values();
+    if (std::none_of(cells.begin(), cells.end(), [](poisson::Cell c) { return c == poisson::Cell::fluid; }))
+        scene.refuse("solids", "the solids leave no cell for the fluid");
+    if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_.u));
+    state_.before = PaddedVelocity<D>(state_.u);
+    if (options_.scheme == Scheme::maccormack) carried_ = PaddedVelocity<D>(state_.u);
+    set_initial_velocity(state_, scene);
+    for (auto& field : state_.fields) {
+        field.before = Padded<D>(state_.extent());
+        if (field.name == "temperature") field.values.fill(ambient_temperature(scene));
+        set_initial_field(field.values, state_.u, scene, field.name);
+    }
+    solids_.set_faces(state_);
+    clear_solids();
+    apply(Stage::source, 0);  // what is emitted from the start is there at the start: the first step knows its forces
+    passes_.reset();
+}
+
+template <int D>
+void FlowSolver<D>::apply(Stage stage, real dt) {
+    effects_.apply(stage, state_, dt, passes_);
+}
+
+template <int D>
+void FlowSolver<D>::remember() {
+    const auto timed = passes_.time("ghosts");
+    for (int a = 0; a < D; ++a) fill(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]);
+    solids_.extend_velocity(state_);
+    for (auto& field : state_.fields) {
+        fill(field.before, field.values, field.boundary);
+        solids_.extend_field(state_, field.before);
+    }
+    trace_.set_max_rate(rate());
+}
+
+template <int D>
+void FlowSolver<D>::advect_fields(real dt) {
+    if (state_.fields.empty()) return;
+    const auto timed = passes_.time("advect fields");
+    for (auto& field : state_.fields) {
+        if (options_.scheme == Scheme::conservative)
+            add_field_flux(field.before, state_.before, state_.solid, state_.u.h, options_.flux, dt, field.values);
+        else
+            characteristics_.advect(field.before, field.boundary, all_cells<D>(state_.extent()), trace_, dt, field.values);
+    }
+}
+
+/// MacCormack carries the velocity less half of the old pressure's push and gets that half back on arrival: the trapezoidal rule along
+/// the path, without which a step is first order in dt (the reflection of Narain, Zehnder & Thomaszewski 2019 in another form).
+template <int D>
+void FlowSolver<D>::advect_velocity(real dt) {
+    const auto timed = passes_.time("advect velocity");
+    const bool second_order = options_.scheme == Scheme::maccormack;
+    const real half_push = 0.5 * dt / state_.rho;
+    if (second_order) add_gradient(state_.u, state_, -half_push);
+    for (int a = 0; a < D; ++a) {
+        const auto& boundary = state_.boundary[static_cast<std::size_t>(a)];
+        const auto faces = free_faces(state_.u, state_.sides, a);
+        if (options_.scheme == Scheme::conservative) {
+            add_momentum_flux(state_.before, state_.u.h, faces, dt, state_.u[a]);
+            continue;
+        }
+        if (second_order) fill(carried_[a], state_.u[a], boundary);
+        characteristics_.advect(second_order ? carried_[a] : state_.before[a], boundary, faces, trace_, dt, state_.u[a]);
+    }
+    if (second_order) add_gradient(state_.u, state_, half_push);
+    sync_periodic(state_.u, state_.sides);
+}
+
+template <int D>
+void FlowSolver<D>::blend(const Substep& stage) {
+    if (options_.scheme != Scheme::conservative) return;
+    const auto timed = passes_.time("blend");
+    for (int a = 0; a < D; ++a) velocity_blend_[static_cast<std::size_t>(a)].blend(stage, state_.before[a], state_.u[a]);
+    for (std::size_t i = 0; i < state_.fields.size(); ++i) field_blend_[i].blend(stage, state_.fields[i].before, state_.fields[i].values);
+}
+
+template <int D>
+void FlowSolver<D>::move_solids(real t) {
+    if (!solids_.any()) return;
+    const auto timed = passes_.time("solids");
+    if (solids_.moving()) {
+        solids_.place(state_, t);
+        projection_.set_matrix(state_);
+    }
+    solids_.set_faces(state_);
+}
+
+template <int D>
+void FlowSolver<D>::project(real dt) {
+    const auto timed = passes_.time("project");
+    report_ = &projection_.project(state_, dt);
+    impulse_ += dt * pressure_force(state_);
+}
+
+/// No smoke stands inside a solid.
+template <int D>
+void FlowSolver<D>::clear_solids() {
+    auto* smoke = state_.find("smoke");
+    if (!solids_.any() || !smoke) return;
+    for_each_cell(state_.extent(), [&](const Index<D>& I) {
+        if (state_.cells(I) == poisson::Cell::solid) (*smoke)(I) = 0;
+    });
+}
+
+/// Largest number of cells that anything crosses in a second.
+template <int D>
+real FlowSolver<D>::rate() const {
+    const real fluid = max_rate(state_.u);
+    return std::isnan(fluid) ? fluid : std::max({fluid, side_rate_, solids_.max_rate(state_)});
+}
+
+template <int D>
+StepReport FlowSolver<D>::report(real dt) {
+    const real fastest = fastest_ = max_rate(state_.u);
+    if (!std::isfinite(fastest)) throw NumericalFailure("velocity", "the velocity is not finite");
+    return {.dt = dt,
+            .cfl = dt * fastest,
+            .max_divergence = max_divergence(state_),
+            .iterations = report_->iterations,
+            .residual_before = report_->residual_before,
+            .residual_after = report_->residual_after,
+            .residual_max = report_->residual_max / (state_.u.h[0] * state_.u.h[0])};
+}
+
+template <int D>
+real FlowSolver<D>::advised_dt() const {
+    const real fastest = rate();
+    return std::min(fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_));
+}
+
+/// Central fluxes are stable while no fluid crosses more than √3 cells a step; paths traced back have no such limit.
+template <int D>
+StepLimit FlowSolver<D>::stable_dt() const {
+    if (options_.scheme != Scheme::conservative) return {};
+    const real fastest = std::isnan(fastest_) ? rate() : std::max({fastest_, side_rate_, solids_.max_rate(state_)});
+    return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
+}
+
+template <int D>
+FieldSet FlowSolver<D>::fields() const {
+    FieldSet set = field_set(state_);
+    if (wants_vorticity_) {
+        vorticity(state_, vorticity_);
+        FieldView view{"vorticity", "1/s", Where::cell, "", {}};
+        for (const auto& component : vorticity_) view.data.push_back(component.values());
+        set.fields.push_back(std::move(view));
+    }
+    if (wants_divergence_) {
+        if (divergence_.empty()) divergence_ = Grid<real, D>(state_.extent());
+        for_each_cell(state_.extent(), [&](const Index<D>& I) {
+            divergence_(I) = state_.cells(I) == poisson::Cell::fluid ? flux_divergence(state_, I) : 0;
+        });
+        set.fields.push_back({"divergence", "1/s", Where::cell, "", {divergence_.values()}});
+    }
+    return set;
+}
+
+template <int D>
+std::vector<Integral> FlowSolver<D>::integrals() const {
+    auto list = flow::integrals(state_);
+    if (!solids_.any()) return list;
+    const Vec<D> force = pressure_force(state_);
+    for (int a = 0; a < D; ++a) {
+        const std::string letter(1, "xyz"[a]);
+        list.push_back({"solid_force_" + letter, D == 2 ? "N/m" : "N", force[a]});
+        list.push_back({"solid_impulse_" + letter, D == 2 ? "N s/m" : "N s", impulse_[a]});
+    }
+    return list;
+}
+
+template <int D>
+void FlowSolver<D>::save(Checkpoint& to) const {
+    state_.save(to);
+    to.put_value("impulse", impulse_);
+}
+
+template <int D>
+void FlowSolver<D>::restore(const Checkpoint& from) {
+    state_.restore(from);
+    fastest_ = not_applicable;
+    impulse_ = from.template get_value<Vec<D>>("impulse");
+    if (!solids_.moving()) return;
+    solids_.place(state_, state_.time);
+    projection_.set_matrix(state_);
+}
+
+template <int D>
+std::size_t FlowSolver<D>::bytes() const {
+    std::size_t total = state_.bytes() + characteristics_.bytes() + projection_.bytes() + solids_.bytes() + effects_.bytes();
+    for (const auto& blend : velocity_blend_) total += blend.bytes();
+    for (const auto& blend : field_blend_) total += blend.bytes();
+    for (const auto& component : carried_.face) total += component.bytes();
+    return total;
+}
+
+template class FlowSolver<2>;
+template class FlowSolver<3>;
+
+}  // namespace weir::flow

@@ -1,0 +1,76 @@
+// Solver "mac": one incompressible fluid that fills the domain, on a staggered grid, with what effects add to it: smoke, heat, forces.
+#pragma once
+#include "core/passes.hpp"
+#include "core/solver.hpp"
+#include "flow/effects.hpp"
+#include "scene/solver_kind.hpp"
+#include "staggered/advection.hpp"
+#include "staggered/conservative.hpp"
+#include "staggered/projection.hpp"
+#include "staggered/solid_faces.hpp"
+#include "staggered/state.hpp"
+#include "staggered/trace.hpp"
+
+#include <optional>
+
+namespace weir::flow {
+
+/// The registered solver "mac".
+scene::SolverKind kind();
+
+template <int D>
+class FlowSolver final : public Solver {
+public:
+    explicit FlowSolver(const scene::Scene& scene);
+
+    StepReport step(real dt) override;
+    real advised_dt() const override;
+    StepLimit stable_dt() const override;
+    FieldSet fields() const override;
+    std::vector<Integral> integrals() const override;
+    real time() const override { return state_.time; }
+    void save(Checkpoint& to) const override;
+    void restore(const Checkpoint& from) override;
+    const Passes& passes() const override { return passes_; }
+    Passes& passes() override { return passes_; }
+    std::size_t bytes() const override;
+    std::vector<EffectPlan> effects() const override { return effects_.plans(); }
+
+    const MacState<D>& state() const { return state_; }
+    MacState<D>& state() { return state_; }
+    /// The report of the last pressure solve.
+    const poisson::Report& pressure_report() const { return *report_; }
+
+private:
+    void apply(Stage stage, real dt);
+    void remember();
+    void advect_fields(real dt);
+    void advect_velocity(real dt);
+    void blend(const Substep& stage);
+    void move_solids(real t);
+    void project(real dt);
+    void clear_solids();
+    real rate() const;
+    StepReport report(real dt);
+
+    Effects<MacState<D>> effects_;
+    MacState<D> state_;
+    SolidPlacement<D> solids_;
+    AdvectionOptions options_;
+    CharacteristicAdvection<D> characteristics_;
+    GridBacktrace<D> trace_;
+    std::array<StageBlend<D>, D> velocity_blend_;
+    std::vector<StageBlend<D>> field_blend_;
+    PaddedVelocity<D> carried_;  // MacCormack: what the flow carries, u less half the old pressure's push
+    Projection<D> projection_;
+    const poisson::Report* report_ = nullptr;
+    Vec<D> impulse_{};  // of the pressure on all solids since the start [N s]
+    real cfl_, side_rate_ = 0;
+    real fastest_ = not_applicable;  // max |u|/h after the last step; not known before the first [1/s]
+    bool wants_vorticity_ = false, wants_divergence_ = false;
+    mutable std::vector<Grid<real, D>> vorticity_;  // filled when somebody looks
+    mutable Grid<real, D> divergence_;
+    Passes passes_;
+};
+
+}  // namespace weir::flow

@@ -1,0 +1,180 @@
+// Viscosity of the fluid and diffusion of what it carries, with constant coefficients.
+//
+// Crank-Nicolson is solved for the correction to the field as the step found it, with the old pressure gradient inside the solve, so
+// that the tangential velocity at walls is right to second order in dt (van Kan 1986):
+//     (I − dt/2 ν∇²)(u* − uⁿ) = (ũ − uⁿ) + dt ν∇²uⁿ − (dt/ρ)∇pⁿ,      u = u* + (dt/ρ)∇pⁿ,      ũ: all explicit rates are in.
+#include "flow/effects.hpp"
+#include "flow/helmholtz.hpp"
+#include "staggered/projection.hpp"
+
+#include <optional>
+
+namespace weir::flow {
+
+namespace {
+
+using scene::Type;
+enum class Time { explicit_, crank_nicolson, implicit };
+
+Time time_named(const std::string& name) {
+    return name == "explicit" ? Time::explicit_ : name == "implicit" ? Time::implicit : Time::crank_nicolson;
+}
+scene::Key time_key() {
+    return {.name = "scheme",
+            .type = Type::choice,
+            .doc = "In time: explicit limits the step to h^2/(2 dim nu); crank-nicolson is second order; implicit damps best.",
+            .fallback = std::string("crank-nicolson"),
+            .choices = {"explicit", "crank-nicolson", "implicit"}};
+}
+/// Share of the Laplacian that is taken at the end of the step.
+real implicit_share(Time time) { return time == Time::implicit ? 1 : 0.5; }
+
+/// Euler's explicit scheme neither oscillates nor grows below dt = 1 / (2 ν Σ 1/h²).
+template <int D>
+real explicit_limit(real nu, const Vec<D>& h) {
+    real sum = 0;
+    for (int a = 0; a < D; ++a) sum += 1 / (h[a] * h[a]);
+    return nu > 0 ? 1 / (2 * nu * sum) : infinity;
+}
+
+/// Diffusion of one quantity from its values `before` the step: explicit, or by an implicit solve.
+template <int D>
+class Diffuser {
+public:
+    Diffuser(const Nodes<D>& nodes, const MacState<D>& s, const Boundary<D>& boundary, Beyond beyond, const Index<D>& extent)
+        : nodes_(nodes), h_(s.u.h), beyond_(beyond), mask_(), rhs_(extent), solver_(nodes, h_, boundary, beyond, extent) {}
+    Mask<D>& mask() { return mask_; }
+    std::size_t bytes() const { return mask_.bytes() + rhs_.size() * sizeof(real) + solver_.bytes(); }
+
+    void add(const Padded<D>& before, real dt_nu, Grid<real, D>& q) {
+        laplacian(before, h_, nodes_, mask_, beyond_, rhs_);
+        for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) { q(I) += dt_nu * rhs_(I); });
+    }
+    void solve(const Padded<D>& before, real dt_nu, Time time, Grid<real, D>& q, const char* what) {
+        laplacian(before, h_, nodes_, mask_, beyond_, rhs_);
+        for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {
+            const real takes_part = mask_.empty() ? 1 : mask_(I);
+            rhs_(I) = takes_part * (q(I) - before(I) + dt_nu * rhs_(I));
+        });
+        solver_.solve(rhs_, implicit_share(time) * dt_nu, mask_, what);
+        for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {
+            if (mask_.empty() || mask_(I) != 0) q(I) = before(I) + rhs_(I);
+        });
+    }
+
+private:
+    Nodes<D> nodes_;
+    Vec<D> h_;
+    Beyond beyond_;
+    Mask<D> mask_;
+    Grid<real, D> rhs_;
+    Helmholtz<D> solver_;
+};
+
+/// Marks the nodes whose weight is positive.
+template <int D, class Weight>
+void set_mask(Mask<D>& mask, const Index<D>& extent, Weight weight) {
+    if (mask.empty()) mask = Mask<D>(extent);
+    for_each_cell(extent, [&](const Index<D>& I) { mask(I) = weight(I) ? 1 : 0; });
+    fill_ghosts(mask, Boundary<D>{});
+}
+
+/// du/dt = ν ∇²u
+template <int D>
+struct Viscosity final : MacEffect<D> {
+    Time time;
+    std::vector<Diffuser<D>> axes;
+    Viscosity(const scene::Table& table, const scene::Scene&) : time(time_named(table.text("scheme"))) {}
+    Stage stage() const override { return time == Time::explicit_ ? Stage::force : Stage::implicit; }
+    void apply(MacState<D>& s, real dt) override {
+        if (s.nu == 0) return;
+        prepare(s);
+        if (time != Time::explicit_) add_gradient(s.u, s, -dt / s.rho);
+        for (int a = 0; a < D; ++a) {
+            auto& axis = axes[static_cast<std::size_t>(a)];
+            if (time == Time::explicit_)
+                axis.add(s.before[a], dt * s.nu, s.u[a]);
+            else
+                axis.solve(s.before[a], dt * s.nu, time, s.u[a], "velocity");
+        }
+        sync_periodic(s.u, s.sides);
+        if (time != Time::explicit_) add_gradient(s.u, s, dt / s.rho);
+    }
+    real max_dt(const MacState<D>& s) const override { return time == Time::explicit_ ? explicit_limit<D>(s.nu, s.u.h) : infinity; }
+    std::size_t bytes() const override {
+        std::size_t total = 0;
+        for (const auto& axis : axes) total += axis.bytes();
+        return total;
+    }
+
+private:
+    void prepare(const MacState<D>& s) {
+        for (int a = static_cast<int>(axes.size()); a < D; ++a)
+            axes.emplace_back(free_faces(s.u, s.sides, a), s, s.boundary[static_cast<std::size_t>(a)], Beyond::value, s.u[a].extent());
+        if (!s.solid.any()) return;
+        for (std::size_t a = 0; a < D; ++a)
+            set_mask(axes[a].mask(), s.solid.open[a].extent(), [&](const Index<D>& I) { return s.solid.open[a](I) > 0; });
+    }
+};
+
+/// dq/dt = κ ∇²q for the temperature, the smoke, or both; nothing passes into solids.
+template <int D>
+struct Diffusion final : MacEffect<D> {
+    struct Carried {
+        std::string name;
+        real kappa;
+        std::optional<Diffuser<D>> diffuser;
+    };
+    Time time;
+    std::vector<Carried> list;
+    Diffusion(const scene::Table& table, const scene::Scene&) : time(time_named(table.text("scheme"))) {
+        for (const char* name : {"temperature", "smoke"})
+            if (table.has(name) && table.number(name) > 0) list.push_back({name, table.number(name), {}});
+    }
+    Stage stage() const override { return time == Time::explicit_ ? Stage::force : Stage::implicit; }
+    void needs(FieldPlan& plan) const override {
+        for (const auto& carried : list) plan.advected(carried.name);
+    }
+    void apply(MacState<D>& s, real dt) override {
+        for (auto& carried : list) {
+            const auto field = std::find_if(s.fields.begin(), s.fields.end(), [&](const auto& f) { return f.name == carried.name; });
+            if (!carried.diffuser) carried.diffuser.emplace(all_cells<D>(s.extent()), s, field->boundary, Beyond::no_flux, s.extent());
+            if (s.solid.any())
+                set_mask(carried.diffuser->mask(), s.extent(), [&](const Index<D>& I) { return s.cells(I) == poisson::Cell::fluid; });
+            if (time == Time::explicit_)
+                carried.diffuser->add(field->before, dt * carried.kappa, field->values);
+            else
+                carried.diffuser->solve(field->before, dt * carried.kappa, time, field->values, carried.name.c_str());
+        }
+    }
+    real max_dt(const MacState<D>& s) const override {
+        real limit = infinity;
+        for (const auto& carried : list)
+            if (time == Time::explicit_) limit = std::min(limit, explicit_limit<D>(carried.kappa, s.u.h));
+        return limit;
+    }
+    std::size_t bytes() const override {
+        std::size_t total = 0;
+        for (const auto& carried : list) total += carried.diffuser ? carried.diffuser->bytes() : 0;
+        return total;
+    }
+};
+
+scene::Key diffusivity(const char* name) {
+    return {.name = name, .type = Type::number, .doc = std::string("Diffusivity of the ") + name + ".", .unit = "m^2/s", .min = 0};
+}
+
+}  // namespace
+
+EffectKind viscosity() {
+    return effect_kind<Viscosity>({"viscosity", "Friction inside the fluid, with fluid.viscosity.", {time_key()}, {"fluid.viscosity"}});
+}
+
+EffectKind diffusion() {
+    return effect_kind<Diffusion>({"diffusion",
+                                   "Temperature or smoke spreads by itself.",
+                                   {time_key(), diffusivity("temperature"), diffusivity("smoke")},
+                                   {"temperature", "smoke"}});
+}
+
+}  // namespace weir::flow

@@ -1,0 +1,49 @@
+// Advection along characteristics: semi-Lagrangian (Stam 1999) and MacCormack's two-pass correction of it (Selle, Fedkiw, Kim, Liu &
+// Rossignac 2008), for a velocity component or a cell field alike.
+#pragma once
+#include "core/grid.hpp"
+#include "scene/scene.hpp"
+#include "staggered/ghosts.hpp"
+#include "staggered/trace.hpp"
+
+namespace weir::staggered {
+
+enum class Scheme { semi_lagrangian, maccormack, conservative };
+enum class Interpolation { linear, cubic, monotone_cubic };
+/// What MacCormack does with a value outside the nodes that surround the departure point (Selle et al. 2008, section 3.3).
+enum class Limiter { clamp, revert, none };
+enum class Flux { central, van_leer };
+
+struct AdvectionOptions {
+    Scheme scheme = Scheme::maccormack;
+    Interpolation interpolation = Interpolation::linear;
+    std::string trace = "rk2";
+    Limiter limiter = Limiter::clamp;
+    Flux flux = Flux::van_leer;  // of cell fields under `conservative`
+
+    AdvectionOptions() = default;
+    explicit AdvectionOptions(const scene::Table& scheme);
+    static std::vector<scene::Key> keys();
+};
+
+template <int D>
+class CharacteristicAdvection {
+public:
+    explicit CharacteristicAdvection(const AdvectionOptions& options) : options_(options) {}
+    /// q(I) = source(departure point of I) on `nodes`; source must have its ghosts.
+    void advect(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
+                Grid<real, D>& q);
+    std::size_t bytes() const;
+
+private:
+    void sample(const Padded<D>& field, const Index<D>& first, int axis, const Displacement<D>& x, int count, real* out) const;
+    void semi_lagrangian(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, Grid<real, D>& q) const;
+    void predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt);
+    void correct(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, Grid<real, D>& q) const;
+
+    AdvectionOptions options_;
+    std::array<Padded<D>, D + 1> predicted_;  // q̂, one per kind of node: they differ in extent
+    Grid<real, D> low_, high_;                // of the nodes around each departure point
+};
+
+}  // namespace weir::staggered

@@ -1,0 +1,28 @@
+#include "staggered/effects.hpp"
+
+namespace weir::staggered {
+
+std::vector<scene::Variant> schemas_of(const EffectKinds& kinds) {
+    std::vector<scene::Variant> list;
+    for (const auto& kind : kinds) list.push_back(kind.schema);
+    return list;
+}
+
+template <int D>
+Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& scene) {
+    Effects<MacState<D>> effects;
+    for (const auto& kind : kinds) {
+        const scene::Table* table = scene.effect(kind.schema.name);
+        if (!table) continue;
+        if constexpr (D == 2)
+            effects.add(kind.schema.name, kind.make_2d(*table, scene));
+        else
+            effects.add(kind.schema.name, kind.make_3d(*table, scene));
+    }
+    return effects;
+}
+
+template Effects<MacState<2>> make_effects(const EffectKinds&, const scene::Scene&);
+template Effects<MacState<3>> make_effects(const EffectKinds&, const scene::Scene&);
+
+}  // namespace weir::staggered

@@ -1,0 +1,45 @@
+// Gravity: a constant acceleration of all fluid.
+#include "staggered/effects.hpp"
+
+namespace weir::staggered {
+
+namespace {
+
+using scene::Type;
+
+/// du/dt = g
+template <int D>
+struct Gravity final : MacEffect<D> {
+    Vec<D> g;
+    real cfl;
+    Gravity(const scene::Table& table, const scene::Scene& scene) : g(table.vec<D>("g")), cfl(scene.number("time.cfl")) {}
+    Stage stage() const override { return Stage::force; }
+    void apply(MacState<D>& s, real dt) override {
+        for (int a = 0; a < D; ++a) {
+            const real du = dt * g[a];
+            if (du != 0) for_each_free_face(s.u, s.sides, a, [&](const Index<D>& I) { s.u[a](I) += du; });
+        }
+    }
+    real max_dt(const MacState<D>& s) const override {
+        real limit = infinity;
+        for (int a = 0; a < D; ++a) limit = std::min(limit, acceleration_limit(std::abs(g[a]), s.u.h[a], cfl));
+        return limit;
+    }
+};
+
+}  // namespace
+
+EffectKind gravity() {
+    return effect_kind<Gravity>({"gravity",
+                                 "A constant acceleration of all fluid.",
+                                 {{.name = "g",
+                                   .type = Type::numbers,
+                                   .doc = "Acceleration.",
+                                   .unit = "m/s^2",
+                                   .required = true,
+                                   .length = -1,
+                                   .example = "g = [0.0, -9.81]"}},
+                                 {"g"}});
+}
+
+}  // namespace weir::staggered

@@ -1,0 +1,32 @@
+// What the kinds of solvers on this grid share: the dimension chosen, the table "scheme".
+#pragma once
+#include "core/solver.hpp"
+#include "scene/scene.hpp"
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace weir::staggered {
+
+/// The solver S of the scene's dimension.
+template <template <int> class S>
+std::unique_ptr<Solver> make(const scene::Scene& scene) {
+    if (scene.dim() == 2) return std::make_unique<S<2>>(scene);
+    return std::make_unique<S<3>>(scene);
+}
+
+/// The same for solvers that have no free surface: liquid in a part of the domain is a mistake there.
+template <template <int> class S>
+std::unique_ptr<Solver> make_without_surface(const scene::Scene& scene) {
+    if (!scene.root().tables("liquid").empty())
+        scene.refuse("liquid", "solver \"" + scene.solver() + "\" has no free surface and no use for liquid",
+                     "solver \"mac_water\" has one");
+    return make<S>(scene);
+}
+
+inline scene::Key scheme_key(std::vector<scene::Key> keys) {
+    return {.name = "scheme", .type = scene::Type::table, .doc = "Numerical methods, by name.", .keys = std::move(keys)};
+}
+
+}  // namespace weir::staggered

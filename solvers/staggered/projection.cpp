@@ -1,0 +1,173 @@
+#include "staggered/projection.hpp"
+
+namespace weir::staggered {
+
+using poisson::Cell;
+
+PoissonChoice::PoissonChoice(const scene::Table& table) : method(table.text("method")) {
+    options.tolerance = table.number("tolerance");
+    options.max_iterations = static_cast<int>(table.integer("max_iterations"));
+    options.fixed_iterations = table.flag("fixed");
+}
+
+scene::Key PoissonChoice::key() {
+    std::vector<std::string> names;
+    for (const auto& method : poisson::methods()) names.push_back(method.name);
+    using scene::Type;
+    return {
+        .name = "poisson",
+        .type = Type::table,
+        .doc = "How the pressure equation is solved.",
+        .keys = {
+            {.name = "method", .type = Type::choice, .doc = "Solver.", .fallback = std::string("multigrid"), .choices = names},
+            {.name = "tolerance", .type = Type::number, .doc = "Residual over right-hand side.", .fallback = 1e-8, .min = 1e-15, .max = 1},
+            {.name = "max_iterations", .type = Type::integer, .doc = "More are a failure.", .fallback = std::int64_t{1000}, .min = 1},
+            {.name = "fixed", .type = Type::flag, .doc = "Run exactly max_iterations and take what comes.", .fallback = false}}};
+}
+
+template <int D>
+real flux_divergence(const MacState<D>& s, const Index<D>& I) {
+    if (!s.solid.any()) return divergence(s.u, I);
+    real sum = 0;
+    for (int a = 0; a < D; ++a) {
+        const auto &w = s.solid.open[static_cast<std::size_t>(a)], &v = s.solid.velocity[static_cast<std::size_t>(a)];
+        const auto flux = [&](const Index<D>& F) { return w(F) * s.u[a](F) + (1 - w(F)) * v(F); };
+        sum += (flux(I + e<D>(a)) - flux(I)) / s.u.h[a];
+    }
+    return sum;
+}
+
+template <int D>
+void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count, real* out) {
+    std::fill_n(out, count, 0.0);
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        const real *below = &s.u[a](first), h = s.u.h[a];
+        const std::ptrdiff_t up = s.u[a].stride(a);
+        if (!s.solid.any()) {
+#pragma omp simd
+            for (int i = 0; i < count; ++i) out[i] += (below[i + up] - below[i]) / h;
+            continue;
+        }
+        const real *w = &s.solid.open[at](first), *v = &s.solid.velocity[at](first);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const real lower = w[i] * below[i] + (1 - w[i]) * v[i], upper = w[i + up] * below[i + up] + (1 - w[i + up]) * v[i + up];
+            out[i] += (upper - lower) / h;
+        }
+    }
+}
+
+template <int D>
+real max_divergence(const MacState<D>& s) {
+    return max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? std::abs(flux_divergence(s, I)) : 0; });
+}
+
+template <int D>
+void add_gradient(MacVelocity<D>& u, const MacState<D>& s, real factor) {
+    for (int a = 0; a < D; ++a) {
+        const real f = factor / u.h[a];
+        const Grid<real, D>* open = s.solid.any() ? &s.solid.open[static_cast<std::size_t>(a)] : nullptr;
+        const auto add = [&](const Index<D>& I, real difference) {
+            if (!open || (*open)(I) > 0) u[a](I) += f * difference;
+        };
+        for_each_row(e<D>(a), u.cells, [&](const Index<D>& first, int count) {
+            const real *p = &s.p(first), *below = &s.p(first - e<D>(a)), *w = open ? &(*open)(first) : nullptr;
+            real* out = &u[a](first);
+            if (w) {
+                for (int i = 0; i < count; ++i) out[i] += w[i] > 0 ? f * (p[i] - below[i]) : 0;
+            } else {
+#pragma omp simd
+                for (int i = 0; i < count; ++i) out[i] += f * (p[i] - below[i]);
+            }
+        });
+        const int n = u.cells[a];
+        const Index<D> first{};
+        Index<D> end = u.cells;
+        end[a] = 1;
+        if (s.sides.periodic(a))
+            for_each_in(first, end, [&](Index<D> I) {
+                Index<D> before = I;
+                before[a] = n - 1;
+                add(I, s.p(I) - s.p(before));
+            });
+        // on an open side p = 0 stands half a cell from the cell's centre
+        if (s.sides.open(a, 0)) for_each_in(first, end, [&](const Index<D>& I) { add(I, 2 * s.p(I)); });
+        if (s.sides.open(a, 1))
+            for_each_in(first, end, [&](Index<D> I) {
+                Index<D> inside = I;
+                inside[a] = n - 1;
+                I[a] = n;
+                add(I, -2 * s.p(inside));
+            });
+    }
+    sync_periodic(u, s.sides);
+}
+
+template <int D>
+Projection<D>::Projection(const PoissonChoice& choice, const MacState<D>& s)
+    : solver_(poisson::make_solver<D>(choice.method, choice.options)), rhs_(s.extent()) {
+    bool open = false;
+    for (int a = 0; a < D; ++a) {
+        const real ratio = s.u.h[0] / s.u.h[a];
+        matrix_.axis_weight[a] = ratio * ratio;
+        matrix_.periodic[static_cast<std::size_t>(a)] = s.sides.periodic(a);
+        open = open || s.sides.open(a, 0) || s.sides.open(a, 1);
+    }
+    if (open || s.solid.any())
+        for (int a = 0; a < D; ++a) matrix_.weight[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent(), 1);
+    set_matrix(s);
+}
+
+template <int D>
+void Projection<D>::set_matrix(const MacState<D>& s) {
+    matrix_.cells = s.cells;
+    for (int a = 0; a < D && !matrix_.weight[0].empty(); ++a) {
+        auto& weight = matrix_.weight[static_cast<std::size_t>(a)];
+        for_each_cell(weight.extent(), [&](const Index<D>& I) {
+            const int end = I[a] == 0 ? 0 : I[a] == s.u.cells[a] ? 1 : -1;
+            const real open = s.solid.any() ? s.solid.open[static_cast<std::size_t>(a)](I) : 1;
+            const real side = end < 0 || s.sides.periodic(a) ? 1 : s.sides.open(a, end) ? 2 : 0;  // 2: p = 0 half a cell away
+            weight(I) = side * open;
+        });
+    }
+    solver_->setup(matrix_);
+}
+
+/// rhs = scale ∇·u, everywhere: the solver looks only at fluid cells.
+template <int D>
+static void set_rhs(const MacState<D>& s, real scale, Grid<real, D>& rhs) {
+    for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
+        real* out = &rhs(first);
+        flux_divergence_row(s, first, count, out);
+        for (int i = 0; i < count; ++i) out[i] *= scale;
+    });
+}
+
+template <int D>
+const poisson::Report& Projection<D>::project(MacState<D>& s, real dt) {
+    set_rhs(s, -s.u.h[0] * s.u.h[0] * s.rho / dt, rhs_);
+    const poisson::Report& report = solver_->solve(s.p, rhs_);
+    add_gradient(s.u, s, -dt / s.rho);
+    return report;
+}
+
+template <int D>
+std::size_t Projection<D>::bytes() const {
+    std::size_t total = solver_->bytes() + rhs_.size() * sizeof(real) + matrix_.cells.size();
+    for (const auto& weight : matrix_.weight) total += weight.size() * sizeof(real);
+    return total;
+}
+
+template real flux_divergence(const MacState<2>&, const Index<2>&);
+template real flux_divergence(const MacState<3>&, const Index<3>&);
+template void flux_divergence_row(const MacState<2>&, const Index<2>&, int, real*);
+template void flux_divergence_row(const MacState<3>&, const Index<3>&, int, real*);
+template real max_divergence(const MacState<2>&);
+template real max_divergence(const MacState<3>&);
+template void add_gradient(MacVelocity<2>&, const MacState<2>&, real);
+template void add_gradient(MacVelocity<3>&, const MacState<3>&, real);
+template class Projection<2>;
+template class Projection<3>;
+
+}  // namespace weir::staggered

@@ -1,0 +1,50 @@
+// The pressure projection: the nearest velocity without divergence that no solid stops (Chorin 1968; Batty, Bertails & Bridson 2007;
+// Ng, Min & Gibou 2009):     Σ_faces w (p(I) − p(N)) = −h² (ρ/dt) ∇·(w u + (1 − w) u_solid),      u −= (dt/ρ) ∇p.
+#pragma once
+#include "poisson/poisson.hpp"
+#include "staggered/state.hpp"
+
+#include <memory>
+#include <string>
+
+namespace weir::staggered {
+
+struct PoissonChoice {
+    std::string method = "multigrid";
+    poisson::Options options;
+    PoissonChoice() = default;
+    explicit PoissonChoice(const scene::Table& table);
+    static scene::Key key();
+};
+
+/// Volume that leaves cell I per unit of volume and time [1/s]: through the open part of its faces with the fluid, through the rest with
+/// the solid.
+template <int D>
+real flux_divergence(const MacState<D>& s, const Index<D>& I);
+/// The same for the cells first, first + 1, .. of a row.
+template <int D>
+void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count, real* out);
+template <int D>
+real max_divergence(const MacState<D>& s);
+
+/// u += factor ∇p on free faces that are not closed; p = 0 on open sides.
+template <int D>
+void add_gradient(MacVelocity<D>& u, const MacState<D>& s, real factor);
+
+template <int D>
+class Projection {
+public:
+    Projection(const PoissonChoice& choice, const MacState<D>& s);
+    /// To be called when solids moved.
+    void set_matrix(const MacState<D>& s);
+    /// Solves for s.p, which is the first guess, and makes s.u free of divergence.
+    const poisson::Report& project(MacState<D>& s, real dt);
+    std::size_t bytes() const;
+
+private:
+    std::unique_ptr<poisson::Solver<D>> solver_;
+    poisson::Operator<D> matrix_;
+    Grid<real, D> rhs_;
+};
+
+}  // namespace weir::staggered

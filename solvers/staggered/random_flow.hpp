@@ -1,0 +1,13 @@
+// Random velocities without divergence: differences of random potentials around each face cancel around each cell, up to round-off.
+#pragma once
+#include "staggered/velocity.hpp"
+
+#include <cstdint>
+
+namespace weir::staggered {
+
+/// u = ∇ × ψ with ψ (2D: on corners; 3D: on edges) uniform in ± speed h / 2, from `seed`; periodic in all axes, so valid on any sides.
+template <int D>
+void set_random_flow(MacVelocity<D>& u, real speed, std::uint64_t seed);
+
+}  // namespace weir::staggered

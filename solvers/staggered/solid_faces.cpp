@@ -1,0 +1,184 @@
+#include "staggered/solid_faces.hpp"
+
+#include "core/parallel.hpp"
+
+#include <algorithm>
+
+namespace weir::staggered {
+
+using poisson::Cell;
+
+namespace {
+
+/// Open fraction of the face on the lower side along `a` of cell I, from the distances at its corners.
+template <int D>
+real fraction(const Grid<real, D>& corner, int a, const Index<D>& I) {
+    const Index<D> eb = e<D>((a + 1) % D);
+    real open = 0;
+    if constexpr (D == 2) {
+        open = geometry::fraction_positive(corner(I), corner(I + eb));
+    } else {
+        const Index<D> ec = e<D>((a + 2) % D);
+        open = geometry::fraction_positive(std::array<real, 4>{corner(I), corner(I + eb), corner(I + eb + ec), corner(I + ec)});
+    }
+    return open < least_open_fraction ? 0 : open;
+}
+
+/// Component b at a face along a: itself, or the mean of the four faces around it.
+template <int D>
+real component_at(const PaddedVelocity<D>& u, int b, int a, const Index<D>& I) {
+    if (b == a) return u[a](I);
+    const Index<D> below = I - e<D>(a);
+    return 0.25 * ((u[b](I) + u[b](below)) + (u[b](I + e<D>(b)) + u[b](below + e<D>(b))));
+}
+
+}  // namespace
+
+template <int D>
+SolidPlacement<D>::SolidPlacement(geometry::Solids<D> solids, MacState<D>& state) : solids_(std::move(solids)) {
+    if (!any()) return;
+    state.allocate_solids();
+    corner_ = Grid<real, D>(state.extent() + Index<D>::constant(1));
+    place(state, 0);
+}
+
+template <int D>
+void SolidPlacement<D>::place(MacState<D>& s, real t) {
+    if (!any()) return;
+    solids_.set_time(t);
+    for_each_cell(corner_.extent(), [&](const Index<D>& I) {
+        Vec<D> x;
+        for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
+        corner_(I) = solids_.distance(x);
+    });
+    for (int a = 0; a < D; ++a) {
+        auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
+        for_each_cell(open.extent(), [&](const Index<D>& I) {
+            open(I) = fraction(corner_, a, I);
+            velocity(I) = open(I) < 1 ? solids_.velocity(s.u.face_centre(a, I))[a] : 0;
+        });
+    }
+    for_each_cell(s.extent(), [&](const Index<D>& I) {
+        real open = 0;
+        for (int a = 0; a < D; ++a) {
+            const auto& w = s.solid.open[static_cast<std::size_t>(a)];
+            open += w(I) + w(I + e<D>(a));
+        }
+        s.cells(I) = open > 0 ? Cell::fluid : Cell::solid;
+    });
+    find_extended(s);
+}
+
+template <int D>
+void SolidPlacement<D>::set_faces(MacState<D>& s) const {
+    if (!any()) return;
+    for (int a = 0; a < D; ++a) {
+        const auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
+        for_each_free_face(s.u, s.sides, a, [&](const Index<D>& I) {
+            if (open(I) == 0) s.u[a](I) = velocity(I);
+        });
+    }
+}
+
+/// Closed faces of free-slip solids that have an open neighbour along the grid, with the solid's normal there.
+template <int D>
+void SolidPlacement<D>::find_extended(const MacState<D>& s) {
+    extended_.clear();
+    for (int a = 0; a < D; ++a) {
+        const auto& open = s.solid.open[static_cast<std::size_t>(a)];
+        const auto is_open = [&](const Index<D>& N) { return open.contains(N) && open(N) > 0; };
+        const auto beside_open = [&](const Index<D>& I) {
+            for (int b = 0; b < D; ++b)
+                if (is_open(I - e<D>(b)) || is_open(I + e<D>(b))) return true;
+            return false;
+        };
+        for (std::size_t at = 0; at < open.size(); ++at) {
+            if (open[at] > 0) continue;
+            const Index<D> I = index_of<D>(open.extent(), at);
+            if (I[a] == 0 || I[a] == s.u.cells[a] || !beside_open(I)) continue;
+            const Vec<D> x = s.u.face_centre(a, I);
+            if (solids_[solids_.nearest(x)].no_slip) continue;
+            extended_.push_back({a, I, solids_.normal(x, 1e-3 * s.u.h[a]), solids_.velocity(x), 0});
+        }
+    }
+}
+
+/// The mean of the open neighbours, then without what would pass through the solid: u ← u − ((u − u_solid)·n) n. Left in, it feeds the
+/// flow beside the solid and grows.
+template <int D>
+void SolidPlacement<D>::extend_velocity(MacState<D>& s) const {
+    if (extended_.empty()) return;
+    const int count = static_cast<int>(extended_.size());
+    parallel_for(0, count, [&](int i) {
+        const Extended& f = extended_[static_cast<std::size_t>(i)];
+        const auto& open = s.solid.open[static_cast<std::size_t>(f.axis)];
+        real sum = 0;
+        int known = 0;
+        for (int b = 0; b < D; ++b) {
+            real pair = 0;  // the two neighbours along an axis are added first, so that a mirror changes nothing
+            for (const Index<D>& N : {f.face - e<D>(b), f.face + e<D>(b)})
+                if (open.contains(N) && open(N) > 0) pair += s.u[f.axis](N), ++known;
+            sum += pair;
+        }
+        s.before[f.axis](f.face) = sum / known;
+    });
+    parallel_for(0, count, [&](int i) {
+        Extended& f = extended_[static_cast<std::size_t>(i)];
+        real through = 0;
+        for (int b = 0; b < D; ++b) through += (component_at(s.before, b, f.axis, f.face) - f.velocity[b]) * f.normal[b];
+        f.value = s.before[f.axis](f.face) - through * f.normal[f.axis];
+    });
+    parallel_for(0, count, [&](int i) {
+        const Extended& f = extended_[static_cast<std::size_t>(i)];
+        s.before[f.axis](f.face) = f.value;
+    });
+}
+
+template <int D>
+void SolidPlacement<D>::extend_field(const MacState<D>& s, Padded<D>& before) const {
+    if (!any()) return;
+    for_each_cell(s.extent(), [&](const Index<D>& I) {
+        if (s.cells(I) != Cell::solid) return;
+        real sum = 0;
+        int count = 0;
+        for (int b = 0; b < D; ++b) {
+            real pair = 0;
+            for (const Index<D>& N : {I - e<D>(b), I + e<D>(b)})
+                if (s.cells.contains(N) && s.cells(N) != Cell::solid) pair += before(N), ++count;
+            sum += pair;
+        }
+        if (count > 0) before(I) = sum / count;
+    });
+}
+
+template <int D>
+real SolidPlacement<D>::max_rate(const MacState<D>& s) const {
+    if (!any() || !moving()) return 0;
+    real rate = 0;
+    for (int a = 0; a < D; ++a) {
+        const auto& velocity = s.solid.velocity[static_cast<std::size_t>(a)];
+        rate = std::max(rate, max_over(velocity.extent(), [&](const Index<D>& I) { return std::abs(velocity(I)); }) / s.u.h[a]);
+    }
+    return rate;
+}
+
+template <int D>
+Vec<D> pressure_force(const MacState<D>& s) {
+    Vec<D> force{};
+    if (!s.solid.any()) return force;
+    for (int a = 0; a < D; ++a) {
+        const auto& open = s.solid.open[static_cast<std::size_t>(a)];
+        const real area = s.u.cell_volume() / s.u.h[a];
+        force[a] = area * sum_over(s.extent(), [&](const Index<D>& I) {
+                       return s.cells(I) == Cell::fluid ? s.p(I) * (open(I) - open(I + e<D>(a))) : 0;
+                   });
+    }
+    return force;
+}
+
+template class SolidPlacement<2>;
+template class SolidPlacement<3>;
+template Vec<2> pressure_force(const MacState<2>&);
+template Vec<3> pressure_force(const MacState<3>&);
+
+}  // namespace weir::staggered

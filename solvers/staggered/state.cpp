@@ -1,0 +1,103 @@
+#include "staggered/state.hpp"
+
+#include <stdexcept>
+
+namespace weir::staggered {
+
+namespace {
+
+constexpr const char* component_names[] = {"u_x", "u_y", "u_z"};
+
+template <class Fields>
+auto find_in(Fields& fields, std::string_view name) -> decltype(&fields.front().values) {
+    for (auto& field : fields)
+        if (field.name == name) return &field.values;
+    return nullptr;
+}
+
+}  // namespace
+
+template <int D>
+Lattice<D>::Lattice(const scene::Scene& scene) : cells(scene.index<D>("grid.cells")) {
+    const Vec<D> size = scene.vec<D>("grid.size");
+    if (scene.has("grid.origin")) origin = scene.vec<D>("grid.origin");
+    for (int d = 0; d < D; ++d) h[d] = size[d] / cells[d];
+}
+
+template <int D>
+MacState<D>::MacState(const scene::Scene& scene, const FieldPlan& plan) : sides(scene) {
+    const Lattice<D> lattice(scene);
+    u = MacVelocity<D>(lattice.cells, lattice.h, lattice.origin);
+    p = Grid<real, D>(u.cells);
+    cells = Grid<poisson::Cell, D>(u.cells, poisson::Cell::fluid);
+    for (const auto& name : plan.advected_fields()) fields.push_back({name, Grid<real, D>(u.cells), {}, field_boundary(sides, name)});
+    for (const auto& name : plan.scratch_fields()) scratch.push_back({name, Grid<real, D>(u.cells), {}, {}});
+    rho = scene.number("fluid.density");
+    nu = scene.number("fluid.viscosity");
+    for (int a = 0; a < D; ++a) boundary[static_cast<std::size_t>(a)] = velocity_boundary(sides, u, a, nu);
+}
+
+template <int D>
+Grid<real, D>* MacState<D>::find(std::string_view name) {
+    return find_in(fields, name);
+}
+
+template <int D>
+const Grid<real, D>* MacState<D>::find(std::string_view name) const {
+    return find_in(fields, name);
+}
+
+template <int D>
+Grid<real, D>& MacState<D>::operator[](std::string_view name) {
+    if (auto* field = find(name)) return *field;
+    throw std::logic_error("no effect asked for the field \"" + std::string(name) + "\"");
+}
+
+template <int D>
+Grid<real, D>& MacState<D>::scratch_field(std::string_view name) {
+    if (auto* field = find_in(scratch, name)) return *field;
+    throw std::logic_error("no effect asked for the scratch field \"" + std::string(name) + "\"");
+}
+
+template <int D>
+void MacState<D>::allocate_solids() {
+    for (int a = 0; a < D; ++a) {
+        solid.open[static_cast<std::size_t>(a)] = Grid<real, D>(u[a].extent(), 1);
+        solid.velocity[static_cast<std::size_t>(a)] = Grid<real, D>(u[a].extent());
+    }
+}
+
+template <int D>
+void MacState<D>::save(Checkpoint& to) const {
+    for (int a = 0; a < D; ++a) to.put(component_names[a], u[a].values());
+    to.put("p", p.values());
+    to.put("cells", cells.values());
+    for (const auto& field : fields) to.put("field." + field.name, field.values.values());
+    to.put_value("time", time);
+}
+
+template <int D>
+void MacState<D>::restore(const Checkpoint& from) {
+    for (int a = 0; a < D; ++a) from.get(component_names[a], u[a].values());
+    from.get("p", p.values());
+    from.get("cells", cells.values());
+    for (auto& field : fields) from.get("field." + field.name, field.values.values());
+    time = from.template get_value<real>("time");
+}
+
+template <int D>
+std::size_t MacState<D>::bytes() const {
+    std::size_t total = u.bytes() + p.size() * sizeof(real) + cells.size();
+    for (const auto& grid : solid.open) total += 2 * grid.size() * sizeof(real);
+    for (const auto& field : fields) total += field.values.size() * sizeof(real) + field.before.bytes();
+    for (const auto& component : before.face) total += component.bytes();
+    for (const auto& field : scratch) total += field.values.size() * sizeof(real);
+    return total;
+}
+
+template struct Lattice<2>;
+template struct Lattice<3>;
+template struct MacState<2>;
+template struct MacState<3>;
+
+}  // namespace weir::staggered

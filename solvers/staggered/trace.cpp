@@ -1,0 +1,125 @@
+#include "staggered/trace.hpp"
+
+#include "staggered/near_sample.hpp"
+
+#include <stdexcept>
+
+namespace weir::staggered {
+
+const Tableau& tableau(const std::string& name) {
+    static const Tableau rk1{1, {0}, {1}};
+    static const Tableau rk2{2, {0, 0.5}, {0, 1}};
+    static const Tableau rk3{3, {0, 0.5, 0.75}, {2.0 / 9, 3.0 / 9, 4.0 / 9}};
+    static const Tableau rk4{4, {0, 0.5, 0.5, 1}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
+    if (name == "rk1") return rk1;
+    if (name == "rk2") return rk2;
+    if (name == "rk3") return rk3;
+    if (name == "rk4") return rk4;
+    throw std::logic_error("trace \"" + name + "\" is in the schema but has no meaning");
+}
+
+namespace {
+
+inline real clamp_to(real d, real low, real high) { return d < low ? low : d > high ? high : d; }
+
+/// d[i] in [low - step i, high - step i]: homes advance by `step` cells along the row.
+void clamp_row(real* d, int count, real low, real high, real step) {
+#pragma omp simd
+    for (int i = 0; i < count; ++i) d[i] = clamp_to(d[i], low - step * i, high - step * i);
+}
+
+}  // namespace
+
+template <int D>
+void Domain<D>::keep_inside(int home_axis, const Index<D>& first, int count, Displacement<D>& x) const {
+    for (int a = 0; a < D; ++a) {
+        const real n = cells[a], home = first[a] + (a == home_axis ? 0.0 : 0.5);
+        real* d = x.d[a];
+        if (periodic[static_cast<std::size_t>(a)]) {
+            if (x.near) continue;  // the ghost layers are there
+            const real step = a == 0 ? 1 : 0;
+#pragma omp simd
+            for (int i = 0; i < count; ++i) d[i] -= n * std::floor((home + step * i + d[i]) / n);
+        } else if (!x.near) {
+            clamp_row(d, count, -home, n - home, a == 0 ? 1 : 0);
+        } else if (a == 0) {  // only the outermost nodes can reach a side
+            d[0] = clamp_to(d[0], -home, n - home);
+            d[count - 1] = clamp_to(d[count - 1], -home - (count - 1), n - home - (count - 1));
+        } else if (home < 1 || home > n - 1) {
+            clamp_row(d, count, -home, n - home, 0);
+        }
+    }
+}
+
+template <int D>
+GridBacktrace<D>::GridBacktrace(const PaddedVelocity<D>& u, const MacVelocity<D>& grid, const geometry::Sides<D>& sides,
+                                const std::string& scheme)
+    : u_(u), h_(grid.h), domain_(grid.cells, sides), rk_(tableau(scheme)) {}
+
+/// At the nodes themselves every component is an average of its two or four nearest faces.
+template <int D>
+void GridBacktrace<D>::velocity_at_home(int home_axis, const Index<D>& first, int count, Displacement<D>& k) const {
+    for (int b = 0; b < D; ++b) {
+        const auto& u = u_[b];
+        const real* q = u.at(first);
+        real* out = k.d[b];
+        const std::ptrdiff_t up = u.stride(b), back = home_axis < 0 ? 0 : -u.stride(home_axis);
+        if (b == home_axis) {
+            std::copy_n(q, count, out);
+        } else if (home_axis < 0) {
+#pragma omp simd
+            for (int i = 0; i < count; ++i) out[i] = 0.5 * (q[i] + q[i + up]);
+        } else {
+#pragma omp simd
+            for (int i = 0; i < count; ++i) out[i] = 0.25 * ((q[i] + q[i + up]) + (q[i + back] + q[i + back + up]));
+        }
+    }
+}
+
+template <int D>
+void GridBacktrace<D>::velocity_at(int home_axis, const Index<D>& first, int count, const Displacement<D>& x, Displacement<D>& k) const {
+    for (int b = 0; b < D; ++b) {
+        const RowView<D> view(u_[b], first, b, home_axis);
+        x.near ? sample_near(view, x, count, k.d[b]) : sample_linear(view, x, count, k.d[b]);
+    }
+}
+
+/// to = factor k along each axis.
+template <int D>
+static void scale(const Displacement<D>& k, const Vec<D>& factor, int count, Displacement<D>& to) {
+    for (int a = 0; a < D; ++a) {
+        const real f = factor[a];
+#pragma omp simd
+        for (int i = 0; i < count; ++i) to.d[a][i] = f * k.d[a][i];
+    }
+}
+
+template <int D>
+void GridBacktrace<D>::row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const {
+    Displacement<D> k, x;
+    Vec<D> cells;  // displacement [cells] per unit of velocity
+    for (int a = 0; a < D; ++a) cells[a] = -dt / h_[a];
+    to.near = std::abs(dt) * max_rate_ <= 1;  // interpolated velocities never exceed their nodes, so no stage goes farther
+    velocity_at_home(home_axis, first, count, k);
+    scale(k, rk_.b[0] * cells, count, to);
+    for (int s = 1; s < rk_.stages; ++s) {
+        const auto stage = static_cast<std::size_t>(s);
+        scale(k, rk_.c[stage] * cells, count, x);
+        x.near = to.near && rk_.c[stage] <= 0.5;
+        domain_.keep_inside(home_axis, first, count, x);
+        velocity_at(home_axis, first, count, x, k);
+        for (int a = 0; a < D; ++a) {
+            const real f = rk_.b[stage] * cells[a];
+#pragma omp simd
+            for (int i = 0; i < count; ++i) to.d[a][i] += f * k.d[a][i];
+        }
+    }
+    domain_.keep_inside(home_axis, first, count, to);
+}
+
+template struct Domain<2>;
+template struct Domain<3>;
+template class GridBacktrace<2>;
+template class GridBacktrace<3>;
+
+}  // namespace weir::staggered

@@ -1,0 +1,61 @@
+// Where a fluid parcel was: Runge-Kutta traces of rows of points through a velocity.
+#pragma once
+#include "geometry/sides.hpp"
+#include "staggered/sample.hpp"
+#include "staggered/velocity.hpp"
+
+#include <array>
+#include <string>
+
+namespace weir::staggered {
+
+/// A Runge-Kutta scheme in which each stage looks only at the one before: nodes c and weights b.
+struct Tableau {
+    int stages;
+    std::array<real, 4> c;  // stage s is evaluated at x − c[s] dt k(s−1)
+    std::array<real, 4> b;
+};
+/// "rk1" Euler; "rk2" midpoint; "rk3" Ralston 1962; "rk4" the classical scheme.
+const Tableau& tableau(const std::string& name);
+
+/// Traces rows of nodes. One virtual call a row.
+template <int D>
+class Backtrace {
+public:
+    virtual ~Backtrace() = default;
+    /// Displacement, in cells, of the points from which the nodes [first, first + count) of the row are reached in dt; negative dt:
+    /// to which they will go. `home_axis`: which faces the nodes are, −1 for cell centres. The points stay in the domain.
+    virtual void row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const = 0;
+};
+
+/// The box that traced points must not leave: clamped to it, or wrapped along periodic axes.
+template <int D>
+struct Domain {
+    Index<D> cells{};
+    std::array<bool, D> periodic{};
+    Domain(const Index<D>& cells_, const geometry::Sides<D>& sides) : cells(cells_) {
+        for (int a = 0; a < D; ++a) periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
+    }
+    void keep_inside(int home_axis, const Index<D>& first, int count, Displacement<D>& x) const;
+};
+
+/// Through the staggered velocity itself, frozen over the step.
+template <int D>
+class GridBacktrace final : public Backtrace<D> {
+public:
+    GridBacktrace(const PaddedVelocity<D>& u, const MacVelocity<D>& grid, const geometry::Sides<D>& sides, const std::string& scheme);
+    void row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const override;
+    /// max |u/h| [1/s] of the velocity now: traces of less than a cell take the fast path of near_sample.hpp.
+    void set_max_rate(real rate) { max_rate_ = rate; }
+
+private:
+    void velocity_at(int home_axis, const Index<D>& first, int count, const Displacement<D>& x, Displacement<D>& k) const;
+    void velocity_at_home(int home_axis, const Index<D>& first, int count, Displacement<D>& k) const;
+    const PaddedVelocity<D>& u_;
+    Vec<D> h_;
+    Domain<D> domain_;
+    Tableau rk_;
+    real max_rate_ = infinity;
+};
+
+}  // namespace weir::staggered

@@ -1,0 +1,33 @@
+#include "studies/kinds.hpp"
+
+#include "staggered/initial.hpp"
+#include "staggered/kind.hpp"
+#include "studies/poisson_problem.hpp"
+#include "studies/transport.hpp"
+
+namespace weir::studies {
+
+using scene::Key;
+using scene::Type;
+
+scene::SolverKind transport_kind() {
+    scene::SolverSchema schema;
+    schema.name = "transport";
+    schema.doc = "Cell fields carried by a prescribed velocity, to measure advection schemes.";
+    schema.keys = {scheme_key(AdvectionOptions::keys()), PrescribedFlow<2>::key(), initial_keys({"level_set", "tracer"})};
+    return {schema, make_without_surface<TransportSolver>};
+}
+
+scene::SolverKind poisson_kind() {
+    Key problem{
+        .name = "problem", .type = Type::choice, .doc = "Manufactured right-hand side: N no-flux sides, D zero sides.", .required = true};
+    for (const auto& known : manufactured_problems()) problem.choices.push_back(known.name);
+    problem.example = "problem = \"N1\"";
+    scene::SolverSchema schema;
+    schema.name = "poisson";
+    schema.doc = "One manufactured pressure problem on the unit square or cube, solved in one step.";
+    schema.keys = {scheme_key({PoissonChoice::key()}), problem};
+    return {schema, make_without_surface<PoissonProblemSolver>};
+}
+
+}  // namespace weir::studies

@@ -1,0 +1,10 @@
+// Solvers that measure one part of a method by itself, as scenes know them.
+#pragma once
+#include "scene/solver_kind.hpp"
+
+namespace weir::studies {
+
+scene::SolverKind transport_kind();  // "transport": advection through a prescribed flow
+scene::SolverKind poisson_kind();    // "poisson": one pressure problem
+
+}  // namespace weir::studies

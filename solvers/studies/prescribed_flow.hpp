@@ -1,0 +1,47 @@
+// Velocities given as functions of place and time, for advection tests.
+#pragma once
+#include "scene/scene.hpp"
+#include "staggered/trace.hpp"
+#include "staggered/velocity.hpp"
+
+#include <array>
+
+namespace weir::studies {
+
+using namespace staggered;  // the grid's words are the solver's own
+
+/// A velocity by name. All but "constant" speak of the unit square or cube.
+template <int D>
+class PrescribedFlow {
+public:
+    explicit PrescribedFlow(const scene::Table& table);
+    static scene::Key key();
+    Vec<D> operator()(const Vec<D>& x, real t) const;
+    bool steady() const { return period_ == infinity; }
+
+private:
+    enum class Kind { constant, rotation, single_vortex, enright };
+    Kind kind_;
+    Vec<D> constant_{}, centre_{};
+    real rate_ = 0, period_ = infinity;
+};
+
+/// Traces through a prescribed flow, evaluated exactly at every stage's place and time.
+template <int D>
+class PrescribedBacktrace final : public Backtrace<D> {
+public:
+    PrescribedBacktrace(const PrescribedFlow<D>& flow, const MacVelocity<D>& grid, const geometry::Sides<D>& sides,
+                        const std::string& scheme);
+    /// The step that is traced is [t, t + dt]: backwards from its end, forwards (negative dt of row) from its start.
+    void set_step(real t, real dt) { start_ = t, length_ = dt; }
+    void row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const override;
+
+private:
+    const PrescribedFlow<D>& flow_;
+    Vec<D> h_, origin_;
+    Domain<D> domain_;
+    Tableau rk_;
+    real start_ = 0, length_ = 0;
+};
+
+}  // namespace weir::studies

@@ -1,0 +1,31 @@
+#include "water/effects.hpp"
+
+namespace weir::water {
+
+using scene::Type;
+
+const EffectKinds& body_forces() {
+    static const EffectKinds kinds{gravity()};
+    return kinds;
+}
+
+std::vector<scene::Variant> effect_schemas() {
+    std::vector<scene::Variant> list = schemas_of(body_forces());
+    const std::vector<scene::Variant> own{
+        {"surface_tension",
+         "p = sigma kappa on the surface (ghost-fluid jump).",
+         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .min_open = true}},
+         {"sigma"}},
+        {"viscosity",
+         "Friction inside the liquid, with fluid.viscosity; none on the free surface.",
+         {{.name = "scheme",
+           .type = Type::choice,
+           .doc = "In time.",
+           .fallback = std::string("crank-nicolson"),
+           .choices = {"crank-nicolson", "implicit"}}},
+         {"fluid.viscosity"}}};
+    list.insert(list.end(), own.begin(), own.end());
+    return list;
+}
+
+}  // namespace weir::water

@@ -1,0 +1,14 @@
+// The effects of the solver "mac_water" by name.
+#pragma once
+#include "staggered/effects.hpp"
+#include "water/frame.hpp"
+
+namespace weir::water {
+
+/// Forces on the liquid's bulk, which act between momentum and pressure.
+const EffectKinds& body_forces();
+
+/// What a scene may name: body forces, and what is solved for inside other passes: surface tension (a jump of the pressure), viscosity.
+std::vector<scene::Variant> effect_schemas();
+
+}  // namespace weir::water

@@ -1,0 +1,43 @@
+// Velocity beyond the liquid, outwards from the faces whose velocity is known: ∇(∇u·∇φ)·∇φ = 0 in the first two layers (Aslam 2004),
+// ∇u·∇φ = 0 beyond (Adalsteinsson & Sethian 1999), with upwind differences as in the fast sweeping of Zhao 2005. Faces are visited layer by
+// layer from the known ones, each from finished layers only: one visit a face, and no result depends on threads, on the direction of a
+// sweep, or on a mirror.
+#pragma once
+#include "water/level_set.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace weir::water {
+
+template <int D>
+using FaceMarks = std::array<Grid<std::uint8_t, D>, D>;
+template <int D>
+using FaceLists = std::array<std::vector<Index<D>>, D>;
+
+template <int D>
+class Extrapolation {
+public:
+    Extrapolation() = default;
+    /// `steepest`: what linear continuation may claim of acceleration along the flow [m/s²], see slope().
+    Extrapolation(const Frame<D>& frame, real steepest) : frame_(frame), steepest_(steepest) {}
+    /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer. It starts at the faces
+    /// of cells near the surface and at `in_solids`; anywhere else no one asks.
+    void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, const FaceLists<D>& in_solids, int layers);
+    std::size_t bytes() const { return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real); }
+
+private:
+    void join_front(Grid<std::uint8_t, D>& mark, int a, const Index<D>& face);
+    real value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
+               int layer) const;
+    real slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by, int layer) const;
+    bool step(Index<D>& I, int a, int axis, int by) const;
+
+    Frame<D> frame_;
+    real steepest_ = 0;
+    std::vector<Index<D>> front_, next_;
+    std::vector<real> value_;
+};
+
+}  // namespace weir::water

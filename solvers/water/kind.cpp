@@ -1,0 +1,78 @@
+// What a scene may say to the solver "mac_water".
+#include "staggered/kind.hpp"
+#include "staggered/initial.hpp"
+#include "water/effects.hpp"
+#include "water/solver.hpp"
+
+namespace weir::water {
+
+using scene::Key;
+using scene::Type;
+
+WaterOptions::WaterOptions(const scene::Scene& scene) {
+    const auto& scheme = scene.root().table("scheme");
+    const std::string& name = scheme.text("transfer");
+    transfer = name == "grid" ? Transfer::grid : name == "pic" ? Transfer::pic : name == "apic" ? Transfer::apic : Transfer::flip;
+    flip_blend = scheme.number("flip_blend");
+    const std::string& order = scheme.text("trace");
+    trace = order == "rk1" ? Trace::rk1 : order == "rk3" ? Trace::rk3 : Trace::rk2;
+    poisson = PoissonChoice(scheme.table("poisson"));
+    cfl = scene.number("time.cfl");
+    volume_control = scheme.flag("volume_control");
+    reseed = scheme.flag("reseed");
+    seed = static_cast<std::uint64_t>(scheme.integer("seed"));
+    if (const auto* tension = scene.effect("surface_tension")) sigma = tension->number("sigma");
+    if (const auto* friction = scene.effect("viscosity")) viscosity = friction->text("scheme") == "implicit" ? 1 : 0.5;
+}
+
+namespace {
+
+Key scheme_keys() {
+    return {.name = "scheme",
+            .type = Type::table,
+            .doc = "Numerical methods.",
+            .keys = {{.name = "transfer",
+                      .type = Type::choice,
+                      .doc = "How momentum travels: on the grid (semi-Lagrangian), or on markers (PIC, FLIP, APIC).",
+                      .fallback = std::string("flip"),
+                      .choices = {"grid", "pic", "flip", "apic"}},
+                     {.name = "flip_blend",
+                      .type = Type::number,
+                      .doc = "Part of FLIP in flip; the rest is PIC.",
+                      .fallback = 0.97,
+                      .min = 0,
+                      .max = 1},
+                     {.name = "trace",
+                      .type = Type::choice,
+                      .doc = "Runge-Kutta scheme that moves markers.",
+                      .fallback = std::string("rk2"),
+                      .choices = {"rk1", "rk2", "rk3"}},
+                     {.name = "volume_control",
+                      .type = Type::flag,
+                      .doc = "Move the surface so that the volume stays what was poured in; the integral \"volume_shift\" tells how far.",
+                      .fallback = true},
+                     {.name = "reseed", .type = Type::flag, .doc = "Fill holes among the markers and thin heaps.", .fallback = true},
+                     {.name = "seed", .type = Type::integer, .doc = "Of the markers' jitter.", .fallback = std::int64_t{1}, .min = 0},
+                     PoissonChoice::key()}};
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "mac_water";
+    schema.doc = "Liquid with a free surface: markers on a staggered grid, level set, second-order surface pressure.";
+    schema.dims = {2, 3};
+    schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0}}},
+                   scheme_keys(),
+                   initial_keys()};
+    schema.effects = effect_schemas();
+    return {schema,
+            staggered::make<Water>,
+            {{"velocity", "pressure", "level_set", "position", "velocity"},
+             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
+              "faces to markers"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""}};
+}
+
+}  // namespace weir::water

@@ -1,0 +1,197 @@
+#include "water/level_set.hpp"
+
+#include "core/parallel.hpp"
+#include "core/scratch.hpp"
+#include "water/marker_lanes.hpp"
+
+namespace weir::water {
+
+/// Part of a cell's width: a marker nearer to the surface than this may be on either side of it.
+constexpr real sure_side = 0.1;
+
+template <int D>
+LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
+    : phi(frame.cells), frame_(frame), layers_(reach + 4), reach_(reach), layer_(frame.cells), inside_(frame.cells) {
+    phi.fill(cap());
+    layer_start_.assign(static_cast<std::size_t>(layers_) + 1, 0);
+}
+
+template <int D>
+void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed) {
+    closed_ = closed;
+    skin_.clear();
+    std::size_t first = 0;
+    constexpr std::uint8_t seen = 253;  // layer_ is free for this: redistance() finds it anew
+    const auto add_neighbours = [&](const Index<D>& I) {
+        for (int d = 0; d < D; ++d)
+            for (const int by : {-1, 1}) {
+                Index<D> J = I;
+                if (frame_.step(J, d, by) && closed_(J) && layer_(J) != seen) layer_(J) = seen, skin_.push_back(J);
+            }
+    };
+    for (std::size_t i = 0; i < closed_.size(); ++i)
+        if (!closed_[i]) add_neighbours(frame_.index_of(i));
+    for (int layer = 1; layer < 3; ++layer) {  // three cells deep: as far as interpolation beside a solid looks
+        const std::size_t last = skin_.size();
+        for (; first < last; ++first) add_neighbours(Index<D>(skin_[first]));
+    }
+    for (const Index<D>& J : skin_) layer_(J) = 0;
+}
+
+/// Mean of the neighbours that lie further out; skin_ goes inwards, so one pass suffices.
+template <int D>
+void LevelSet<D>::continue_into_solids() {
+    if (skin_.empty()) return;
+    for (const Index<D>& I : skin_) layer_(I) = 255;  // not continued yet
+    for (const Index<D>& I : skin_) {
+        real sum = 0;
+        int count = 0;
+        for (int d = 0; d < D; ++d)
+            for (const int by : {-1, 1}) {
+                Index<D> J = I;
+                if (!frame_.step(J, d, by) || (closed_(J) && layer_(J) != 254)) continue;
+                sum += phi(J);
+                ++count;
+            }
+        if (count > 0) phi(I) = sum / count;
+        layer_(I) = 254;
+    }
+    for (const Index<D>& I : skin_) layer_(I) = 0;
+}
+
+template <int D>
+void LevelSet<D>::advect(const MacVelocity<D>& u, real dt) {
+    const real near = (reach_ + 2) * frame_.h_max();  // beyond, no point can come to lie beside the surface
+    resize_scratch(value_, band_.size());
+    parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
+        const Index<D>& I = band_[static_cast<std::size_t>(i)];
+        real& to = value_[static_cast<std::size_t>(i)];
+        to = phi(I);
+        if (std::abs(to) < near) to = cubic(trace(u, frame_, frame_.centre(I), -dt, Trace::rk2));
+    });
+    parallel_for(0, static_cast<int>(band_.size()),
+                 [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
+}
+
+/// Catmull–Rom along each axis in turn; exact at samples.
+template <int D>
+real LevelSet<D>::cubic(const Vec<D>& x) const {
+    std::array<std::array<std::ptrdiff_t, 4>, D> at;
+    std::array<std::array<real, 4>, D> w;
+    for (int d = 0; d < D; ++d) {
+        const auto axis = static_cast<std::size_t>(d);
+        const real s = (x[d] - frame_.origin[d]) * frame_.inv_h[d] - 0.5, floor = std::floor(s), f = s - floor;
+        for (int k = 0; k < 4; ++k) {
+            Index<D> I{};
+            I[d] = static_cast<int>(floor);
+            at[axis][static_cast<std::size_t>(k)] = phi.stride(d) * frame_.near(I, d, k - 1)[d];
+        }
+        w[axis] = {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
+    }
+    const auto plane = [&](const real* base) {
+        real sum = 0;
+        for (std::size_t j = 0; j < 4; ++j) {
+            const real* row = base + at[1][j];
+            sum += w[1][j] * (w[0][0] * row[at[0][0]] + w[0][1] * row[at[0][1]] + w[0][2] * row[at[0][2]] + w[0][3] * row[at[0][3]]);
+        }
+        return sum;
+    };
+    if constexpr (D == 2) {
+        return plane(phi.data());
+    } else {
+        real sum = 0;
+        for (std::size_t k = 0; k < 4; ++k) sum += w[2][k] * plane(phi.data() + at[2][k]);
+        return sum;
+    }
+}
+
+template <int D>
+std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
+    const real h = frame_.h_min();
+    const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
+    const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
+    refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
+    markers.for_each_occupied_cell(frame_, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+        if (phi(I) < -norm(frame_.h)) return;
+        CellNodes<D> nodes;
+        nodes.look_at(phi, frame_, I);
+        for (std::size_t p = begin; p < end; p += marker_lanes) {
+            const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
+            const Hats<D, false> hats(from_centre(frame_, I, load_positions(markers, p, count)));
+            const Lanes distance = nodes.template at<-1>(hats);
+            for (int l = 0; l < count; ++l) escaped_[p + static_cast<std::size_t>(l)] = distance[l] > margin;
+        }
+    });
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < markers.count(); ++p) {
+        if (!escaped_[p]) continue;
+        if (!frame_.cubic() && !escaped_across(markers.position(p))) {
+            escaped_[p] = 0;
+            continue;
+        }
+        ++count;
+        join_sphere(markers.position(p), radius);
+    }
+    return count;
+}
+
+template <int D>
+std::size_t LevelSet<D>::count_airborne(const Markers<D>& markers) const {
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < markers.count(); ++p)
+        count += escaped_[p] && sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0;
+    return count;
+}
+
+template <int D>
+bool LevelSet<D>::escaped_across(const Vec<D>& x) const {
+    return sample_cells(phi, Stencil<D>(frame_, x)) > sure_side * width_at(frame_.cell_of(x));
+}
+
+template <int D>
+void LevelSet<D>::join_sphere(const Vec<D>& x, real radius) {
+    const Index<D> I = frame_.cell_of(x);
+    for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
+        Index<D> J = I, unwrapped = I;
+        bool inside = true;
+        for (int d = 0, rest = corner; d < D; ++d, rest /= 3) {
+            const int by = rest % 3 - 1;
+            unwrapped[d] += by;
+            inside &= by == 0 || frame_.step(J, d, by);
+        }
+        if (inside) phi(J) = std::min(phi(J), norm(frame_.centre(unwrapped) - x) - radius);
+    }
+}
+
+template <int D>
+void LevelSet<D>::dilate(real shift) {
+    parallel_for(0, static_cast<int>(band_.size()), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) -= shift; });
+}
+
+/// With the band: which cells it holds is part of the state.
+template <int D>
+void LevelSet<D>::save(Checkpoint& to) const {
+    to.put("surface.phi", phi.values());
+    to.put("surface.layer", layer_.values());
+    to.put("surface.band", band_);
+    to.put("surface.layer_start", layer_start_);
+}
+
+template <int D>
+void LevelSet<D>::restore(const Checkpoint& from) {
+    from.get("surface.phi", phi.values());
+    from.get("surface.layer", layer_.values());
+    from.get("surface.band", band_);
+    from.get("surface.layer_start", layer_start_);
+}
+
+template <int D>
+std::size_t LevelSet<D>::bytes() const {
+    return phi.size() * sizeof(real) + layer_.size() + inside_.size() + closed_.size() +
+           (band_.capacity() + skin_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) + escaped_.capacity();
+}
+
+template class LevelSet<2>;
+template class LevelSet<3>;
+
+}  // namespace weir::water

@@ -1,0 +1,92 @@
+// The free surface as the zero of a signed distance φ (negative in the liquid) in a narrow band of cells.
+//   motion          Dφ/Dt = 0: semi-Lagrangian, RK2 trace, tensor cubic interpolation (Strain 1999)
+//   distance        |∇φ| = 1: first-order upwind differences (Rouy & Tourin 1992; Zhao 2005), layer by layer outwards from the cells
+//                   beside the surface, which themselves keep their values: the zero does not move
+//   markers         where a marker has escaped, the level set has lost liquid: φ = min(φ, |x − x_p| − r) (Foster & Fedkiw 2001; Enright
+//   2002)
+// The level set is thus the smooth part of the markers' shape: second order where the grid resolves it, and at rest exactly at rest.
+#pragma once
+#include "core/checkpoint.hpp"
+#include "water/marker_motion.hpp"
+#include "water/markers.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace weir::water {
+
+template <int D>
+class LevelSet {
+public:
+    Grid<real, D> phi;  // [m] at cell centres; ± cap() outside the band
+
+    LevelSet() = default;
+    /// `reach`: how many cells the surface may move in one step.
+    LevelSet(const Frame<D>& frame, int reach);
+
+    /// Cells that are closed to the liquid. Their φ is continued from open cells, so that the surface meets a solid at right angles.
+    void set_closed(const Grid<std::uint8_t, D>& closed);
+    /// Moves the surface by dt in the field u, which must be known throughout the band.
+    void advect(const MacVelocity<D>& u, real dt);
+    /// Joins spheres around escaped markers; answers how many had escaped. Markers must be sorted.
+    std::size_t rescue_escaped(const Markers<D>& markers);
+    /// How many of the markers that had escaped are outside even now: drops too small for the grid.
+    std::size_t count_airborne(const Markers<D>& markers) const;
+    /// Makes φ a distance again and finds the band.
+    void redistance();
+    /// φ −= shift within the band: moves the surface outwards by `shift` [m].
+    void dilate(real shift);
+    void save(Checkpoint& to) const;
+    void restore(const Checkpoint& from);
+
+    real cap() const { return (layers_ + 1) * frame_.h_max(); }
+    int layers() const { return layers_; }
+    /// Cells of the band, layer by layer from the surface; layer 1 is beside it.
+    const std::vector<Index<D>>& band() const { return band_; }
+    /// Closed cells beside open ones, three deep.
+    const std::vector<Index<D>>& skin() const { return skin_; }
+    std::size_t layer_begin(int layer) const { return layer_start_[static_cast<std::size_t>(layer - 1)]; }
+    std::size_t layer_end(int layer) const { return layer_start_[static_cast<std::size_t>(layer)]; }
+
+    /// Liquid part of a cell, in [0, 1], with φ lowered by `shift`: a plane in each half cell along every axis (exact for planes; a
+    /// sheet or a drop thinner than a cell still counts for what it is).
+    real fraction(const Index<D>& I, real shift = 0) const;
+    real volume() const;  // [m^D] of liquid in open cells
+    real area() const;    // [m^(D−1)] of the surface, from the change of volume with φ
+    std::size_t bytes() const;
+
+private:
+    void continue_into_solids();
+    /// How wide the cell is across the surface next to it [m].
+    real width_at(const Index<D>& I) const;
+    /// In cells that are no cubes a marker has escaped when it is outside by a part of the cell's width in that direction.
+    bool escaped_across(const Vec<D>& x) const;
+    void join_sphere(const Vec<D>& x, real radius);
+    /// φ's change a cell towards the lower and the upper neighbour; beyond a wall, and
+    /// where a neighbour's distance is not known, it goes on as on the other side.
+    std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
+    void find_surface();
+    void mark_changes_of_sign(const Index<D>& first, std::size_t at);
+    template <class F>
+    real sum_over_band(std::size_t end, F&& f) const;
+    bool crosses_in_liquid(const Index<D>& I) const;
+    void rescale_surface();
+    void grow_band();
+    void fill_layer(int layer);
+    real upwind_distance(const Index<D>& I, int layer) const;
+    real cubic(const Vec<D>& x) const;
+
+    Frame<D> frame_;
+    int layers_ = 4, reach_ = 1;
+    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as find_surface() saw it
+    std::vector<Index<D>> band_, skin_;
+    std::vector<std::size_t> layer_start_;
+    std::vector<real> value_;
+    std::vector<std::uint8_t> escaped_;
+};
+
+/// Volume of {x in the unit cube about 0 : value + g·x < 0}. Inclusion and exclusion of corners (Scardovelli & Zaleski 2000).
+template <int D>
+real fraction_below_plane(real value, const Vec<D>& g);
+
+}  // namespace weir::water

@@ -1,0 +1,106 @@
+#include "water/marker_motion.hpp"
+
+#include "core/parallel.hpp"
+#include "water/marker_lanes.hpp"
+
+namespace weir::water {
+
+template <int D>
+void mark_near_solids(const geometry::Solids<D>& solids, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid) {
+    for_each_cell(frame.cells, [&](const Index<D>& I) { near_solid(I) = solids.distance(frame.centre(I)) < norm(frame.h); });
+}
+
+namespace {
+
+/// The box of walls, less a margin; ends that are open or periodic do not stop anything.
+template <int D>
+struct Walls {
+    Vec<D> lo = Vec<D>::constant(-infinity), hi = Vec<D>::constant(infinity);
+    bool wraps = false;
+    Walls(const Frame<D>& frame, const geometry::Sides<D>& sides) {
+        for (int d = 0; d < D; ++d) {
+            const real margin = wall_margin * frame.h[d], first = frame.origin[d];
+            wraps = wraps || frame.periodic(d);
+            if (!sides.open(d, 0) && !frame.periodic(d)) lo[d] = first + margin;
+            if (!sides.open(d, 1) && !frame.periodic(d)) hi[d] = first + frame.h[d] * frame.cells[d] - margin;
+        }
+    }
+    Vec<D> keep_inside(const Frame<D>& frame, Vec<D> x) const {
+        for (int d = 0; d < D; ++d) x[d] = std::clamp(x[d], lo[d], hi[d]);
+        return wraps ? frame.wrap(x) : x;
+    }
+};
+
+/// Where the points are after dt by RK2, if their midpoints lie within half a cell of them, which the stencil of their cell covers.
+template <int D>
+WEIR_LANES bool trace_midpoint(const CellFaces<D>& faces, const Frame<D>& frame, const Index<D>& I, real dt, LaneVec<D>& x) {
+    auto d = from_centre(frame, I, x);
+    const auto k1 = faces.template velocity<false>(d);
+    auto too_far = k1[0] != k1[0];  // no lane, or a lane that is not a number
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        const Lanes half = k1[at] * (0.5 * dt * frame.inv_h[a]);
+        too_far |= (half > 0.5) | (half < -0.5);
+        d[at] += half;
+    }
+    for (int l = 0; l < marker_lanes; ++l)
+        if (too_far[l]) return false;
+    const auto k2 = faces.template velocity<true>(d);
+    for (std::size_t a = 0; a < D; ++a) x[a] += dt * k2[a];
+    return true;
+}
+
+}  // namespace
+
+template <int D>
+void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& frame, real dt, Trace order,
+                  const geometry::Sides<D>& sides, const geometry::Solids<D>& solids, const Grid<std::uint8_t, D>& near_solid) {
+    const Walls<D> walls(frame, sides);
+    const real eps = 1e-3 * frame.h_min();  // of the finite differences that give a solid's normal
+    const auto place = [&](std::size_t p, const Vec<D>& reached) {
+        Vec<D> x = walls.keep_inside(frame, reached);
+        if (!near_solid.empty() && near_solid(frame.cell_of(x)))
+            x = walls.keep_inside(frame, solids.push_out(x, wall_margin * frame.h_min(), eps));
+        markers.set_position(p, x);
+    };
+    markers.for_each_occupied_cell(frame, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+        const CellFaces<D> faces(u, frame, I);
+        for (std::size_t p = begin; p < end; p += marker_lanes) {
+            const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
+            auto x = load_positions(markers, p, count);
+            const bool together = order == Trace::rk2 && trace_midpoint(faces, frame, I, dt, x);
+            for (int l = 0; l < count; ++l) {
+                const std::size_t marker = p + static_cast<std::size_t>(l);
+                Vec<D> reached;
+                for (std::size_t a = 0; a < D; ++a) reached[a] = x[a][l];
+                place(marker, together ? reached : trace(u, frame, markers.position(marker), dt, order));
+            }
+        }
+    });
+}
+
+template <int D>
+std::size_t remove_departed(Markers<D>& markers, const Frame<D>& frame, const geometry::Sides<D>& sides) {
+    bool any_open = false;
+    for (int d = 0; d < D; ++d) any_open |= sides.open(d, 0) || sides.open(d, 1);
+    if (!any_open) return 0;
+    const std::size_t before = markers.count();
+    markers.retain([&](std::size_t p) {
+        const Vec<D> x = markers.position(p);
+        for (int d = 0; d < D; ++d)
+            if (x[d] < frame.origin[d] || x[d] >= frame.origin[d] + frame.h[d] * frame.cells[d]) return false;
+        return true;
+    });
+    return before - markers.count();
+}
+
+template void mark_near_solids(const geometry::Solids<2>&, const Frame<2>&, Grid<std::uint8_t, 2>&);
+template void mark_near_solids(const geometry::Solids<3>&, const Frame<3>&, Grid<std::uint8_t, 3>&);
+template void move_markers(Markers<2>&, const MacVelocity<2>&, const Frame<2>&, real, Trace, const geometry::Sides<2>&,
+                           const geometry::Solids<2>&, const Grid<std::uint8_t, 2>&);
+template void move_markers(Markers<3>&, const MacVelocity<3>&, const Frame<3>&, real, Trace, const geometry::Sides<3>&,
+                           const geometry::Solids<3>&, const Grid<std::uint8_t, 3>&);
+template std::size_t remove_departed(Markers<2>&, const Frame<2>&, const geometry::Sides<2>&);
+template std::size_t remove_departed(Markers<3>&, const Frame<3>&, const geometry::Sides<3>&);
+
+}  // namespace weir::water

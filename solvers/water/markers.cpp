@@ -1,0 +1,95 @@
+#include "water/markers.hpp"
+
+#include "core/parallel.hpp"
+
+namespace weir::water {
+
+real hashed_random(std::uint64_t seed, std::uint64_t a, std::uint64_t b) {
+    std::uint64_t z = seed * 0x9E3779B97F4A7C15u + a * 0xBF58476D1CE4E5B9u + b * 0x94D049BB133111EBu;
+    for (int round = 0; round < 2; ++round) {
+        z += 0x9E3779B97F4A7C15u;
+        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+        z ^= z >> 31;
+    }
+    return static_cast<real>(z >> 11) * 0x1.0p-53;
+}
+
+template <int D>
+Vec<D> Markers<D>::jittered(const Frame<D>& frame, const Index<D>& I, int sub, std::uint64_t seed) {
+    std::array<int, D> half{}, mirrored{};
+    std::uint64_t key = 0;
+    for (int d = 0; d < D; ++d) {
+        const auto at = static_cast<std::size_t>(d);
+        const int n = 2 * frame.cells[d];
+        half[at] = 2 * I[d] + ((sub >> d) & 1);
+        mirrored[at] = half[at] >= frame.cells[d];
+        key = key * 0x100000001B3u + static_cast<std::uint64_t>(mirrored[at] ? n - 1 - half[at] : half[at]);
+    }
+    Vec<D> x;
+    for (int d = 0; d < D; ++d) {
+        const auto at = static_cast<std::size_t>(d);
+        const real r = hashed_random(seed, key, at);
+        x[d] = frame.origin[d] + 0.5 * frame.h[d] * (half[at] + (mirrored[at] ? 1 - r : r));
+    }
+    return x;
+}
+
+template <int D>
+void Markers<D>::add(const Vec<D>& at, const Vec<D>& velocity) {
+    for (int d = 0; d < D; ++d) {
+        const auto a = static_cast<std::size_t>(d);
+        x[a].push_back(at[d]);
+        if (carries_velocity_) v[a].push_back(velocity[d]);
+    }
+    if (carries_gradient_)
+        for (auto& array : c) array.push_back(0);
+}
+
+template <int D>
+void Markers<D>::sort(const Frame<D>& frame) {
+    const int n = static_cast<int>(count());
+    const std::size_t cells = product(frame.cells);
+    cell_.resize(static_cast<std::size_t>(n));
+    from_.resize(static_cast<std::size_t>(n));
+    scratch_.resize(static_cast<std::size_t>(n));
+    cell_start_.assign(cells + 1, 0);
+    parallel_for(0, n, [&](int p) {
+        const Index<D> I = frame.cell_of(position(static_cast<std::size_t>(p)));
+        int at = I[D - 1];
+        for (int d = D - 2; d >= 0; --d) at = at * frame.cells[d] + I[d];
+        cell_[static_cast<std::size_t>(p)] = at;
+    });
+    for (const int cell : cell_) ++cell_start_[static_cast<std::size_t>(cell) + 1];
+    for (std::size_t i = 0; i < cells; ++i) cell_start_[i + 1] += cell_start_[i];
+    for (int p = n - 1; p >= 0; --p)  // backwards, counting ends down: stable, and cell_start_ shifts into place
+        from_[static_cast<std::size_t>(--cell_start_[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1])] = p;
+    for (std::size_t i = 0; i < cells; ++i) cell_start_[i] = cell_start_[i + 1];
+    cell_start_[cells] = n;
+    for_each_array([&](std::vector<real>& array) {
+        parallel_for(0, n, [&](int p) {
+            scratch_[static_cast<std::size_t>(p)] = array[static_cast<std::size_t>(from_[static_cast<std::size_t>(p)])];
+        });
+        array.swap(scratch_);
+    });
+}
+
+template <int D>
+void Markers<D>::reserve(std::size_t capacity) {
+    for_each_array([&](std::vector<real>& array) { array.reserve(capacity); });
+    scratch_.reserve(capacity);
+    cell_.reserve(capacity);
+    from_.reserve(capacity);
+}
+
+template <int D>
+std::size_t Markers<D>::bytes() const {
+    std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + scratch_.capacity() * sizeof(real);
+    for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
+    return total;
+}
+
+template class Markers<2>;
+template class Markers<3>;
+
+}  // namespace weir::water

@@ -1,0 +1,123 @@
+// Marker particles: which fluid is where (Harlow & Welch 1965), and, for PIC, FLIP and APIC, the carriers of its momentum.
+// Arrays by component, sorted by cell after every motion: all that happens between markers and grid runs in this fixed order.
+#pragma once
+#include "core/parallel.hpp"
+#include "core/types.hpp"
+#include "water/frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace weir::water {
+
+/// Repeatable random numbers in [0, 1): a hash (SplitMix64, Steele et al. 2014) of a seed and a few integers, no state.
+real hashed_random(std::uint64_t seed, std::uint64_t a, std::uint64_t b);
+
+template <int D>
+class Markers {
+public:
+    static constexpr int per_cell = D == 2 ? 4 : 8;  // one in each half cell along every axis
+
+    std::array<std::vector<real>, D> x;      // position [m]
+    std::array<std::vector<real>, D> v;      // velocity [m/s]; empty where the transfer carries no momentum on markers
+    std::array<std::vector<real>, D * D> c;  // velocity gradient c[a D + d] = ∂v_a/∂x_d [1/s]; only for APIC
+    real volume = 0;                         // of one marker [m^D]
+
+    Markers() = default;
+    Markers(bool carries_velocity, bool carries_gradient) : carries_velocity_(carries_velocity), carries_gradient_(carries_gradient) {}
+
+    std::size_t count() const { return x[0].size(); }
+    bool carries_velocity() const { return carries_velocity_; }
+    bool carries_gradient() const { return carries_gradient_; }
+    Vec<D> position(std::size_t p) const {
+        Vec<D> at;
+        for (int d = 0; d < D; ++d) at[d] = x[static_cast<std::size_t>(d)][p];
+        return at;
+    }
+    void set_position(std::size_t p, const Vec<D>& at) {
+        for (int d = 0; d < D; ++d) x[static_cast<std::size_t>(d)][p] = at[d];
+    }
+    void add(const Vec<D>& at, const Vec<D>& velocity);
+    /// The jittered place of marker `sub` of a cell. Mirror images of a cell about the middle of the domain get mirror images of places.
+    static Vec<D> jittered(const Frame<D>& frame, const Index<D>& I, int sub, std::uint64_t seed);
+    /// Keeps the markers for which keep(p); order is kept.
+    template <class Keep>
+    void retain(Keep&& keep);
+
+    /// Sorts by cell, x fastest, stable. Afterwards the markers of cell I are begin(I) .. end(I).
+    void sort(const Frame<D>& frame);
+    std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell]); }
+    std::size_t end(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell + 1]); }
+    /// f(I, begin, end) for each cell that holds markers, after sort(); threaded by equal numbers of markers.
+    template <class F>
+    void for_each_occupied_cell(const Frame<D>& frame, F&& f) const;
+    /// The same for the cells [from, to) in memory, one after the other.
+    template <class F>
+    void for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const;
+    int in_cell(std::size_t cell) const { return cell_start_[cell + 1] - cell_start_[cell]; }
+
+    /// f(array) for every array of one value a marker.
+    template <class F>
+    void for_each_array(F&& f);
+    template <class F>
+    void for_each_array(F&& f) const {
+        const_cast<Markers*>(this)->for_each_array([&](const std::vector<real>& array) { f(array); });
+    }
+    void reserve(std::size_t capacity);
+    std::size_t bytes() const;
+
+private:
+    bool carries_velocity_ = false, carries_gradient_ = false;
+    std::vector<int> cell_, cell_start_, from_;
+    std::vector<real> scratch_;
+};
+
+template <int D>
+template <class F>
+void Markers<D>::for_each_array(F&& f) {
+    for (auto& array : x) f(array);
+    if (carries_velocity_)
+        for (auto& array : v) f(array);
+    if (carries_gradient_)
+        for (auto& array : c) f(array);
+}
+
+template <int D>
+template <class F>
+void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
+    constexpr int blocks = 64;
+    const auto first_cell = [&](int block) {  // the first whose markers begin in this block
+        const auto least = static_cast<int>(count() * static_cast<std::size_t>(block) / blocks);
+        return std::lower_bound(cell_start_.begin(), cell_start_.end() - 1, least) - cell_start_.begin();
+    };
+    parallel_for(0, blocks, [&](int block) {
+        for_occupied_cells(frame, static_cast<std::size_t>(first_cell(block)), static_cast<std::size_t>(first_cell(block + 1)), f);
+    });
+}
+
+template <int D>
+template <class F>
+void Markers<D>::for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const {
+    Index<D> I = frame.index_of(from);
+    for (std::size_t cell = from; cell < to; ++cell) {
+        if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
+        for (int d = 0; d < D && ++I[d] == frame.cells[d] && d < D - 1; ++d) I[d] = 0;
+    }
+}
+
+template <int D>
+template <class Keep>
+void Markers<D>::retain(Keep&& keep) {
+    std::size_t kept = 0;
+    const std::size_t n = count();
+    for (std::size_t p = 0; p < n; ++p) {
+        if (!keep(p)) continue;
+        if (kept != p) for_each_array([&](std::vector<real>& array) { array[kept] = array[p]; });
+        ++kept;
+    }
+    for_each_array([&](std::vector<real>& array) { array.resize(kept); });
+}
+
+}  // namespace weir::water

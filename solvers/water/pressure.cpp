@@ -1,0 +1,245 @@
+#include "water/pressure.hpp"
+
+#include <algorithm>
+
+namespace weir::water {
+
+using poisson::Cell;
+
+/// A weight without the open fraction that it holds.
+static real per_open(real weight, real open) { return open > 0 ? weight / open : 0; }
+
+template <int D>
+SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice)
+    : frame_(frame),
+      b_(frame.cells),
+      liquid_(b_.size() / static_cast<std::size_t>(frame.cells[0])),
+      solver_(poisson::make_solver<D>(choice.method, choice.options)),
+      h2_(frame.h[0] * frame.h[0]),
+      largest_cut_(1 + frame.h_max() / frame.h_min() / thinnest) {
+    A_.cells = Grid<Cell, D>(frame.cells, Cell::air);
+    for (int a = 0; a < D; ++a) {
+        A_.weight[static_cast<std::size_t>(a)] = Grid<real, D>(state.u[a].extent());
+        A_.axis_weight[a] = h2_ / (frame.h[a] * frame.h[a]);
+        A_.periodic[static_cast<std::size_t>(a)] = frame.periodic(a);
+    }
+    nothing_to_do_.converged = true;
+}
+
+template <int D>
+void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state) {
+    find_liquid(surface, closed);
+    state.cells = A_.cells;
+    for (int a = 0; a < D; ++a) set_weights(surface, state, a);
+}
+
+/// What each cell is, and where the liquid of each line begins and ends: everything below looks at that part of the line only.
+template <int D>
+void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
+    const real thin = -thinnest * frame_.h_min();
+    const int n = frame_.cells[0];
+    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
+        const real* phi = surface.phi.data() + at;
+        Cell* cell = A_.cells.data() + at;
+        for (int i = 0; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
+        for (int i = 0; !closed.empty() && i < n; ++i) cell[i] = closed[at + static_cast<std::size_t>(i)] ? Cell::solid : cell[i];
+        Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
+        while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
+        liquid_[at / static_cast<std::size_t>(n)] = extent;
+    });
+    has_liquid_ = std::any_of(liquid_.begin(), liquid_.end(), [](const Extent& extent) { return extent.begin < extent.end; });
+}
+
+/// As for_each_face_run, but of each run only the part that has liquid somewhere on one side or the other.
+template <int D>
+template <class F, class G>
+void SurfacePressure<D>::for_faces_of_liquid(int a, F&& inner, G&& outer) const {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]), stride = static_cast<std::size_t>(A_.cells.stride(a));
+    const auto near = [&](std::size_t face, std::size_t cell, int count) {
+        const Extent &above = liquid_[cell / n], &below = liquid_[(cell - stride) / n];
+        const int first = static_cast<int>(cell % n), shift = a == 0 ? 1 : 0;
+        const int begin = std::max(first, std::min(above.begin, below.begin)),
+                  end = std::min(first + count, std::max(above.end, below.end) + shift);
+        if (begin < end) inner(face + static_cast<std::size_t>(begin - first), cell + static_cast<std::size_t>(begin - first), end - begin);
+    };
+    for_each_face_run(frame_.cells, a, near, outer);
+}
+
+/// Face weights: the open fraction between liquid cells, over θ where the surface cuts the line between the centres.
+template <int D>
+void SurfacePressure<D>::set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a) {
+    real* weight = A_.weight[static_cast<std::size_t>(a)].data();
+    const real* open = state.solid.any() ? state.solid.open[static_cast<std::size_t>(a)].data() : nullptr;
+    const auto stride = static_cast<std::size_t>(A_.cells.stride(a));
+    for_faces_of_liquid(
+        a,
+        [&](std::size_t face, std::size_t cell, int count) {
+            for (std::size_t end = face + static_cast<std::size_t>(count); face < end; ++face, ++cell) {
+                const bool above = A_.cells[cell] == Cell::fluid, below = A_.cells[cell - stride] == Cell::fluid;
+                weight[face] = above != below ? cut_weight(surface, cell - stride, cell) : above ? 1 : 0;
+                if (open) weight[face] *= open[face];
+            }
+        },
+        [&](const Index<D>& I, std::size_t face) { weight[face] = side_weight(surface, state, a, I); });
+}
+
+/// 1/θ between a liquid cell and one that is not; 0 if that one is solid.
+template <int D>
+real SurfacePressure<D>::cut_weight(const LevelSet<D>& surface, std::size_t lower, std::size_t upper) const {
+    if (A_.cells[lower] != Cell::fluid) std::swap(lower, upper);
+    return A_.cells[upper] == Cell::solid ? 0 : std::min(1 - surface.phi[upper] / surface.phi[lower], largest_cut_);
+}
+
+/// On a side: closed, or p = 0 on the side itself, half a cell away. On the face that joins the ends of a periodic axis: as inside.
+template <int D>
+real SurfacePressure<D>::side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const {
+    const int end = I[a] == 0 ? 0 : 1;
+    if (!frame_.periodic(a) && !state.sides.open(a, end)) return 0;
+    const std::size_t lower = A_.cells.linear(frame_.near(I, a, -1)), upper = A_.cells.linear(frame_.near(I, a, 0));
+    const bool below = A_.cells[lower] == Cell::fluid, above = A_.cells[upper] == Cell::fluid;
+    if (!frame_.periodic(a)) return below ? 2 : 0;
+    const real open = state.solid.any() ? state.solid.open[static_cast<std::size_t>(a)](I) : 1;
+    return open * (above != below ? cut_weight(surface, lower, upper) : above ? 1 : 0);
+}
+
+/// σ κ where the surface cuts the line between the two cells.
+template <int D>
+real SurfacePressure<D>::surface_pressure(const LevelSet<D>& surface, std::size_t liquid, std::size_t air, real sigma,
+                                          const Grid<real, D>& curvature) const {
+    const real theta = std::clamp(surface.phi[liquid] / (surface.phi[liquid] - surface.phi[air]), 0.0, 1.0);
+    return sigma * ((1 - theta) * curvature[liquid] + theta * curvature[air]);
+}
+
+/// What p = σ κ on the surface adds to the right-hand side of a liquid cell.
+template <int D>
+real SurfacePressure<D>::surface_tension(const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature, const Index<D>& I) const {
+    real sum = 0;
+    for (int a = 0; a < D; ++a)
+        for (const int by : {-1, 1}) {
+            Index<D> J = I;
+            if (!frame_.step(J, a, by) || A_.cells(J) != Cell::air) continue;
+            const Index<D> face = by < 0 ? I : I + e<D>(a);
+            sum += A_.axis_weight[a] * A_.weight[static_cast<std::size_t>(a)](face) *
+                   surface_pressure(surface, A_.cells.linear(I), A_.cells.linear(J), sigma, curvature);
+        }
+    return sum;
+}
+
+template <int D>
+void SurfacePressure<D>::set_rhs(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                 const Grid<real, D>* curvature) {
+    const real scale = -h2_ * state.rho / dt;
+    for_each_line(frame_.cells, [&](Index<D> I, std::size_t at) {
+        const Extent& extent = liquid_[at / static_cast<std::size_t>(frame_.cells[0])];
+        if (extent.begin >= extent.end) return;
+        I[0] = extent.begin;
+        real* b = b_.data() + at;
+        flux_divergence_row(state, I, extent.end - extent.begin, b + extent.begin);
+        for (int i = extent.begin; i < extent.end; ++i) b[i] *= scale;
+        for (; curvature && I[0] < extent.end; ++I[0])
+            if (A_.cells(I) == Cell::fluid) b[I[0]] += surface_tension(surface, sigma, *curvature, I);
+    });
+}
+
+template <int D>
+const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                                   const Grid<real, D>* curvature) {
+    if (!has_liquid_) return nothing_to_do_;  // every drop has left or is thinner than a cell: nothing is under pressure
+    set_rhs(state, surface, dt, sigma, curvature);
+    solver_->setup(A_);
+    const poisson::Report& report = solver_->solve(state.p, b_);  // the last pressure is the first guess
+    subtract_gradient(state, dt);
+    if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature);
+    return report;
+}
+
+/// u −= (dt/ρ) ∇p on every face of liquid that is not closed. p is zero outside the liquid, so where the surface cuts the line between two
+/// centres the weight makes the difference of p the gradient.
+template <int D>
+void SurfacePressure<D>::subtract_gradient(MacState<D>& state, real dt) const {
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a), stride = static_cast<std::size_t>(A_.cells.stride(a));
+        const real scale = dt / state.rho * frame_.inv_h[a];
+        for_faces_of_liquid(
+            a,
+            [&](std::size_t face, std::size_t cell, int count) {
+                real* u = state.u[a].data() + face;
+                const real *above = state.p.data() + cell, *below = above - stride, *w = A_.weight[at].data() + face;
+                if (state.solid.any()) {
+                    const real* open = state.solid.open[at].data() + face;
+                    for (int i = 0; i < count; ++i) u[i] -= scale * per_open(w[i], open[i]) * (above[i] - below[i]);
+                } else {
+#pragma omp simd
+                    for (int i = 0; i < count; ++i) u[i] -= scale * w[i] * (above[i] - below[i]);
+                }
+            },
+            [&](const Index<D>& I, std::size_t face) {
+                real w = A_.weight[at][face];
+                if (w == 0) return;
+                const bool joins = frame_.periodic(a);
+                if (joins && state.solid.any()) w = per_open(w, state.solid.open[at][face]);
+                const real above = joins || I[a] == 0 ? state.p(frame_.near(I, a, 0)) : 0;
+                const real below = joins || I[a] > 0 ? state.p(frame_.near(I, a, -1)) : 0;
+                state.u[a][face] -= scale * w * (above - below);
+            });
+    }
+}
+
+/// What p = σ κ on the surface adds to that.
+template <int D>
+void SurfacePressure<D>::subtract_surface_gradient(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                                   const Grid<real, D>& curvature) const {
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a), stride = static_cast<std::size_t>(A_.cells.stride(a));
+        const real scale = dt / state.rho * frame_.inv_h[a];
+        const auto subtract = [&](std::size_t face, std::size_t lower, std::size_t upper) {
+            const bool below = A_.cells[lower] == Cell::fluid, above = A_.cells[upper] == Cell::fluid;
+            if (below == above || A_.weight[at][face] == 0) return;
+            const real w = state.solid.any() ? per_open(A_.weight[at][face], state.solid.open[at][face]) : A_.weight[at][face];
+            const real p = surface_pressure(surface, below ? lower : upper, below ? upper : lower, sigma, curvature);
+            state.u[a][face] -= scale * w * (below ? p : -p);
+        };
+        for_faces_of_liquid(
+            a,
+            [&](std::size_t face, std::size_t cell, int count) {
+                for (const std::size_t end = face + static_cast<std::size_t>(count); face < end; ++face, ++cell)
+                    subtract(face, cell - stride, cell);
+            },
+            [&](const Index<D>& I, std::size_t face) {
+                if (frame_.periodic(a)) subtract(face, A_.cells.linear(frame_.near(I, a, -1)), A_.cells.linear(frame_.near(I, a, 0)));
+            });
+    }
+}
+
+template <int D>
+real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
+    const int n = frame_.cells[0];
+    return ordered_max(static_cast<int>(liquid_.size()), [&](int line) {
+        const auto [begin, end] = liquid_[static_cast<std::size_t>(line)];
+        std::array<real, row_block> divergence;
+        real largest = 0;
+        for (int first = begin; first < end; first += row_block) {
+            const std::size_t at = static_cast<std::size_t>(line) * static_cast<std::size_t>(n) + static_cast<std::size_t>(first);
+            const int count = std::min(row_block, end - first);
+            flux_divergence_row(state, frame_.index_of(at), count, divergence.data());
+            for (int i = 0; i < count; ++i) {
+                const real d = std::abs(divergence[static_cast<std::size_t>(i)]);
+                if (A_.cells[at + static_cast<std::size_t>(i)] == Cell::fluid && !(d <= largest)) largest = d;
+            }
+            if (std::isnan(largest)) break;
+        }
+        return largest;
+    });
+}
+
+template <int D>
+std::size_t SurfacePressure<D>::bytes() const {
+    std::size_t total = A_.cells.size() + b_.size() * sizeof(real) + liquid_.size() * sizeof(Extent) + solver_->bytes();
+    for (const auto& weight : A_.weight) total += weight.size() * sizeof(real);
+    return total;
+}
+
+template class SurfacePressure<2>;
+template class SurfacePressure<3>;
+
+}  // namespace weir::water

@@ -1,0 +1,62 @@
+// Pressure with a free surface, second order (Gibou, Fedkiw, Cheng & Kang 2002): the surface cuts the line from a liquid cell to an air
+// cell at θ = φ_l / (φ_l − φ_a) of its length, and there p = σ κ. The face weight becomes 1/θ, the gradient (σ κ − p_l) / (θ h).
+// Solids enter by open face fractions (Batty, Bertails & Bridson 2007). A cell is liquid when φ < −thinnest h, so that θ ≥ thinnest / (1 +
+// thinnest) without any clamp: a plane surface, at any height and tilt, has exactly the hydrostatic p.
+#pragma once
+#include "poisson/poisson.hpp"
+#include "staggered/projection.hpp"
+#include "staggered/state.hpp"
+#include "water/level_set.hpp"
+
+#include <memory>
+
+namespace weir::water {
+
+/// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, hence the matrix's condition.
+inline constexpr real thinnest = 0.02;
+
+template <int D>
+class SurfacePressure {
+public:
+    SurfacePressure() = default;
+    SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice);
+
+    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells.
+    void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
+    /// Makes the liquid free of divergence: solves for state.p, then u −= (dt/ρ) ∇p. `curvature` [1/m] at cells, or nullptr.
+    const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
+    /// Largest |∇·u| over liquid cells [1/s], open fractions counted.
+    real max_divergence(const MacState<D>& state) const;
+    std::size_t bytes() const;
+
+private:
+    /// Cells [begin, end) of a line; begin lies behind end where there are none.
+    struct Extent {
+        int begin, end;
+    };
+    void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
+    void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
+    real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;
+    real cut_weight(const LevelSet<D>& surface, std::size_t lower, std::size_t upper) const;
+    real surface_pressure(const LevelSet<D>& surface, std::size_t liquid, std::size_t air, real sigma,
+                          const Grid<real, D>& curvature) const;
+    void set_rhs(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
+    real surface_tension(const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature, const Index<D>& I) const;
+    void subtract_gradient(MacState<D>& state, real dt) const;
+    void subtract_surface_gradient(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                   const Grid<real, D>& curvature) const;
+    template <class F, class G>
+    void for_faces_of_liquid(int a, F&& inner, G&& outer) const;
+
+    Frame<D> frame_;
+    poisson::Operator<D> A_;      // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere
+    Grid<real, D> b_;             // likewise
+    std::vector<Extent> liquid_;  // of every line of cells along x
+    bool has_liquid_ = false;
+    std::unique_ptr<poisson::Solver<D>> solver_;
+    poisson::Report nothing_to_do_;
+    real h2_ = 0;           // h of axis 0, squared: what the matrix is scaled by
+    real largest_cut_ = 0;  // of 1/θ, along the longest edge of a cell
+};
+
+}  // namespace weir::water

@@ -1,0 +1,266 @@
+#include "water/solver.hpp"
+
+#include "staggered/inflow.hpp"
+
+namespace weir::water {
+
+/// One step of the marker-and-cell method with a free surface. Enters and leaves with a velocity that is known throughout the band of
+/// the level set and free of divergence in the liquid, to the tolerance of the pressure.
+template <int D>
+StepReport Water<D>::step(real dt) {
+    place_solids(state_.time + dt);
+    move_surface(dt);                             // Dx/Dt = u for markers, Dφ/Dt = 0
+    pour_and_drain(dt);                           // emitters, open sides
+    redistribute_markers();                       // no holes, no heaps
+    correct_surface();                            // φ joins escaped markers, and is a distance again
+    momentum_to_faces(dt);                        // u* = what the markers carry, or D u/Dt = 0 on the grid
+    forces(dt);                                   // u* += dt f
+    const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
+    const real divergence = pressure_.max_divergence(state_);
+    extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
+    momentum_to_markers();
+    state_.time += dt;
+    ++steps_;
+    return {.dt = dt,
+            .cfl = dt * rate_,
+            .max_divergence = divergence,
+            .iterations = poisson.iterations,
+            .residual_before = poisson.residual_before,
+            .residual_after = poisson.residual_after,
+            .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0])};
+}
+
+template <int D>
+void Water<D>::move_surface(real dt) {
+    const auto timed = passes_.time("move surface");
+    move_markers(markers_, state_.u, frame_, dt, options_.trace, state_.sides, solids_.solids(), near_solid_);
+    surface_.advect(state_.u, dt);
+}
+
+template <int D>
+void Water<D>::correct_surface() {
+    {
+        const auto timed = passes_.time("level set");
+        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
+        surface_.redistance();
+        control_volume();
+    }
+    curvature();
+    const auto timed = passes_.time("level set");
+    pressure_.set_surface(surface_, closed_, state_);
+}
+
+template <int D>
+void Water<D>::momentum_to_faces(real dt) {
+    const auto timed = passes_.time("markers to faces");
+    if (options_.transfer == Transfer::grid)
+        advect_faces(dt);
+    else
+        markers_to_faces(markers_, frame_, sums_, state_.u, known_);
+    impose_emitters(dt);
+    set_fixed_faces();
+    forget_faces_in_solids();
+    extrapolate_(state_.u, known_, surface_, in_solids_, 2);  // liquid cells without a marker, faces at the edge
+    if (options_.transfer == Transfer::flip) {
+        constrain_velocity_in_solids();
+        sync_periodic(state_.u, state_.sides);
+        for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
+    }
+}
+
+template <int D>
+void Water<D>::forces(real dt) {
+    effects_.apply(Stage::force, state_, dt, passes_);
+    {
+        const auto timed = passes_.time("walls");
+        set_fixed_faces();
+    }
+    if (!viscosity_) return;
+    const auto timed = passes_.time("effect viscosity");
+    viscosity_->apply(state_, surface_, closed_, dt);
+}
+
+template <int D>
+poisson::Report Water<D>::project(real dt) {
+    const auto timed = passes_.time("project");
+    return pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr);
+}
+
+template <int D>
+void Water<D>::extend_velocity() {
+    const auto timed = passes_.time("extrapolate");
+    mark_liquid_faces();
+    extrapolate_(state_.u, known_, surface_, in_solids_, surface_.layers() - 1);
+    constrain_velocity_in_solids();
+    sync_periodic(state_.u, state_.sides);
+    rate_ = max_speed_rate();
+}
+
+template <int D>
+void Water<D>::momentum_to_markers() {
+    const auto timed = passes_.time("faces to markers");
+    switch (options_.transfer) {
+        case Transfer::grid:
+            return;
+        case Transfer::pic:
+            return pic_to_markers(state_.u, frame_, markers_);
+        case Transfer::flip:
+            return flip_to_markers(state_.u, before_, options_.flip_blend, frame_, markers_);
+        case Transfer::apic:
+            return apic_to_markers(state_.u, frame_, markers_);
+    }
+}
+
+/// Du/Dt = 0 by semi-Lagrangian advection (Stam 1999), on all faces near the liquid; known_ marks them.
+template <int D>
+void Water<D>::advect_faces(real dt) {
+    for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
+    const real near = 2 * frame_.h_min();
+    for (int a = 0; a < D; ++a)
+        for_each_cell(state_.u[a].extent(), [&](const Index<D>& I) {
+            const real phi = std::min(surface_.phi(frame_.near(I, a, -1)), surface_.phi(frame_.near(I, a, 0)));
+            auto& known = known_[static_cast<std::size_t>(a)](I);
+            known = phi < near;
+            if (!known) return;
+            const Vec<D> from = trace(before_, frame_, before_.face_centre(a, I), -dt, options_.trace);
+            state_.u[a](I) = sample(before_[a], a, Stencil<D>(frame_, frame_.wrap(from)));
+        });
+}
+
+/// Faces whose velocity the pressure decided, as far as solids leave them open, and those that walls and inflows prescribe.
+template <int D>
+void Water<D>::mark_liquid_faces() {
+    using poisson::Cell;
+    for (int a = 0; a < D; ++a) {
+        std::uint8_t* known = known_[static_cast<std::size_t>(a)].data();
+        const auto stride = state_.cells.stride(a);
+        const auto between_cells = [&](std::size_t face, std::size_t cell, int count) {
+            const Cell *above = state_.cells.data() + cell, *below = above - stride;
+            for (int i = 0; i < count; ++i) known[face + static_cast<std::size_t>(i)] = above[i] == Cell::fluid || below[i] == Cell::fluid;
+        };
+        const auto on_side = [&](const Index<D>& I, std::size_t face) {
+            const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
+            known[face] = liquid || (!frame_.periodic(a) && !state_.sides.open(a, I[a] == 0 ? 0 : 1));
+        };
+        for_each_face_run(frame_.cells, a, between_cells, on_side);
+    }
+    forget_faces_in_solids();
+}
+
+/// The walls' and inflows' own faces, and those that solids close.
+template <int D>
+void Water<D>::set_fixed_faces() {
+    sync_periodic(state_.u, state_.sides);
+    set_side_faces(state_.u, state_.sides, state_.nu);
+    solids_.set_faces(state_);
+    for (int a = 0; a < D; ++a) {
+        auto& known = known_[static_cast<std::size_t>(a)];
+        Index<D> lo{}, hi = known.extent();
+        hi[a] = 1;
+        for_each_in(lo, hi, [&](Index<D> I) {
+            for (const int end : {0, 1}) {
+                I[a] = end == 0 ? 0 : frame_.cells[a];
+                if (!frame_.periodic(a) && !state_.sides.open(a, end)) known(I) = 1;
+            }
+        });
+    }
+}
+
+/// What the markers hold of liquid and the level set has lost, or the reverse, goes back to it: φ moves by the missing volume over the
+/// surface's area, at most 0.02 h a step, less than motion itself moves it by. Markers in the air count by their own volume.
+template <int D>
+void Water<D>::control_volume() {
+    if (!options_.volume_control) return;
+    const real missing = volume_target_ - surface_.volume() - markers_.volume * static_cast<real>(surface_.count_airborne(markers_));
+    const real area = surface_.area();
+    if (area == 0) return;
+    const real most = 0.02 * frame_.h_min(), shift = std::clamp(missing / area, -most, most);
+    surface_.dilate(shift);
+    volume_shift_ += std::abs(shift);
+}
+
+/// κ = ∇·(∇φ/|∇φ|) [1/m], central differences of the face normals' components.
+template <int D>
+void Water<D>::curvature() {
+    if (options_.sigma == 0) return;
+    const auto timed = passes_.time("effect surface_tension");
+    const auto& phi = surface_.phi;
+    for_each_cell(frame_.cells, [&](const Index<D>& I) {
+        curvature_(I) = 0;
+        if (std::abs(phi(I)) > 2 * norm(frame_.h)) return;
+        Vec<D> g;
+        real laplacian = 0, bending = 0, g2 = 0;
+        for (int a = 0; a < D; ++a) {
+            const real lower = phi(frame_.near(I, a, -1)), upper = phi(frame_.near(I, a, 1));
+            g[a] = 0.5 * (upper - lower) * frame_.inv_h[a];
+            g2 += g[a] * g[a];
+        }
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) {
+                const auto at = [&](int i, int j) { return phi(frame_.near(frame_.near(I, a, i), b, j)); };
+                const real second = a == b ? (at(1, 0) - 2 * phi(I) + at(-1, 0)) * frame_.inv_h[a] * frame_.inv_h[a]
+                                           : 0.25 * (at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) * frame_.inv_h[a] * frame_.inv_h[b];
+                if (a == b) laplacian += second;
+                bending += g[a] * g[b] * second;
+            }
+        const real limit = (D - 1) / frame_.h_min();  // of a drop as small as a cell
+        if (g2 > 1e-6) curvature_(I) = std::clamp((laplacian - bending / g2) / std::sqrt(g2), -limit, limit);
+    });
+}
+
+template <int D>
+real Water<D>::max_speed_rate() const {
+    real rate = 0;
+    for (int a = 0; a < D; ++a) {
+        const auto& known = known_[static_cast<std::size_t>(a)];
+        const auto& u = state_.u[a];
+        const Index<D>& n = known.extent();
+        const auto plane = known.size() / static_cast<std::size_t>(n[D - 1]);
+        const real largest = ordered_max(n[D - 1], [&](int k) {
+            real m = 0;
+            for (std::size_t i = static_cast<std::size_t>(k) * plane; i < static_cast<std::size_t>(k + 1) * plane; ++i)
+                if (const real v = std::abs(u[i]); known[i] == 1 && (v > m || std::isnan(v))) m = v;
+            return m;
+        });
+        if (std::isnan(largest)) return largest;
+        rate = std::max(rate, largest * frame_.inv_h[a]);
+    }
+    return rate;
+}
+
+/// CFL with the speed that gravity adds within the step, the gravity wave of two cells (ω dt ≤ 1, where explicit coupling of surface and
+/// pressure is stable to 2), and the capillary wave of two cells (Brackbill, Kothe & Zemach 1992: dt ≤ √(ρ h³ / (4π σ)) for one fluid).
+template <int D>
+real Water<D>::advised_dt() const {
+    const real h = frame_.h_min(), g = norm(gravity_);
+    real dt = infinity;
+    const real rate = std::max(rate_, solids_.max_rate(state_));  // water at rest sees a body coming
+    if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
+    if (g > 0) dt = std::min(dt, std::sqrt(h / (pi * g)));
+    if (options_.sigma > 0) dt = std::min(dt, std::sqrt(state_.rho * h * h * h / (4 * pi * options_.sigma)));
+    return std::min(dt, effects_.max_dt(state_));
+}
+
+/// As advised_dt(), at the edge: two cells a step, the width of the hat through which markers and faces see each other, and ω dt = 2 for
+/// the shortest waves, whose surface moves with the velocity of before (gravity: ω² = g k, tension: ω² = σ k³/ρ, k = π/h).
+template <int D>
+StepLimit Water<D>::stable_dt() const {
+    constexpr real cells = 2;
+    const real h = frame_.h_min(), g = norm(gravity_);
+    const real rate = std::max(rate_, solids_.max_rate(state_)), motion = rate + std::sqrt(cells * g / h);
+    StepLimit limit;
+    const auto at_most = [&](real dt, std::string_view why) {
+        if (dt < limit.dt) limit = {dt, why};
+    };
+    if (motion > 0) at_most(cells / motion, "liquid or a body crosses two cells in it");
+    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the gravity wave of two cells turns by two radians in it");
+    if (options_.sigma > 0)
+        at_most(2 * std::sqrt(state_.rho * h * h * h / (pi * pi * pi * options_.sigma)),
+                "the capillary wave of two cells turns by two radians in it");
+    return limit;
+}
+
+template class Water<2>;
+template class Water<3>;
+
+}  // namespace weir::water

@@ -1,0 +1,162 @@
+// The solver "mac_water": liquid with a free surface on a MAC grid, with markers, a level set of the markers, and second-order surface
+// pressure; air is empty (p = σ κ on the surface). Harlow & Welch 1965; Foster & Fedkiw 2001; Enright et al. 2002; Zhu & Bridson 2005;
+// Batty et al. 2007; Bridson 2015.
+#pragma once
+#include "core/effects.hpp"
+#include "core/solver.hpp"
+#include "geometry/solids.hpp"
+#include "scene/solver_kind.hpp"
+#include "staggered/projection.hpp"
+#include "staggered/solid_faces.hpp"
+#include "staggered/state.hpp"
+#include "water/extrapolate.hpp"
+#include "water/level_set.hpp"
+#include "water/marker_motion.hpp"
+#include "water/markers.hpp"
+#include "water/pressure.hpp"
+#include "water/transfer.hpp"
+#include "water/viscosity.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace weir::water {
+
+/// The registered solver "mac_water".
+scene::SolverKind kind();
+
+/// How momentum travels: on the grid by semi-Lagrangian advection, or on the markers.
+enum class Transfer { grid, pic, flip, apic };
+
+/// Longest over shortest edge of a cell up to which a free surface keeps its energy.
+inline constexpr real flattest_cell = 4;
+
+struct WaterOptions {
+    Transfer transfer = Transfer::flip;
+    real flip_blend = 0.97;  // β: 1 pure FLIP, 0 pure PIC (Zhu & Bridson 2005)
+    Trace trace = Trace::rk2;
+    PoissonChoice poisson;
+    real cfl = 1;
+    bool volume_control = true;
+    bool reseed = true;
+    std::uint64_t seed = 1;
+    real sigma = 0;      // surface tension [N/m]; 0: no curvature is computed
+    real viscosity = 0;  // θ of the viscous solve: ½ Crank–Nicolson, 1 implicit; 0: no viscosity
+    explicit WaterOptions(const scene::Scene& scene);
+};
+
+/// A region that pours liquid in while it is open.
+template <int D>
+struct Emitter {
+    geometry::ShapePtr<D> shape;
+    Vec<D> velocity{};
+    real start = 0, end = infinity;
+    Index<D> lo{}, hi{};  // the cells that it can reach
+    /// Whether it pours at some time of a step from `from` to `to`.
+    bool works(real from, real to) const { return from < end && to > start; }
+};
+
+/// What a solid does to the liquid's velocity on a face inside it.
+template <int D>
+struct SolidFace {
+    Vec<D> normal, velocity;  // of the solid
+    bool no_slip = false;
+    real value = 0;  // what is to stand there
+};
+
+template <int D>
+class Water final : public Solver {
+public:
+    explicit Water(const scene::Scene& scene);
+
+    StepReport step(real dt) override;
+    real advised_dt() const override;
+    StepLimit stable_dt() const override;
+    FieldSet fields() const override;
+    std::vector<Integral> integrals() const override;
+    real time() const override { return state_.time; }
+    void save(Checkpoint& to) const override;
+    void restore(const Checkpoint& from) override;
+    const Passes& passes() const override { return passes_; }
+    Passes& passes() override { return passes_; }
+    std::size_t bytes() const override;
+    std::vector<EffectPlan> effects() const override { return effects_.plans(); }
+
+    /// For tests and studies.
+    const MacState<D>& state() const { return state_; }
+    const LevelSet<D>& surface() const { return surface_; }
+    const Markers<D>& markers() const { return markers_; }
+
+private:
+    // Start (water_start.cpp)
+    void read_emitters(const scene::Scene& scene);
+    void fill_with_liquid(const scene::Scene& scene);
+    void seed_markers();
+
+    // The passes of a step, in order (water.cpp, water_sources.cpp, water_solids.cpp)
+    void place_solids(real t);
+    void move_surface(real dt);
+    void pour_and_drain(real dt);
+    void redistribute_markers();
+    bool fill_cell(const Index<D>& I, int wanted);
+    void pour(const Emitter<D>& emitter, real dt);
+    bool is_free(const Vec<D>& x) const;
+    void impose_emitters(real dt);
+    void curvature();
+    void correct_surface();
+    void momentum_to_faces(real dt);
+    void forces(real dt);
+    poisson::Report project(real dt);
+    void extend_velocity();
+    void momentum_to_markers();
+
+    void advect_faces(real dt);
+    void control_volume();
+    void set_fixed_faces();
+    void mark_liquid_faces();
+    void list_faces_in_solids();
+    void forget_faces_in_solids();
+    void constrain_velocity_in_solids();
+    Vec<D> velocity_at_face(int a, const Index<D>& I) const;
+    real max_speed_rate() const;
+    real kinetic_energy() const;
+    real potential_energy() const;
+    Vec<D> momentum() const;
+    real crossing(const Index<D>& I, int axis) const;
+
+    WaterOptions options_;
+    MacState<D> state_;
+    Frame<D> frame_;
+    SolidPlacement<D> solids_;
+    Effects<MacState<D>> effects_;
+    Vec<D> gravity_{};
+    std::vector<Emitter<D>> emitters_;
+    Grid<std::uint8_t, D> closed_, near_solid_;
+    FaceLists<D> in_solids_;
+    std::array<std::vector<SolidFace<D>>, D> solid_faces_;  // in the order of in_solids_
+
+    Markers<D> markers_;
+    LevelSet<D> surface_;
+    SurfacePressure<D> pressure_;
+    Extrapolation<D> extrapolate_;
+    FaceSums<D> sums_;
+    FaceMarks<D> known_;
+    MacVelocity<D> before_;  // faces as the markers left them, or as they were before advection
+    Grid<real, D> curvature_;
+    std::unique_ptr<SurfaceViscosity<D>> viscosity_;
+    real volume_target_ = 0;  // what the ledger says: start + poured in − drained [m^D]
+    std::int64_t steps_ = 0;
+    real rate_ = 0;  // max |u|/h over known faces [1/s]
+    int up_ = 1;     // the axis that gravity is most along
+    std::int64_t escaped_ = 0, reseeded_ = 0;
+    real volume_shift_ = 0;  // how far volume control moved the surface, all steps together [m]
+    Passes passes_;
+};
+
+/// φ of the free surface of a shape of liquid: distance to that part of the shape's boundary which is not a wall or a solid.
+template <int D>
+void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, LevelSet<D>& surface);
+
+}  // namespace weir::water

@@ -1,0 +1,149 @@
+// What enters and leaves: emitters, open sides; and the repair of the markers' distribution.
+#include "water/solver.hpp"
+
+namespace weir::water {
+
+namespace {
+
+/// f(I) for I in [lo, hi), one after the other: what is added to a list keeps one order.
+template <int D, class F>
+void for_each_serial(const Index<D>& lo, const Index<D>& hi, F&& f) {
+    Index<D> I = lo;
+    for (int d = 0; d < D; ++d)
+        if (hi[d] <= lo[d]) return;
+    while (I[D - 1] < hi[D - 1]) {
+        f(I);
+        for (int d = 0; d < D; ++d) {
+            if (++I[d] < hi[d] || d == D - 1) break;
+            I[d] = lo[d];
+        }
+    }
+}
+
+}  // namespace
+
+/// Adds markers to half cells of I that have none, up to `wanted` in the cell, with the velocity of the liquid there.
+template <int D>
+bool Water<D>::fill_cell(const Index<D>& I, int wanted) {
+    const std::size_t cell = surface_.phi.linear(I);
+    int occupied = 0, count = markers_.in_cell(cell);
+    for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p) {
+        int half = 0;
+        for (int d = 0; d < D; ++d) half |= (markers_.position(p)[d] > frame_.centre(I)[d]) << d;
+        occupied |= 1 << half;
+    }
+    bool added = false;
+    for (int sub = 0; sub < Markers<D>::per_cell && count < wanted; ++sub) {
+        if (occupied >> sub & 1) continue;
+        const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed + static_cast<std::uint64_t>(steps_) + 1);
+        if (solids_.any() && solids_.solids().distance(x) <= 0) continue;
+        markers_.add(x, sample(state_.u, Stencil<D>(frame_, x)));
+        ++count;
+        added = true;
+    }
+    return added;
+}
+
+template <int D>
+bool Water<D>::is_free(const Vec<D>& x) const {
+    for (int d = 0; d < D; ++d)
+        if (x[d] < frame_.origin[d] || x[d] >= frame_.origin[d] + frame_.h[d] * frame_.cells[d]) return false;
+    return !solids_.any() || solids_.solids().distance(x) > 0;
+}
+
+/// A jittered lattice of half cells moves with the emitter's velocity; its points become markers as they enter the emitter, all of them
+/// when it starts. So what is poured is area × speed × time, neither more where markers crowd nor less where they are slow. Markers have
+/// already moved: the lattice is where it is at the end of the step, and in the first one those count that have come out again.
+template <int D>
+void Water<D>::pour(const Emitter<D>& emitter, real dt) {
+    const real from = std::max(state_.time, emitter.start), to = std::min(state_.time + dt, emitter.end);
+    const real running = to - emitter.start;
+    const bool starts = state_.time <= emitter.start;  // this step is the first in which it works
+    for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
+        if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
+            surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
+        for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
+            Vec<D> x;
+            std::array<std::int64_t, D> k;
+            std::uint64_t key = 0;
+            for (int d = 0; d < D; ++d) {  // the lattice point whose undisturbed place is nearest to this half cell
+                const real travelled = emitter.velocity[d] * running / (0.5 * frame_.h[d]);
+                k[static_cast<std::size_t>(d)] = 2 * I[d] + (sub >> d & 1) - static_cast<std::int64_t>(std::floor(travelled));
+                key = key * 0x100000001B3u + static_cast<std::uint64_t>(k[static_cast<std::size_t>(d)]);
+            }
+            for (int d = 0; d < D; ++d) {
+                const real jitter = hashed_random(options_.seed, key, static_cast<std::uint64_t>(d));
+                x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
+                       emitter.velocity[d] * running;
+            }
+            const Vec<D> earlier = x - (to - from) * emitter.velocity;
+            const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
+            if ((starts ? now || before : now && !before) && is_free(x)) markers_.add(x, emitter.velocity);
+        }
+    });
+}
+
+/// Markers beyond open sides go, and take their share of the ledger's volume with them: it is redistribute_markers() that says how many
+/// there are, so no marker stands for one volume for ever. Emitters pour a lattice of half cells.
+template <int D>
+void Water<D>::pour_and_drain(real dt) {
+    const auto timed = passes_.time("sort markers");
+    const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
+    if (departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
+    for (const auto& emitter : emitters_)
+        if (emitter.works(state_.time, state_.time + dt)) pour(emitter, dt);
+    const std::size_t poured = markers_.count() - (all - departed);
+    volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(poured);
+    markers_.sort(frame_);
+}
+
+/// Faces inside an emitter move with it.
+template <int D>
+void Water<D>::impose_emitters(real dt) {
+    for (const auto& emitter : emitters_) {
+        if (!emitter.works(state_.time, state_.time + dt)) continue;
+        for (int a = 0; a < D; ++a)
+            for_each_cell(state_.u[a].extent(), [&](const Index<D>& I) {
+                if (!emitter.shape->contains(state_.u.face_centre(a, I))) return;
+                state_.u[a](I) = emitter.velocity[a];
+                known_[static_cast<std::size_t>(a)](I) = 1;
+            });
+    }
+}
+
+/// Every few steps, deep in the liquid: cells with fewer than half of the markers get new ones in their empty half cells, cells with more
+/// than three times as many lose the last ones. Neither changes the ledger: the level set says how much liquid there is.
+template <int D>
+void Water<D>::redistribute_markers() {
+    constexpr int every = 4, few = Markers<D>::per_cell / 2, many = 3 * Markers<D>::per_cell;
+    if (!options_.reseed || steps_ % every != 0) return;
+    const auto timed = passes_.time("redistribute markers");
+    const real deep = -1.5 * frame_.h_max();
+    bool changed = false, heaps = false;
+    const std::size_t cells = product(frame_.cells), before = markers_.count();
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        const int count = markers_.in_cell(cell);
+        heaps |= count > many;
+        if (count >= few || surface_.phi[cell] > deep || (!closed_.empty() && closed_[cell])) continue;
+        changed |= fill_cell(frame_.index_of(cell), few);
+    }
+    reseeded_ += static_cast<std::int64_t>(markers_.count() - before);
+    if (changed) markers_.sort(frame_);
+    if (!heaps) return;
+    std::size_t cell = 0;
+    markers_.retain([&](std::size_t p) {
+        while (p >= markers_.end(cell)) ++cell;
+        return p < markers_.begin(cell) + many;
+    });
+    markers_.sort(frame_);
+}
+
+#define WEIR_INSTANTIATE(D)                        \
+    template void Water<D>::pour_and_drain(real);  \
+    template void Water<D>::impose_emitters(real); \
+    template void Water<D>::redistribute_markers();
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::water

@@ -1,0 +1,222 @@
+// What a scene of liquid is at t = 0: the level set of its shapes, its markers, its velocity.
+#include "scene/names.hpp"
+#include "staggered/initial.hpp"
+#include "water/effects.hpp"
+#include "water/solver.hpp"
+
+namespace weir::water {
+
+namespace {
+
+/// Whether the point of the shape's boundary next to x is a contact with a wall or a solid: there the liquid ends, but not at air.
+template <int D>
+bool at_contact(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, const Vec<D>& x, real d) {
+    const real h = frame.h_min(), eps = 1e-4 * h, touching = 1e-6 * h;  // round-off of a distance is far below both
+    Vec<D> n;
+    for (int a = 0; a < D; ++a)
+        n[a] = (liquid.distance(x + eps * Vec<D>::unit(a)) - liquid.distance(x - eps * Vec<D>::unit(a))) / (2 * eps);
+    const Vec<D> boundary = x - d * n;
+    for (int a = 0; a < D; ++a) {
+        if (frame.periodic(a)) continue;
+        // On the ridge between two contacts the gradient points at neither: then the wall's own distance tells.
+        const real lower = x[a] - frame.origin[a], upper = frame.h[a] * frame.cells[a] - lower;
+        if (n[a] < -0.3 && std::abs(lower + d) < touching) return true;
+        if (n[a] > 0.3 && std::abs(upper + d) < touching) return true;
+        if (std::abs(n[a]) < 0.99) continue;  // a boundary that cuts the wall at an angle does not lie on it
+        if (n[a] < 0 && boundary[a] < frame.origin[a] + touching) return true;
+        if (n[a] > 0 && boundary[a] > frame.origin[a] + frame.h[a] * frame.cells[a] - touching) return true;
+    }
+    return !solids.empty() && solids.distance(boundary) < touching && dot(solids.normal(boundary, eps), n) < -0.99;
+}
+
+}  // namespace
+
+template <int D>
+void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, LevelSet<D>& surface) {
+    Grid<real, D> raw(frame.cells);
+    Grid<std::uint8_t, D> known(frame.cells);
+    for_each_cell(frame.cells, [&](const Index<D>& I) {
+        raw(I) = liquid.distance(frame.centre(I));
+        known(I) = std::abs(raw(I)) < surface.cap() && !at_contact(liquid, solids, frame, frame.centre(I), raw(I));
+        surface.phi(I) = known(I) ? raw(I) : raw(I) < 0 ? -surface.cap() : surface.cap();
+    });
+    const auto beside_surface = [&](const Index<D>& I) {
+        for (int d = 0; d < D; ++d)
+            for (const int by : {-1, 1})
+                if ((raw(frame.near(I, d, by)) < 0) != (raw(I) < 0)) return true;
+        return false;
+    };
+    // Beside a contact φ continues linearly from two cells further in: exact for planes. D passes reach the corners of a tank.
+    Grid<std::uint8_t, D> filled = known;
+    for (int pass = 0; pass < D; ++pass) {
+        for_each_cell(frame.cells, [&](const Index<D>& I) {
+            if (known(I) || !beside_surface(I)) return;
+            real sum = 0;
+            int count = 0;
+            for (int d = 0; d < D; ++d)
+                for (const int by : {-1, 1}) {
+                    Index<D> J = I, K = I;
+                    if (!frame.step(J, d, by) || !(K = J, frame.step(K, d, by)) || !known(J) || !known(K)) continue;
+                    const real continued = 2 * surface.phi(J) - surface.phi(K);
+                    if ((continued < 0) != (raw(I) < 0)) continue;
+                    sum += continued;
+                    ++count;
+                }
+            if (count == 0) return;
+            surface.phi(I) = sum / count;
+            filled(I) = 1;
+        });
+        known = filled;
+    }
+    for_each_cell(frame.cells, [&](const Index<D>& I) {
+        if (!known(I) && beside_surface(I)) surface.phi(I) = raw(I);
+    });
+    surface.redistance();
+}
+
+namespace {
+
+template <int D>
+geometry::Solids<D> solids_of(const scene::Scene& scene) {
+    return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
+}
+
+/// Beyond flattest_cell a splash has been seen to gain more than a fifth of its energy (cases/hard_water): a surface that falls by several
+/// cells from one column to the next is not resolved across them.
+template <int D>
+void refuse_flat_cells(const scene::Scene& scene, const Frame<D>& frame) {
+    const real ratio = frame.h_max() / frame.h_min();
+    if (ratio > flattest_cell * (1 + 1e-9))
+        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " times as long as thin; water stays stable up to " +
+                                       scene::number_text(flattest_cell) + " times");
+}
+
+template <int D>
+bool all_stick(const geometry::Solids<D>& solids) {
+    for (std::size_t i = 0; i < solids.count(); ++i)
+        if (!solids[i].no_slip) return false;
+    return true;
+}
+
+}  // namespace
+
+template <int D>
+Water<D>::Water(const scene::Scene& scene)
+    : options_(scene),
+      state_(scene, FieldPlan{}),
+      frame_(state_.u, state_.sides),
+      solids_(solids_of<D>(scene), state_),
+      effects_(make_effects<D>(body_forces(), scene)) {
+    refuse_flat_cells(scene, frame_);
+    if (const auto* gravity = scene.effect("gravity")) gravity_ = gravity->template vec<D>("g");
+    for (int d = 0; d < D; ++d)
+        if (std::abs(gravity_[d]) > std::abs(gravity_[up_])) up_ = d;
+    markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
+    surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
+    pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
+    const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);  // σ k²/ρ of a wave of ten cells
+    extrapolate_ = Extrapolation<D>(frame_, norm(gravity_) + capillary);
+    sums_ = FaceSums<D>(frame_.cells);
+    for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
+    before_ = state_.u;
+    if (options_.sigma > 0) {
+        curvature_ = Grid<real, D>(frame_.cells);
+        effects_.declare(
+            {.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = product(frame_.cells) * sizeof(real)});
+    }
+    if (options_.viscosity > 0 && state_.nu > 0) {
+        viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));
+        effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes()});
+    }
+    read_emitters(scene);
+    if (solids_.any()) {
+        closed_ = near_solid_ = Grid<std::uint8_t, D>(frame_.cells);
+        place_solids(0);
+    }
+    fill_with_liquid(scene);
+    set_initial_velocity(state_, scene);
+    set_fixed_faces();
+    extend_velocity();
+    seed_markers();
+}
+
+/// Emitters, and sides through which liquid flows in: those are emitters of one layer of cells.
+template <int D>
+void Water<D>::read_emitters(const scene::Scene& scene) {
+    if (scene.has("emitters"))
+        for (const auto& table : scene.root().tables("emitters")) {
+            Emitter<D> emitter;
+            emitter.shape = geometry::make_shape<D>(table);
+            if (table.has("velocity")) emitter.velocity = table.vec<D>("velocity");
+            emitter.start = table.number_or("start", 0);
+            emitter.end = table.number_or("end", infinity);
+            emitters_.push_back(std::move(emitter));
+        }
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1}) {
+            const auto& side = state_.sides.side(a, end);
+            if (side.kind != geometry::SideKind::inflow) continue;
+            Vec<D> lo = frame_.origin, hi = frame_.origin;
+            for (int d = 0; d < D; ++d) lo[d] -= frame_.h[d], hi[d] += frame_.h[d] * (frame_.cells[d] + 1);
+            (end == 0 ? hi : lo)[a] = frame_.origin[a] + frame_.h[a] * (end == 0 ? 1 : frame_.cells[a] - 1);
+            Emitter<D> emitter;
+            emitter.shape = geometry::box<D>(lo, hi);
+            emitter.velocity = side.velocity;
+            emitters_.push_back(std::move(emitter));
+        }
+    for (auto& emitter : emitters_) {
+        emitter.lo = frame_.cells;
+        for (std::size_t i = 0; i < product(frame_.cells); ++i) {
+            const Index<D> I = frame_.index_of(i);
+            if (emitter.shape->distance(frame_.centre(I)) > 2 * norm(frame_.h)) continue;
+            for (int d = 0; d < D; ++d) emitter.lo[d] = std::min(emitter.lo[d], I[d]), emitter.hi[d] = std::max(emitter.hi[d], I[d] + 1);
+        }
+    }
+}
+
+template <int D>
+void Water<D>::fill_with_liquid(const scene::Scene& scene) {
+    const auto shapes = geometry::make_shapes<D>(scene.has("liquid") ? scene.root().tables("liquid") : std::vector<scene::Table>{});
+    if (shapes.empty()) {
+        if (emitters_.empty()) scene.refuse("liquid", "a scene of water needs liquid: at least one shape, or an emitter");
+        surface_.redistance();
+    } else {
+        start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
+    }
+    volume_target_ = surface_.volume();
+    if (!shapes.empty() && volume_target_ == 0) {
+        const auto liquid = geometry::unite<D>(shapes);
+        const real inside = sum_over(frame_.cells, [&](const Index<D>& I) { return liquid->contains(frame_.centre(I)) ? 1.0 : 0.0; });
+        if (inside > 0) scene.refuse("liquid", "all liquid lies inside solids");
+        scene.refuse("liquid", "no liquid lies in the domain, or all of it is thinner than a cell");
+    }
+    pressure_.set_surface(surface_, closed_, state_);
+}
+
+template <int D>
+void Water<D>::seed_markers() {
+    const std::size_t cells = product(frame_.cells);
+    markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        const Index<D> I = frame_.index_of(cell);
+        if (surface_.phi(I) > norm(frame_.h)) continue;
+        for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
+            const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);
+            const Stencil<D> stencil(frame_, x);
+            if (sample_cells(surface_.phi, stencil) < 0 && (!solids_.any() || solids_.solids().distance(x) > 0))
+                markers_.add(x, sample(state_.u, stencil));
+        }
+    }
+    markers_.sort(frame_);
+    if (markers_.count() > 0)
+        markers_.volume = volume_target_ / static_cast<real>(markers_.count());
+    else
+        markers_.volume = frame_.cell_volume() / Markers<D>::per_cell;
+}
+
+template Water<2>::Water(const scene::Scene&);
+template Water<3>::Water(const scene::Scene&);
+template void start_level_set(const geometry::Shape<2>&, const geometry::Solids<2>&, const Frame<2>&, LevelSet<2>&);
+template void start_level_set(const geometry::Shape<3>&, const geometry::Solids<3>&, const Frame<3>&, LevelSet<3>&);
+
+}  // namespace weir::water

@@ -1,0 +1,266 @@
+#include "water/viscosity.hpp"
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+
+namespace weir::water {
+
+using geometry::SideKind;
+
+template <int D>
+SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick)
+    : frame_(frame), sides_(&state.sides), theta_(theta), solids_stick_(solids_stick), cell_(frame.cells) {
+    for (int a = 0; a < D; ++a)
+        for (Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_})
+            (*faces)[static_cast<std::size_t>(a)] = Grid<real, D>(state.u[a].extent());
+    for (int a = 0; a < D; ++a) unknown_[static_cast<std::size_t>(a)].reserve(mass_[static_cast<std::size_t>(a)].size());
+    for (int a = 0; a < D; ++a)
+        for (int b = a + 1; b < D; ++b) edge_[static_cast<std::size_t>(a + b - 1)] = Grid<real, D>(frame.cells + e<D>(a) + e<D>(b));
+}
+
+/// f(a, I) may write what belongs to the face I of axis a only.
+template <int D>
+template <class F>
+void SurfaceViscosity<D>::for_each_unknown(F&& f) const {
+    for (int a = 0; a < D; ++a) {
+        const auto& list = unknown_[static_cast<std::size_t>(a)];
+        parallel_for(0, static_cast<int>(list.size()), [&](int k) { f(a, list[static_cast<std::size_t>(k)]); });
+    }
+}
+
+template <int D>
+void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
+    const auto is_closed = [&](const Index<D>& I) { return !closed.empty() && closed(I); };
+    for_each_cell(frame_.cells, [&](const Index<D>& I) { cell_(I) = is_closed(I) ? 0 : surface.fraction(I); });
+    // Whether a cell of the edge's four lies beyond a side, and whether shear acts there.
+    for (int a = 0; a < D; ++a)
+        for (int b = a + 1; b < D; ++b) {
+            auto& weight = edge_[static_cast<std::size_t>(a + b - 1)];
+            for_each_cell(weight.extent(), [&](const Index<D>& I) {
+                real sum = 0;
+                bool shears = true;
+                for (const int da : {-1, 0})
+                    for (const int db : {-1, 0}) {
+                        Index<D> J = I;
+                        bool inside = true;
+                        for (const auto& [axis, by] : {std::pair{a, da}, std::pair{b, db}}) {
+                            const int i = I[axis] + by;
+                            if ((i >= 0 && i < frame_.cells[axis]) || frame_.periodic(axis)) {
+                                J[axis] = (i + frame_.cells[axis]) % frame_.cells[axis];
+                                continue;
+                            }
+                            inside = false;
+                            const auto& side = sides_->side(axis, i < 0 ? 0 : 1);
+                            shears &= side.kind == SideKind::moving_wall || (side.kind == SideKind::wall && side.no_slip);
+                        }
+                        if (inside) sum += cell_(J), shears &= solids_stick_ || !is_closed(J);
+                    }
+                weight(I) = shears ? 0.25 * sum : 0;
+            });
+        }
+    for (int a = 0; a < D; ++a) {
+        auto& mass = mass_[static_cast<std::size_t>(a)];
+        for_each_cell(mass.extent(), [&](const Index<D>& I) {
+            const bool on_side = !frame_.periodic(a) && (I[a] == 0 || I[a] == frame_.cells[a]);
+            const bool copy = frame_.periodic(a) && I[a] == frame_.cells[a];
+            const bool shut = state.solid.any() && state.solid.open[static_cast<std::size_t>(a)](I) == 0;
+            mass(I) = on_side || copy || shut ? -1 : 0.5 * (cell_(frame_.near(I, a, -1)) + cell_(frame_.near(I, a, 0)));
+        });
+    }
+}
+
+/// ∂_b u_a + ∂_a u_b at the edge on the lower sides of cell I along a and b.
+template <int D>
+real SurfaceViscosity<D>::shear(const Faces& u, int a, int b, const Index<D>& I, real fixed) const {
+    real sum = 0;
+    for (const auto& [c, across] : {std::pair{a, b}, std::pair{b, a}}) {
+        const auto& face = u[static_cast<std::size_t>(c)];
+        Index<D> lower = I, upper = I;
+        if (frame_.periodic(c)) lower[c] = upper[c] = I[c] % frame_.cells[c];
+        const int n = frame_.cells[across];
+        if (frame_.periodic(across)) {
+            lower[across] = (I[across] + n - 1) % n, upper[across] = I[across] % n;
+            sum += (face(upper) - face(lower)) * frame_.inv_h[across];
+        } else if (I[across] == 0) {
+            sum += 2 * (face(upper) - fixed * sides_->side(across, 0).velocity[c]) * frame_.inv_h[across];
+        } else if (I[across] == n) {
+            --lower[across];
+            sum += 2 * (fixed * sides_->side(across, 1).velocity[c] - face(lower)) * frame_.inv_h[across];
+        } else {
+            --lower[across];
+            sum += (face(upper) - face(lower)) * frame_.inv_h[across];
+        }
+    }
+    return sum;
+}
+
+/// Whether no side of the domain is within reach of the stress at a face (nor the copy of the first face that ends a periodic axis).
+template <int D>
+bool SurfaceViscosity<D>::is_inner(int a, const Index<D>& I) const {
+    bool inner = true;
+    for (int d = 0; d < D; ++d) inner &= I[d] >= 1 && I[d] < frame_.cells[d] - (d == a && !frame_.periodic(d) ? 0 : 1);
+    return inner;
+}
+
+namespace {
+/// From an entry of a grid to the next along axis d.
+template <int D>
+std::ptrdiff_t stride(const Grid<real, D>& grid, int d) {
+    std::ptrdiff_t step = 1;
+    for (int c = 0; c < d; ++c) step *= grid.extent()[c];
+    return step;
+}
+template <int D>
+const real* entry(const Grid<real, D>& grid, const Index<D>& I) {
+    return grid.data() + grid.linear(I);
+}
+}  // namespace
+
+/// stress_divergence where is_inner: the same sums by plain strides.
+template <int D>
+real SurfaceViscosity<D>::inner_stress_divergence(const Faces& u, int a, const Index<D>& I) const {
+    const auto& grid = u[static_cast<std::size_t>(a)];
+    const real *ua = entry(grid, I), *cell = entry(cell_, I);
+    const std::ptrdiff_t along = stride(grid, a);
+    real sum = 2 * frame_.inv_h[a] * frame_.inv_h[a] * (cell[-stride(cell_, a)] * (*ua - ua[-along]) - *cell * (ua[along] - *ua));
+    for (int b = 0; b < D; ++b) {
+        if (b == a) continue;
+        const auto& weights = edge(std::min(a, b), std::max(a, b));
+        const auto& other = u[static_cast<std::size_t>(b)];
+        const real *lower_weight = entry(weights, I), *ub = entry(other, I), *ub_next = ub + stride(other, b);
+        const std::ptrdiff_t across = stride(grid, b), back = stride(other, a);
+        const real lower = (*ua - ua[-across]) * frame_.inv_h[b] + (*ub - ub[-back]) * frame_.inv_h[a];
+        const real upper = (ua[across] - *ua) * frame_.inv_h[b] + (*ub_next - ub_next[-back]) * frame_.inv_h[a];
+        sum += *lower_weight * lower * frame_.inv_h[b];
+        sum -= lower_weight[stride(weights, b)] * upper * frame_.inv_h[b];
+    }
+    return sum;
+}
+
+template <int D>
+real SurfaceViscosity<D>::stress_divergence(const Faces& u, int a, const Index<D>& I, real fixed) const {
+    if (is_inner(a, I)) return inner_stress_divergence(u, a, I);
+    const auto& ua = u[static_cast<std::size_t>(a)];
+    const Index<D> below = frame_.near(I, a, -1), above = frame_.near(I, a, 0);
+    Index<D> next = I + e<D>(a);
+    if (frame_.periodic(a) && next[a] == frame_.cells[a]) next[a] = 0;
+    real sum = 2 * frame_.inv_h[a] * frame_.inv_h[a] * (cell_(below) * (ua(I) - ua(below)) - cell_(above) * (ua(next) - ua(I)));
+    for (int b = 0; b < D; ++b) {
+        if (b == a) continue;
+        const auto& weight = edge(std::min(a, b), std::max(a, b));
+        const Index<D> upper = I + e<D>(b);
+        const auto side_factor = [&](int i) { return !frame_.periodic(b) && (i == 0 || i == frame_.cells[b]) ? 2.0 : 1.0; };
+        if (weight(I) > 0) sum += weight(I) * side_factor(I[b]) * shear(u, a, b, I, fixed) * frame_.inv_h[b];
+        if (weight(upper) > 0) sum -= weight(upper) * side_factor(upper[b]) * shear(u, a, b, upper, fixed) * frame_.inv_h[b];
+    }
+    return sum;
+}
+
+/// The diagonal of K.
+template <int D>
+real SurfaceViscosity<D>::diagonal(int a, const Index<D>& I) const {
+    real sum = 2 * frame_.inv_h[a] * frame_.inv_h[a] * (cell_(frame_.near(I, a, -1)) + cell_(frame_.near(I, a, 0)));
+    for (int b = 0; b < D; ++b) {
+        if (b == a) continue;
+        const auto& weight = edge(std::min(a, b), std::max(a, b));
+        for (const Index<D>& J : {I, I + e<D>(b)}) {
+            const bool side = !frame_.periodic(b) && (J[b] == 0 || J[b] == frame_.cells[b]);
+            sum += weight(J) * (side ? 4 : 1) * frame_.inv_h[b] * frame_.inv_h[b];
+        }
+    }
+    return sum;
+}
+
+/// Air costs nothing: its faces have neither mass nor stress. Leaves the diagonal of K in diagonal_.
+template <int D>
+void SurfaceViscosity<D>::list_unknowns() {
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        const auto& mass = mass_[at];
+        for_each_cell(mass.extent(), [&](const Index<D>& I) { diagonal_[at](I) = mass(I) < 0 ? 0 : diagonal(a, I); });
+        unknown_[at].clear();
+        for (std::size_t i = 0; i < mass.size(); ++i)
+            if (mass[i] > 0 || diagonal_[at][i] > 0) unknown_[at].push_back(index_of<D>(mass.extent(), i));
+    }
+}
+
+template <int D>
+real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
+    constexpr std::size_t block = 4096;  // added in order, whatever the threads
+    real sum = 0;
+    for (std::size_t a = 0; a < D; ++a) {
+        const auto& list = unknown_[a];
+        sum += ordered_sum(static_cast<int>((list.size() + block - 1) / block), [&](int k) {
+            const std::size_t begin = static_cast<std::size_t>(k) * block, end = std::min(list.size(), begin + block);
+            real part = 0;
+            for (std::size_t i = begin; i < end; ++i) part += p[a](list[i]) * q[a](list[i]);
+            return part;
+        });
+    }
+    return sum;
+}
+
+/// Conjugate gradients with the diagonal as preconditioner: ν dt/h² is moderate, a few iterations do.
+template <int D>
+void SurfaceViscosity<D>::solve(real dt_nu) {
+    const real s = theta_ * dt_nu;
+    for_each_unknown([&](int a, const Index<D>& I) {
+        const auto at = static_cast<std::size_t>(a);
+        diagonal_[at](I) = mass_[at](I) + s * diagonal_[at](I);
+        x_[at](I) = 0;
+        p_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
+    });
+    real rz = dot(r_, p_);
+    const real target = 1e-18 * rz;
+    iterations_ = 0;
+    while (rz > target && rz > 0) {
+        if (++iterations_ > 1000) throw NumericalFailure("velocity", "the viscous solve missed its tolerance after 1000 iterations");
+        for_each_unknown([&](int a, const Index<D>& I) {
+            const auto at = static_cast<std::size_t>(a);
+            ap_[at](I) = mass_[at](I) * p_[at](I) + s * stress_divergence(p_, a, I, 0);
+        });
+        const real alpha = rz / dot(p_, ap_);
+        for_each_unknown([&](int a, const Index<D>& I) {
+            const auto at = static_cast<std::size_t>(a);
+            x_[at](I) += alpha * p_[at](I);
+            r_[at](I) -= alpha * ap_[at](I);
+            ap_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
+        });
+        const real rz_next = dot(r_, ap_), beta = rz_next / rz;
+        for_each_unknown([&](int a, const Index<D>& I) {
+            const auto at = static_cast<std::size_t>(a);
+            p_[at](I) = ap_[at](I) + beta * p_[at](I);
+        });
+        rz = rz_next;
+    }
+}
+
+template <int D>
+void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt) {
+    set_weights(state, surface, closed);
+    list_unknowns();
+    for (int a = 0; a < D; ++a) {
+        p_[static_cast<std::size_t>(a)].fill(0);
+        x_[static_cast<std::size_t>(a)].fill(0);
+    }
+    for_each_unknown(
+        [&](int a, const Index<D>& I) { r_[static_cast<std::size_t>(a)](I) = -dt * state.nu * stress_divergence(state.u.face, a, I, 1); });
+    solve(dt * state.nu);
+    for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += x_[static_cast<std::size_t>(a)](I); });
+    sync_periodic(state.u, state.sides);
+}
+
+template <int D>
+std::size_t SurfaceViscosity<D>::bytes() const {
+    std::size_t total = cell_.size();
+    for (const auto& grid : edge_) total += grid.size();
+    for (const auto& grid : mass_) total += 6 * grid.size();
+    total *= sizeof(real);
+    for (const auto& list : unknown_) total += list.capacity() * sizeof(Index<D>);
+    return total;
+}
+
+template class SurfaceViscosity<2>;
+template class SurfaceViscosity<3>;
+
+}  // namespace weir::water

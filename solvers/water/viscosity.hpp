@@ -1,0 +1,52 @@
+// Viscosity of a liquid with a free surface: the stress 2 ρν D(u) with D = (∇u + ∇uᵀ)/2, and no viscous traction on the surface.
+// The weak form makes the free surface natural (Batty & Bridson 2008): minimise
+//     ½ Σ_faces m (u − u*)² + θ dt ν [ Σ_cells w Σ_a (∂_a u_a)² + Σ_edges w ½ (∂_b u_a + ∂_a u_b)² ]
+// with liquid fractions m of faces, w of cells and edges. (M + θ dt K) δ = −dt K u*, u = u* + δ; θ = ½ Crank–Nicolson, θ = 1 implicit.
+// Free-slip walls and solids exert no shear; no-slip ones hold the velocity half a cell (walls) or a face away (solids).
+#pragma once
+#include "staggered/state.hpp"
+#include "water/level_set.hpp"
+
+#include <array>
+#include <vector>
+
+namespace weir::water {
+
+template <int D>
+class SurfaceViscosity {
+public:
+    static constexpr int edges = D * (D - 1) / 2;
+    SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick);
+    /// u* → u over dt. Throws NumericalFailure("velocity", ...) when conjugate gradients miss a residual of 1e-9.
+    void apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt);
+    std::size_t bytes() const;
+    int iterations() const { return iterations_; }
+
+private:
+    using Faces = std::array<Grid<real, D>, D>;
+    void set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
+    /// (K u)_a at a face [1/s² × fraction]; `fixed` 1: prescribed values of walls count, 0: they are zero (for corrections).
+    real stress_divergence(const Faces& u, int a, const Index<D>& I, real fixed) const;
+    bool is_inner(int a, const Index<D>& I) const;
+    real inner_stress_divergence(const Faces& u, int a, const Index<D>& I) const;
+    real shear(const Faces& u, int a, int b, const Index<D>& I, real fixed) const;
+    const Grid<real, D>& edge(int a, int b) const { return edge_[static_cast<std::size_t>(a + b - 1)]; }
+    real diagonal(int a, const Index<D>& I) const;
+    void list_unknowns();
+    void solve(real dt_nu);
+    real dot(const Faces& p, const Faces& q) const;
+    template <class F>
+    void for_each_unknown(F&& f) const;
+
+    Frame<D> frame_;
+    const geometry::Sides<D>* sides_;
+    real theta_;
+    bool solids_stick_;
+    int iterations_ = 0;
+    Grid<real, D> cell_;                            // liquid fraction of cells
+    std::array<Grid<real, D>, edges> edge_;         // ... of the boxes about edges, 0 where no shear acts
+    Faces mass_, x_, r_, p_, ap_, diagonal_;        // mass_ < 0: not an unknown
+    std::array<std::vector<Index<D>>, D> unknown_;  // faces that liquid or its stress reaches
+};
+
+}  // namespace weir::water
