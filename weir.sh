@@ -1,21 +1,23 @@
 #!/usr/bin/env bash
 # weir's front door: ./weir.sh build | run SCENE [...] | validate [...] | cost [...] | plan CASE --budget 16ms --error 2% | stability [...] | report | picture RESULT [...] | view RESULT [...] | list ... | describe ... | test [...] | install DIR
-# Each call installs what is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a second call re-does only
-# what changed. The executable is build/release/weir.
+# Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
+# second call re-does only what changed. The executable is build/release/weir.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 
-packages=(g++ cmake ninja-build ccache git libeigen3-dev libfmt-dev libgtest-dev libbenchmark-dev librapidcheck-dev libtomlplusplus-dev libcli11-dev
-          nlohmann-json3-dev opencl-headers ocl-icd-opencl-dev pocl-opencl-icd oclgrind libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libhypre-dev libnanoflann-dev libvtk9-dev xvfb xauth valgrind gnuplot-nox)
+weir_needs=(g++ cmake ninja-build git libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev opencl-headers
+            ocl-icd-opencl-dev libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev)
+figures_need=(gnuplot-nox)
+tests_need=(ccache libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium)
 
-install_missing() {
+install_missing() { # PACKAGE...
     if ! command -v dpkg-query >/dev/null; then
-        echo "no apt here: these packages of Debian 12, or their likes, are assumed to be installed: ${packages[*]}" >&2
+        echo "no apt here: these packages of Debian 12, or their likes, are assumed to be installed: $*" >&2
         return
     fi
     local installed missing=()
-    installed="$(dpkg-query -W -f='${Package} ${Status}\n' "${packages[@]}" 2>/dev/null | sed -n 's/ install ok installed$//p' || true)"
-    for p in "${packages[@]}"; do
+    installed="$(dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null | sed -n 's/ install ok installed$//p' || true)"
+    for p in "$@"; do
         grep -qx -- "$p" <<<"$installed" || missing+=("$p")
     done
     [ ${#missing[@]} -eq 0 ] && return
@@ -29,11 +31,19 @@ install_missing() {
     "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build [TARGET...]: everything where no target is named
+# build [TARGET...]: those, without the tests where they have never been asked for
 build() {
-    install_missing
-    [ -f "$here/build/release/build.ninja" ] || (cd "$here" && cmake --preset release)
-    cmake --build "$here/build/release" ${1:+--target "$@"}
+    [ -f "$here/build/release/build.ninja" ] || (cd "$here" && cmake --preset release -DWEIR_TESTS=OFF -DWEIR_BENCHMARKS=OFF)
+    cmake --build "$here/build/release" --target "$@"
+}
+
+# build_all: the tests and benchmarks too
+build_all() {
+    install_missing "${weir_needs[@]}" "${figures_need[@]}" "${tests_need[@]}"
+    if ! grep -qs '^WEIR_TESTS:BOOL=ON' "$here/build/release/CMakeCache.txt"; then
+        (cd "$here" && cmake --preset release -DWEIR_TESTS=ON -DWEIR_BENCHMARKS=ON)
+    fi
+    cmake --build "$here/build/release"
 }
 
 usage() {
@@ -42,11 +52,15 @@ usage() {
 }
 
 case "${1:-}" in
-    build) build ;;
-    run | validate | cost | plan | stability | report | picture | view | list | describe) build weir >&2 && exec "$here/build/release/weir" "$@" ;;
+    build) build_all ;;
+    run | plan | picture | list | describe)
+        install_missing "${weir_needs[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
+    validate | cost | stability | report)
+        install_missing "${weir_needs[@]}" "${figures_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
+    view) install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec "$here/build/release/weir" "$@" ;;
     test) # threads that wait sleep: tests share the machine with other work, and spinning starves the thread that is waited for
         export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
-        build && cd "$here/build/release" && exec ctest --output-on-failure "${@:2}" ;;
-    install) [ $# -eq 2 ] || usage; build && exec cmake --install "$here/build/release" --prefix "$2" ;;
+        build_all && cd "$here/build/release" && exec ctest --output-on-failure "${@:2}" ;;
+    install) [ $# -eq 2 ] || usage; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
     *) usage ;;
 esac

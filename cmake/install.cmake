@@ -1,9 +1,15 @@
-# cmake --install: the library for find_package(weir), its headers below include/weir, the executable.
+# cmake --install: the library for find_package(weir), its public headers as <weir/...> and no others, the executable.
 include(CMakePackageConfigHelpers)
 set(weir_package ${CMAKE_INSTALL_LIBDIR}/cmake/weir)
 get_property(libraries GLOBAL PROPERTY WEIR_LIBRARIES)
 install(TARGETS ${libraries} EXPORT weirTargets)
-install(DIRECTORY solvers/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/weir FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inl")
+set(WEIR_PUBLIC_HEADERS
+  sim/simulation.hpp sim/probes.hpp sim/registry.hpp                              # a scene in, steps, fields and probes out
+  scene/scene.hpp scene/schema.hpp scene/solver_kind.hpp                          # what a scene may say, and a solver of one's own
+  core/solver.hpp core/effects.hpp core/passes.hpp core/checkpoint.hpp core/error.hpp core/types.hpp core/parallel.hpp
+  output/frames.hpp)                                                              # VTK series
+install(CODE "set(headers \"${WEIR_PUBLIC_HEADERS}\")\nset(from \"${PROJECT_SOURCE_DIR}/solvers\")\nset(to \"${CMAKE_INSTALL_INCLUDEDIR}/weir\")")
+install(SCRIPT cmake/install_headers.cmake)
 install(EXPORT weirTargets NAMESPACE weir:: DESTINATION ${weir_package})
 configure_package_config_file(cmake/weirConfig.cmake.in ${PROJECT_BINARY_DIR}/weirConfig.cmake INSTALL_DESTINATION ${weir_package})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/weirConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -16,15 +16,26 @@ endif()
 
 set_property(GLOBAL PROPERTY WEIR_LIBRARIES "")
 
-# weir_library(NAME SOURCES a.cpp ... LINKS weir::core ... PRIVATE_LINKS ...)  builds the static library weir_NAME, known as weir::NAME.
+# weir_unity(TARGET)  compiles the sources of a target together: where headers cost more than the code below them. Not for hot loops, whose
+# files say how each is compiled.
+function(weir_unity target)
+  if(WEIR_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
+# weir_library(NAME [UNITY] SOURCES a.cpp ... LINKS weir::core ... PRIVATE_LINKS ...)  builds the static library weir_NAME, known as weir::NAME.
 function(weir_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(arg "UNITY" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
   add_library(weir_${name} STATIC ${arg_SOURCES})
+  if(arg_UNITY)
+    weir_unity(weir_${name})
+  endif()
   add_library(weir::${name} ALIAS weir_${name})
   set_target_properties(weir_${name} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(weir_${name} PUBLIC cxx_std_20)
   target_include_directories(weir_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/solvers> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/weir>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/solvers> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(weir_${name} PUBLIC ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:weir_flags> ${arg_PRIVATE_LINKS})
   set_property(GLOBAL APPEND PROPERTY WEIR_LIBRARIES weir_${name})
 endfunction()
@@ -35,6 +46,7 @@ function(weir_test_program kind name)
   add_executable(${kind}_${name} ${arg_SOURCES})
   target_include_directories(${kind}_${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${kind}_${name} PRIVATE weir_flags weir_test_main ${arg_LINKS})
+  target_compile_options(${kind}_${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is optimised; what tests it need not be
   target_compile_definitions(${kind}_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WEIR_BINARY_DIR="${PROJECT_BINARY_DIR}")
 endfunction()
 

@@ -14,6 +14,9 @@ namespace weir::picture {
 
 using Colour = Vec<3>;
 
+/// Pictures are drawn so many times as wide and high as they are written: smooth edges.
+inline constexpr int oversampling = 2;
+
 inline Colour mix(const Colour& a, const Colour& b, real s) { return (1 - s) * a + s * b; }
 inline Colour times(const Colour& a, const Colour& b) { return {{a[0] * b[0], a[1] * b[1], a[2] * b[2]}}; }
 /// An sRGB colour 0xrrggbb as linear light.

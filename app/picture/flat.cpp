@@ -8,8 +8,6 @@ namespace weir::picture {
 
 namespace {
 
-constexpr int oversampling = 2;
-
 /// Pixels of the canvas against places in the domain.
 struct Plane {
     real x0, y1, metre;  // left, top [m]; metres a pixel

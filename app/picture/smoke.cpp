@@ -13,7 +13,7 @@ Volume volume_of(const GridView& grid, std::vector<real> values) {
 }
 
 /// Greatest value, apart from the most extreme 0.2%.
-real robust_max(std::vector<real> values) {
+real dense_value(std::vector<real> values) {
     const auto at = static_cast<std::ptrdiff_t>(0.998 * static_cast<real>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + at, values.end());
     return std::max(*(values.begin() + at), 1e-300);
@@ -24,7 +24,7 @@ real robust_max(std::vector<real> values) {
 Smoke::Smoke(const View& view) : density_(volume_of(view.frame.grid, scalar_field(view.frame, view.field))), light_(density_) {
     const GridView& grid = view.frame.grid;
     step_ = 0.5 * std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
-    const real dense = view.range > 0 ? view.range : robust_max(density_.values);
+    const real dense = view.range > 0 ? view.range : dense_value(density_.values);
     // the densest smoke hides what is behind an eighth of the domain: opaque enough to have a shape, thin enough to have an inside
     const Vec<3> extent = density_.box.max - density_.box.min;
     const real scale = 3.0 / (std::min({extent[0], extent[1], extent[2]}) / 4) / dense;

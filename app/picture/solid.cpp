@@ -6,8 +6,6 @@ namespace weir::picture {
 
 namespace {
 
-constexpr int oversampling = 2;
-
 void draw_line(Canvas& canvas, const Vec<2>& a, const Vec<2>& b, const Colour& colour, real opacity) {
     const int steps = static_cast<int>(2 * norm(b - a)) + 1;
     for (int i = 0; i <= steps; ++i) {

@@ -34,8 +34,7 @@ struct Result {
 scene::Scene scene_of(const Job& job) {
     const int n = job.cells;
     const auto kinds = {pbf::kind(), sph::kind()};
-    std::vector<scene::SolverSchema> schemas;
-    for (const auto& kind : kinds) schemas.push_back(kind.schema);
+    const auto schemas = scene::schemas_of(kinds);
     std::vector<scene::Override> set{{"solver", "\"" + job.solver + "\""},
                                      {"grid.cells", fmt::format("[{}, {}, {}]", 3 * n, 2 * n, n + 1)},
                                      {"grid.size", fmt::format("[3.0, 2.0, {:.17g}]", 1 + 1.0 / n)},

@@ -1,7 +1,8 @@
 // Runs a scene and reads a field: the greatest pressure at the end.
+#include <weir/sim/simulation.hpp>
+
 #include <algorithm>
 #include <cstdio>
-#include <sim/simulation.hpp>
 
 int main(int argc, char** argv) {
     weir::Simulation simulation(argc > 1 ? argv[1] : "scene.toml");

@@ -156,6 +156,12 @@ bool says(const Scene& scene, const std::string& along_with) {
 
 }  // namespace
 
+std::vector<SolverSchema> schemas_of(const std::vector<SolverKind>& kinds) {
+    std::vector<SolverSchema> list;
+    for (const auto& kind : kinds) list.push_back(kind.schema);
+    return list;
+}
+
 std::vector<std::string> idle_effects(const Scene& scene, const SolverSchema& schema) {
     std::vector<std::string> idle;
     for (const Variant& effect : schema.effects) {

@@ -22,6 +22,9 @@ struct SolverKind {
     PlainStep plain{};
 };
 
+/// What each may be told.
+std::vector<SolverSchema> schemas_of(const std::vector<SolverKind>& kinds);
+
 /// The effects that a scene names with a strength of zero: they may cost, and do nothing.
 std::vector<std::string> idle_effects(const Scene& scene, const SolverSchema& schema);
 

@@ -17,11 +17,7 @@ const std::vector<scene::SolverKind>& registry() {
 }
 
 const std::vector<scene::SolverSchema>& schemas() {
-    static const std::vector<scene::SolverSchema> list = [] {
-        std::vector<scene::SolverSchema> all;
-        for (const auto& kind : registry()) all.push_back(kind.schema);
-        return all;
-    }();
+    static const std::vector<scene::SolverSchema> list = scene::schemas_of(registry());
     return list;
 }
 

@@ -1,4 +1,4 @@
-# Installs weir into BUILD/installed, builds docs/example against it, and runs it on SCENE.
+# Installs weir into BUILD/installed: few headers, all below weir/, each compiles alone. Builds docs/example against it, and runs it on SCENE.
 function(do)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE failed)
   if(failed)
@@ -10,6 +10,20 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${BUILD}/in
 if(failed)
   message(FATAL_ERROR "cmake --install failed")
 endif()
+
+file(GLOB_RECURSE headers RELATIVE ${BUILD}/installed/include ${BUILD}/installed/include/*)
+list(LENGTH headers count)
+if(count LESS 5 OR count GREATER 15)
+  message(FATAL_ERROR "${count} headers are installed: ${headers}")
+endif()
+foreach(header ${headers})
+  if(NOT header MATCHES "^weir/")
+    message(FATAL_ERROR "installed outside weir/: ${header}")
+  endif()
+  file(WRITE ${BUILD}/installed/alone.cpp "#include <${header}>\n#include <${header}>\n")
+  do(${COMPILER} -std=c++20 -fopenmp -Wall -Wextra -Werror -fsyntax-only -I${BUILD}/installed/include ${BUILD}/installed/alone.cpp)
+endforeach()
+
 do(${CMAKE_COMMAND} -S ${SOURCE}/docs/example -B ${BUILD}/example -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
    -DCMAKE_PREFIX_PATH=${BUILD}/installed -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
 do(${CMAKE_COMMAND} --build ${BUILD}/example)

@@ -23,17 +23,11 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers) {
-    std::vector<scene::SolverSchema> list;
-    for (const auto& kind : solvers) list.push_back(kind.schema);
-    return list;
-}
-
 /// The study with the command's changes; every scene in it reads.
 Study prepared(const std::filesystem::path& folder, const CostOptions& options, const Solvers& solvers) {
     Study study = read_study(folder, options.size);
     if (!options.error.empty()) study.error = options.error;
-    const auto schemas = schemas_of(solvers);
+    const auto schemas = scene::schemas_of(solvers);
     if (!options.solver.empty())
         std::erase_if(study.methods, [&](const Variant& v) { return scene_of(v, 0, schemas).solver() != options.solver; });
     if (study.methods.empty()) throw BadInput(fmt::format("{}: no method uses solver {}", study.name, scene::quote(options.solver)));

@@ -17,8 +17,8 @@
 namespace weir::validation {
 namespace {
 
-constexpr int warm_up = 3, fewest_pairs = 5;
-constexpr real strength = 0.1;  // of every effect, in its own unit: moves the fluid visibly and not wildly
+constexpr int untimed_pairs = 3, fewest_pairs = 5;
+constexpr real usual_strength = 0.1;  // of every effect, in its own unit: moves the fluid visibly and not wildly
 
 double quantile(std::vector<double> list, double part) {
     const auto at = list.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(list.size() - 1));
@@ -36,7 +36,7 @@ double seconds_of_step(Solver& solver, real dt) {
 void take_turns(EffectCost& cost, Solver& with, Solver& without, real dt, const EffectCostOptions& options) {
     std::vector<double> ratio, a, b;
     double spent = 0;
-    for (int i = -warm_up; i < options.pairs && (i < fewest_pairs || spent < options.enough_seconds); ++i) {
+    for (int i = -untimed_pairs; i < options.pairs && (i < fewest_pairs || spent < options.enough_seconds); ++i) {
         const double without_it = seconds_of_step(without, dt), with_it = seconds_of_step(with, dt);
         if (i < 0) continue;
         ratio.push_back(with_it / without_it), a.push_back(without_it), b.push_back(with_it);
@@ -51,7 +51,7 @@ EffectCost measure_effect(const scene::SolverKind& kind, int dim, int cells, con
     EffectCost cost{.solver = kind.schema.name, .dim = dim, .cells = cells, .effect = effect};
     try {
         const auto without = kind.make(plain_scene(kind, dim, cells, {effect}));
-        const auto with = kind.make(scene_with(kind, dim, cells, {effect}, strength));
+        const auto with = kind.make(scene_with(kind, dim, cells, {effect}, usual_strength));
         take_turns(cost, *with, *without, 0.2 * std::min(with->advised_dt(), without->advised_dt()), options);
         cost.bytes_without = without->bytes(), cost.bytes_with = with->bytes();
         for (const EffectPlan& plan : with->effects()) {

@@ -11,7 +11,6 @@ namespace {
 
 using scene::Key;
 using scene::Type;
-using scene::Variant;
 using Names = std::vector<std::string>;
 
 constexpr real viscosity_of = 0.01;  // strength 0.1: an oil in a box of a metre
@@ -46,13 +45,13 @@ std::string key_text(const Key& key, bool is_strength, real strength) {
     }
 }
 
-const Variant& effect_of(const scene::SolverKind& kind, const std::string& name) {
-    for (const Variant& v : kind.schema.effects)
+const scene::Variant& effect_of(const scene::SolverKind& kind, const std::string& name) {
+    for (const scene::Variant& v : kind.schema.effects)
         if (v.name == name) return v;
     throw std::logic_error("solver " + kind.schema.name + " has no effect " + name);
 }
 
-std::string effect_text(const Variant& effect, real strength) {
+std::string effect_text(const scene::Variant& effect, real strength) {
     Names keys;
     for (const Key& key : effect.keys) {
         const bool is_strength = std::find(effect.strength.begin(), effect.strength.end(), key.name) != effect.strength.end();
@@ -66,12 +65,12 @@ scene::Scene make(const scene::SolverKind& kind, int dim, int cells, const Names
     real viscosity = 0.01;
     for (const Names& list : {prepared_for, effects})
         for (const std::string& name : list)
-            if (const Variant& effect = effect_of(kind, name); !effect.along_with.empty()) lines.insert(effect.along_with + "\n");
+            if (const scene::Variant& effect = effect_of(kind, name); !effect.along_with.empty()) lines.insert(effect.along_with + "\n");
     std::string text = fmt::format("solver = \"{}\"\ndim = {}\ngrid = {{ cells = <{}>, size = <1.0> }}\ntime = {{ end = 1.0 }}\n",
                                    kind.schema.name, dim, cells);
     text += kind.plain.scene + "\n" + fmt::format("{}", fmt::join(lines, ""));
     for (const std::string& name : effects) {
-        const Variant& effect = effect_of(kind, name);
+        const scene::Variant& effect = effect_of(kind, name);
         text += effect_text(effect, strength);
         if (std::count(effect.strength.begin(), effect.strength.end(), "fluid.viscosity") > 0) viscosity = viscosity_of * strength;
     }

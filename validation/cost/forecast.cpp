@@ -16,15 +16,9 @@
 namespace weir::validation {
 namespace {
 
-constexpr int warm_up = 2, most_steps = 25, fewest_steps = 5;
+constexpr int untimed_steps = 2, most_steps = 25, fewest_steps = 5;
 constexpr double enough = 0.6;        // seconds for one copy
 constexpr double fewest_units = 100;  // of a copy: with fewer, what a step costs whatever its size says too much
-
-std::vector<scene::SolverSchema> schemas_of(const std::vector<scene::SolverKind>& kinds) {
-    std::vector<scene::SolverSchema> list;
-    for (const auto& kind : kinds) list.push_back(kind.schema);
-    return list;
-}
 
 std::string cells_text(const scene::Scene& scene) { return fmt::format("{}", fmt::join(scene.root().numbers("grid.cells"), " x ")); }
 
@@ -63,7 +57,7 @@ std::optional<scene::Scene> coarser(const scene::Scene& scene, int by, const std
 /// The finest copies first, each at least a factor 1.5 coarser than the one before.
 std::vector<Rates> measure_copies(const scene::Scene& scene, double units, const std::vector<scene::SolverKind>& kinds) {
     std::vector<Rates> list;
-    const auto schemas = schemas_of(kinds);
+    const auto schemas = scene::schemas_of(kinds);
     double last = 1;
     for (int by = 2; list.size() < 2 && units / std::pow(by, scene.dim()) >= fewest_units; ++by) {
         if (by < 1.5 * last) continue;
@@ -80,7 +74,7 @@ std::vector<Rates> measure_copies(const scene::Scene& scene, double units, const
 }
 
 /// y at size n, by the power of the size that two copies show, kept to what steps do: not less than `low`, not more than `high`.
-double by_power(double n, const std::vector<Rates>& at, double y0, double y1, double low, double high) {
+double scaled(double n, const std::vector<Rates>& at, double y0, double y1, double low, double high) {
     if (at.size() < 2 || !(y0 > 0 && y1 > 0)) return y0;
     const double power = std::log(y0 / y1) / std::log(at[0].count / at[1].count);
     return y0 * std::pow(n / at[0].count, std::clamp(power, low, high));
@@ -100,7 +94,7 @@ Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKi
     r.count = count_of(scene, simulation.fields()).first;
     std::vector<double> seconds;
     double spent = 0, simulated = 0, on_the_wall = 0;
-    for (int i = -warm_up; i < most_steps && (i < fewest_steps || spent < enough_seconds) && !simulation.finished(); ++i) {
+    for (int i = -untimed_steps; i < most_steps && (i < fewest_steps || spent < enough_seconds) && !simulation.finished(); ++i) {
         if (i == 0) simulation.solver().passes().reset();
         const double start = computing_seconds(), wall = wall_seconds();
         const real dt = simulation.step().dt;
@@ -140,11 +134,11 @@ Forecast forecast(const scene::Scene& scene, const std::vector<scene::SolverKind
     const auto& at = f.measured;
     const Rates &fine = at.front(), &coarse = at.back();
     // a step looks at everything once, and a solve may take more iterations on more cells; small steps have costs of their own
-    f.ms = by_power(f.count, at, fine.ms, coarse.ms, 0.5, 1.4);
-    f.dt = by_power(f.count, at, fine.dt, coarse.dt, -2.0 / f.dim, 0);
+    f.ms = scaled(f.count, at, fine.ms, coarse.ms, 0.5, 1.4);
+    f.dt = scaled(f.count, at, fine.dt, coarse.dt, -2.0 / f.dim, 0);
     double total = 0;
     for (const Pass& p : fine.passes) {
-        f.passes.push_back({p.name, 0, by_power(f.count, at, p.seconds, seconds_of(coarse, p.name), 0.3, 1.6)});
+        f.passes.push_back({p.name, 0, scaled(f.count, at, p.seconds, seconds_of(coarse, p.name), 0.3, 1.6)});
         total += f.passes.back().seconds;
     }
     for (Pass& p : f.passes) p.seconds *= 1e-3 * f.ms / total;

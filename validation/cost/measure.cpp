@@ -101,8 +101,7 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
     const OwnThreads own(method.threads);
     CostPoint point{.method = method.name, .threads = threads()};
     if (method.sweep) point.setting = fmt::format("{:g}", method.sweep->values[i]);
-    std::vector<scene::SolverSchema> schemas;
-    for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    const auto schemas = scene::schemas_of(solvers);
     try {
         const Work before = work_so_far();
         std::vector<Timing> timings;

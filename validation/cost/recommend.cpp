@@ -227,11 +227,11 @@ std::string machine_text(const PlanOptions& options, const std::string& name) {
     for (const auto& file : {options.tables / "json" / (name + ".json"), options.tables / (name + ".json")}) {
         std::ifstream in(file);
         if (!in) continue;
-        const auto json = nlohmann::json::parse(in, nullptr, false);
-        if (!json.is_object()) continue;
-        const std::string machine = json.value("machine", ""), here = output::this_machine().processor;
+        const auto tables = nlohmann::json::parse(in, nullptr, false);
+        if (!tables.is_object()) continue;
+        const std::string machine = tables.value("machine", ""), here = output::this_machine().processor;
         const std::string whose =
-            fmt::format("measured on {}, {} thread(s), commit {}\n", machine, json.value("threads", 1), json.value("commit", ""));
+            fmt::format("measured on {}, {} thread(s), commit {}\n", machine, tables.value("threads", 1), tables.value("commit", ""));
         return machine.find(here) != std::string::npos
                    ? whose
                    : whose + fmt::format("this machine is {}: measure its own with `weir cost {} --publish`\n", here, name);

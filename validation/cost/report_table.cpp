@@ -22,7 +22,7 @@ using scene::Type;
 
 constexpr int warm_up_steps = 10, batches = 7, steps_a_batch = 20;
 
-std::vector<Key> make_keys() {
+std::vector<Key> table_keys() {
     const auto text = [](std::string name, std::string doc) {
         return Key{.name = std::move(name), .type = Type::text, .doc = std::move(doc), .required = true};
     };
@@ -57,8 +57,7 @@ double milliseconds(const ReportRow& row, Simulation& simulation) {
 }
 
 json measure_row(const ReportRow& row, const Solvers& solvers) {
-    std::vector<scene::SolverSchema> schemas;
-    for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    const auto schemas = scene::schemas_of(solvers);
     Simulation simulation(scene_of(row.variant, 0, schemas), solvers);
     for (int i = 0; i < warm_up_steps; ++i) simulation.step();
     const Work before = work_so_far();
@@ -83,7 +82,7 @@ std::string cell(const json& row, const char* key) { return row[key].get<std::st
 }  // namespace
 
 const std::vector<Key>& report_table_keys() {
-    static const std::vector<Key> keys = make_keys();
+    static const std::vector<Key> keys = table_keys();
     return keys;
 }
 

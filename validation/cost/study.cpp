@@ -13,7 +13,7 @@ namespace {
 using scene::Key;
 using scene::Type;
 
-std::vector<Key> make_keys() {
+std::vector<Key> keys_of_studies() {
     std::vector<Key> method = variant_keys();
     method.insert(method.begin(), {.name = "name", .type = Type::text, .doc = "Its name in tables and figures.", .required = true});
     method.insert(method.begin() + 1,
@@ -63,7 +63,7 @@ Study study_of(const Case& c) {
 }  // namespace
 
 const std::vector<Key>& study_keys() {
-    static const std::vector<Key> keys = make_keys();
+    static const std::vector<Key> keys = keys_of_studies();
     return keys;
 }
 

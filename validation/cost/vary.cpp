@@ -89,8 +89,7 @@ std::vector<real> numbers(const Settings& s) {
 }  // namespace
 
 void vary(Study& study, const std::vector<std::string>& changes, const Solvers& solvers) {
-    std::vector<scene::SolverSchema> schemas;
-    for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    const auto schemas = scene::schemas_of(solvers);
     bool swept = false;
     for (const std::string& change : changes) {
         const Settings s = split(change);

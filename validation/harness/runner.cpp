@@ -90,12 +90,6 @@ void take(RunResult& result, const RunRecord& record, const Reference& reference
 
 }  // namespace
 
-std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers) {
-    std::vector<scene::SolverSchema> list;
-    for (const auto& kind : solvers) list.push_back(kind.schema);
-    return list;
-}
-
 RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers& solvers) {
     RunRecord record;
     record.simulation = std::make_shared<Simulation>(std::move(scene), solvers);
@@ -145,7 +139,7 @@ RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, 
     RunResult result;
     if (variant.sweep) result.value = variant.sweep->values[i], result.label = fmt::format("{:g}", result.value);
     try {
-        scene::Scene scene = scene_of(variant, i, schemas_of(solvers));
+        scene::Scene scene = scene_of(variant, i, scene::schemas_of(solvers));
         const Reference reference = make_reference(variant.reference, scene, c.folder);
         result.h = mesh_width(variant, i, scene);
         RunOptions options{.frames = frames, .time_limit = variant.time_limit};
@@ -178,14 +172,15 @@ CaseResult validate(const Case& c, const std::filesystem::path& out, const Solve
         result.variants.push_back(std::move(v));
     }
     if (!c.variants.empty() && !c.variants.front().reference.empty())
-        result.source = make_reference(c.variants.front().reference, scene_of(c.variants.front(), 0, schemas_of(solvers)), c.folder).source;
+        result.source =
+            make_reference(c.variants.front().reference, scene_of(c.variants.front(), 0, scene::schemas_of(solvers)), c.folder).source;
     return result;
 }
 
 void check_case(const Case& c, const Solvers& solvers) {
     for (const Variant& variant : c.variants)
         for (std::size_t i = 0; i < variant.runs(); ++i)
-            make_reference(variant.reference, scene_of(variant, i, schemas_of(solvers)), c.folder);
+            make_reference(variant.reference, scene_of(variant, i, scene::schemas_of(solvers)), c.folder);
 }
 
 }  // namespace weir::validation

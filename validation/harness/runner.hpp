@@ -13,7 +13,6 @@ namespace weir::validation {
 
 /// Those that scenes may name; sim::registry() but in tests.
 using Solvers = std::vector<scene::SolverKind>;
-std::vector<scene::SolverSchema> schemas_of(const Solvers& solvers);
 
 struct RunOptions {
     std::filesystem::path frames{};                            // folder of this run's .pvd; empty: none is written

@@ -99,7 +99,7 @@ real largest_on_centreline(const RunRecord& run, const Reference& ref, int c) {
     return largest / ref.number("speed_unit");
 }
 
-real relative(real measured, real reference) { return std::abs(measured / reference - 1); }
+real relative_error(real measured, real reference) { return std::abs(measured / reference - 1); }
 
 }  // namespace
 
@@ -118,21 +118,22 @@ std::vector<Metric> cavity_metrics() {
         {.name = "nusselt.mean_error",
          .unit = "",
          .doc = "Relative error of the Nusselt number averaged over the cavity.",
-         .measure = [](const RunRecord& run, const Reference& ref) { return relative(nusselt_mean(run), ref.number("Nu_mean")); }},
+         .measure = [](const RunRecord& run, const Reference& ref) { return relative_error(nusselt_mean(run), ref.number("Nu_mean")); }},
         {.name = "nusselt.wall_error",
          .unit = "",
          .doc = "Relative error of the Nusselt number at the hot wall.",
-         .measure = [](const RunRecord& run, const Reference& ref) { return relative(nusselt_of_plane(run, 0), ref.number("Nu_0")); }},
+         .measure = [](const RunRecord& run,
+                       const Reference& ref) { return relative_error(nusselt_of_plane(run, 0), ref.number("Nu_0")); }},
         {.name = "convection.u_max_error",
          .unit = "",
          .doc = "Relative error of the largest u on the vertical centreline.",
          .measure = [](const RunRecord& run,
-                       const Reference& ref) { return relative(largest_on_centreline(run, ref, 0), ref.number("u_max")); }},
+                       const Reference& ref) { return relative_error(largest_on_centreline(run, ref, 0), ref.number("u_max")); }},
         {.name = "convection.v_max_error",
          .unit = "",
          .doc = "Relative error of the largest v on the horizontal centreline.",
          .measure = [](const RunRecord& run,
-                       const Reference& ref) { return relative(largest_on_centreline(run, ref, 1), ref.number("v_max")); }},
+                       const Reference& ref) { return relative_error(largest_on_centreline(run, ref, 1), ref.number("v_max")); }},
         {.name = "steady.change",
          .unit = "m/s",
          .doc = "Change of the mean speed over the last tenth of the run: how steady the end state is.",

@@ -1,6 +1,7 @@
 // Claims that hold to round-off or to a solver's tolerance: discrete Poisson errors, the identity of the projection, rest, mirrors.
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
+#include "validation/metrics/signal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,12 +38,6 @@ real identity_error(const RunRecord& run, const Reference&) {
         if (!(error <= worst)) worst = error;
     }
     return worst;
-}
-
-real largest(const Curve& c) {
-    real m = 0;
-    for (const real y : c.y) m = (y > m || std::isnan(y)) ? y : m;
-    return m;
 }
 
 /// Largest |u(x) - mirrored u| over largest |u|, mirrored at the middle plane across `axis`: the normal component changes its sign.

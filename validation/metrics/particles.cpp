@@ -1,5 +1,6 @@
 // What particles did: columns at rest, drops and patches by their moments, Laplace's pressure, momentum and energy that nothing put in.
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/signal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +13,6 @@ const FieldView& particles(const FieldSet& fields, const char* name) {
     const FieldView* f = fields.find("particles", name);
     if (!f) throw BadInput(std::string("the solver shows no particles with \"") + name + "\"");
     return *f;
-}
-
-real largest(const Curve& c) {
-    real m = 0;
-    for (const real y : c.y) m = (y > m || std::isnan(y)) ? y : m;
-    return m;
 }
 
 /// Mean over the columns of the grid's cells of the highest particle in each, and half a spacing.

@@ -68,4 +68,10 @@ real power_law(const Curve& c, real from, real to) {
     return x.size() < 3 ? std::nan("") : slope(x, y);
 }
 
+real largest(const Curve& c) {
+    real m = 0;
+    for (const real y : c.y) m = (y > m || std::isnan(y)) ? y : m;
+    return m;
+}
+
 }  // namespace weir::validation

@@ -28,7 +28,7 @@ std::filesystem::path without_slash(const std::filesystem::path& p) { return p.h
 void move_to_backend(Case& c, const ValidateOptions& options, const Solvers& solvers) {
     bool any = options.all;
     for (Variant& variant : c.variants) {
-        if (!scene_of(variant, 0, schemas_of(solvers)).has("scheme.backend")) continue;
+        if (!scene_of(variant, 0, scene::schemas_of(solvers)).has("scheme.backend")) continue;
         variant.overrides.push_back({"scheme.backend", '"' + options.backend + '"'});
         any = true;
     }

@@ -24,8 +24,7 @@ using nlohmann::json;
 
 /// The name of the solver that a configuration runs; throws where its scene does not read.
 std::string solver_of(const Variant& variant, const Solvers& solvers) {
-    std::vector<scene::SolverSchema> schemas;
-    for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    const auto schemas = scene::schemas_of(solvers);
     return scene_of(variant, 0, schemas).solver();
 }
 

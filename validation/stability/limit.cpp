@@ -117,8 +117,7 @@ Variant pushed_to(const Stress& stress, real value) {
 }
 
 std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers) {
-    std::vector<scene::SolverSchema> schemas;
-    for (const auto& kind : solvers) schemas.push_back(kind.schema);
+    const auto schemas = scene::schemas_of(solvers);
     auto scene = scene_of(variant, 0, schemas);
     const auto failed = [](const NumericalFailure& failure, std::int64_t step, real time) {
         return Break{failure.what(), "the step failed", step, time};
