@@ -177,15 +177,6 @@ Key sinks_key() {
             .variants_from = &scene::shapes};
 }
 
-Key support_key(real usual) {
-    return {.name = "support",
-            .type = Type::number,
-            .doc = "Support of the kernels over the particles' spacing.",
-            .fallback = usual,
-            .min = 1.2,
-            .max = 4.0};
-}
-
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid) {
     if (!scene.has("initial.velocity")) return;

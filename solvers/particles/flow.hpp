@@ -34,8 +34,6 @@ void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects);
 scene::Key initial_key();
 /// "sinks": shapes that take particles out.
 scene::Key sinks_key();
-/// scheme.support, which every particle solver has.
-scene::Key support_key(real usual);
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid);
 /// The scene's liquid with its initial velocity.
