@@ -5,20 +5,23 @@ namespace weir::particles {
 
 namespace {
 
-/// The kernels in which effects act, by scene.
+/// The effects that devices have, with the kernels in which they act; forces: the method's own.
+std::vector<std::pair<std::string, std::string>> known_effects(const std::string& forces) {
+    return {{"gravity", forces},
+            {"central_force", forces},
+            {"xsph", "smooth"},
+            {"vorticity", "confine"},
+            {"artificial_pressure", "correct"},
+            {"surface_tension", "tension"},
+            {"viscosity", "sph_forces"},
+            {"artificial_viscosity", "sph_forces"},
+            {"density_diffusion", "advance_densities"},
+            {"rest_density", "find_pressures"}};
+}
+
 std::vector<EffectPlan> plans_of(const scene::Scene& scene) {
-    const std::string forces = scene.solver() == "pbf" ? "predict" : "kick";
     std::vector<EffectPlan> list;
-    for (const auto& [name, kernel] : {std::pair<std::string, std::string>{"gravity", forces},
-                                       {"central_force", forces},
-                                       {"xsph", "smooth"},
-                                       {"vorticity", "confine"},
-                                       {"artificial_pressure", "correct"},
-                                       {"surface_tension", "tension"},
-                                       {"viscosity", "sph_forces"},
-                                       {"artificial_viscosity", "sph_forces"},
-                                       {"density_diffusion", "advance_densities"},
-                                       {"rest_density", "find_pressures"}})
+    for (const auto& [name, kernel] : known_effects(scene.solver() == "pbf" ? "predict" : "kick"))
         if (scene.effect(name)) list.push_back({.name = name, .inside = kernel});
     return list;
 }
@@ -39,8 +42,9 @@ template struct DeviceEffects<2>;
 template struct DeviceEffects<3>;
 
 void refuse_what_devices_lack(const scene::Scene& scene) {
-    auto problems = short_periods(scene, "opencl");
-    if (!problems.empty()) scene.refuse(std::move(problems));
+    std::vector<std::string> names;
+    for (const auto& [name, kernel] : known_effects("")) names.push_back(name);
+    refuse_what_lacks("opencl", scene, names);
 }
 
 }  // namespace weir::particles

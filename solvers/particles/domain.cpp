@@ -76,27 +76,6 @@ Params Domain<D>::walls(const Kernel<D>& density, const Kernel<D>& gradient) con
     return w;
 }
 
-namespace {
-
-template <int D>
-std::vector<scene::Problem> short_periods_of(const scene::Scene& scene, const std::string& backend) {
-    std::vector<scene::Problem> problems;
-    const Domain<D> domain(scene);
-    const real shortest = 2 * scene.number("scheme.support") * domain.spacing;
-    for (int a = 0; a < D; ++a)
-        if (domain.sides.periodic(a) && domain.hi[a] - domain.lo[a] < shortest)
-            problems.push_back(scene.problem(
-                "grid.size", "the backend " + backend + " has no periods shorter than two supports",
-                "from scheme.support and the cells' size: " + std::to_string(shortest) + " m; or take scheme.backend = \"threads\""));
-    return problems;
-}
-
-}  // namespace
-
-std::vector<scene::Problem> short_periods(const scene::Scene& scene, const std::string& backend) {
-    return scene.dim() == 2 ? short_periods_of<2>(scene, backend) : short_periods_of<3>(scene, backend);
-}
-
 template <int D>
 void refuse_idle_walls(const scene::Scene& scene, const Domain<D>& domain, bool viscous, const std::string& instead) {
     for (int a = 0; a < D; ++a)

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <string>
-#include <vector>
 
 namespace weir::particles {
 
@@ -47,9 +46,6 @@ struct Domain {
     template <class Params>
     Params walls(const Kernel<D>& density, const Kernel<D>& gradient) const;
 };
-
-/// Periods shorter than two supports, of which a backend that sees the nearest image of a neighbour would see one of two within reach.
-std::vector<scene::Problem> short_periods(const scene::Scene& scene, const std::string& backend);
 
 /// Refuses sides and solids that would not do what the scene says: an inflow (particles enter by emitters), and walls that the liquid
 /// sticks to where no viscosity makes it stick; `instead` says what to do about that.

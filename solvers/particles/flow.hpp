@@ -25,7 +25,7 @@ struct Flow {
     std::size_t bytes() const { return (velocity.capacity() + change.capacity()) * sizeof(float); }
 };
 
-/// gravity, central_force, xsph, vorticity: what both particle solvers can be asked for.
+/// What every particle method can be asked for (effects.cpp).
 std::vector<scene::Variant> effect_schemas();
 template <int D>
 void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects);

@@ -245,19 +245,6 @@ void add_solids(ReferencePairs& reference, const Domain<D>& domain, const std::v
     }
 }
 
-void refuse_what_the_reference_lacks(const scene::Scene& scene, const std::vector<std::string>& effects) {
-    std::vector<scene::Problem> problems;
-    std::string known;
-    for (const auto& name : effects) known += (known.empty() ? "" : ", ") + name;
-    if (scene.has("effects"))
-        for (const auto& name : scene.root().table("effects").keys())
-            if (scene.effect(name) && std::find(effects.begin(), effects.end(), name) == effects.end())
-                problems.push_back(scene.problem("effects." + name, "the backend reference has no effect \"" + name + "\"",
-                                                 "it has " + known + "; or take scheme.backend = \"threads\""));
-    for (auto& problem : short_periods(scene, "reference")) problems.push_back(std::move(problem));
-    if (!problems.empty()) scene.refuse(std::move(problems));
-}
-
 Pairs::NeighbourCounts counts_of(const Neighbours& neighbours) {
     std::size_t sum = 0, most = 0;
     for (const auto& list : neighbours) sum += list.size(), most = std::max(most, list.size());

@@ -70,9 +70,6 @@ Vec<D> vec_of(const Point& p) {
 template <int D>
 void add_solids(ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x);
 
-/// Refuses, all at once, the effects that are not among `effects`, and periods in which a pair has two images within reach.
-void refuse_what_the_reference_lacks(const scene::Scene& scene, const std::vector<std::string>& effects);
-
 Pairs::NeighbourCounts counts_of(const Neighbours& neighbours);
 std::size_t bytes_of(const Neighbours& neighbours);
 

@@ -2,6 +2,12 @@
 
 namespace weir::particles {
 
+void refuse_what_the_reference_lacks(const scene::Scene& scene, const ReferenceEffects& effects) {
+    std::vector<std::string> names;
+    for (const auto& [name, pass] : effects) names.push_back(name);
+    refuse_what_lacks("reference", scene, names);
+}
+
 template <int D, class Physics>
 ReferenceSolver<D, Physics>::ReferenceSolver(const Scheme& scheme, Fluid<D>&& start) : HostSolver<D>(std::move(start)) {
     reference_.walls = wall_params<plain::WallParams>(scheme, fluid_.domain);
@@ -10,7 +16,7 @@ ReferenceSolver<D, Physics>::ReferenceSolver(const Scheme& scheme, Fluid<D>&& st
 }
 
 template <int D, class Physics>
-void ReferenceSolver<D, Physics>::take(const scene::Scene& scene, std::initializer_list<std::pair<const char*, const char*>> effects) {
+void ReferenceSolver<D, Physics>::take(const scene::Scene& scene, const ReferenceEffects& effects) {
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     for (const auto& [name, pass] : effects)
         if (scene.effect(name)) plans_.push_back({.name = name, .inside = pass});

@@ -5,10 +5,15 @@
 #include "particles/scheme.hpp"
 #include "particles/solver.hpp"
 
-#include <initializer_list>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace weir::particles {
+
+/// The effects that a method has here, with the passes in which they act.
+using ReferenceEffects = std::vector<std::pair<std::string, std::string>>;
+void refuse_what_the_reference_lacks(const scene::Scene& scene, const ReferenceEffects& effects);
 
 /// Physics: ReferencePbf or ReferenceSph.
 template <int D, class Physics>
@@ -19,8 +24,8 @@ public:
 
 protected:
     ReferenceSolver(const Scheme& scheme, Fluid<D>&& start);
-    /// What a scene adds: its emitters, and the effects with the passes in which they act.
-    void take(const scene::Scene& scene, std::initializer_list<std::pair<const char*, const char*>> effects);
+    /// What a scene adds: its emitters and its effects.
+    void take(const scene::Scene& scene, const ReferenceEffects& effects);
     Pairs::NeighbourCounts neighbour_counts() const final { return counts_of(reference_.neighbours); }
     /// That the method's own arrays take.
     virtual std::size_t own_bytes() const = 0;

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace weir::particles {
@@ -62,6 +63,38 @@ backend::Choice backend_of(const scene::Scene& scene) {
     } catch (const BadInput& error) {
         scene.refuse("scheme.backend", error.what());
     }
+}
+
+namespace {
+
+/// Of two images of a neighbour within reach, the backend would see one.
+template <int D>
+void check_periods(const std::string& backend, const scene::Scene& scene, std::vector<scene::Problem>& problems) {
+    const Domain<D> domain(scene);
+    const real shortest = 2 * scene.number("scheme.support") * domain.spacing;
+    for (int a = 0; a < D; ++a)
+        if (domain.sides.periodic(a) && domain.hi[a] - domain.lo[a] < shortest)
+            problems.push_back(scene.problem(
+                "grid.size", "the backend " + backend + " has no periods shorter than two supports",
+                "from scheme.support and the cells' size: " + std::to_string(shortest) + " m; or take scheme.backend = \"threads\""));
+}
+
+}  // namespace
+
+void refuse_what_lacks(const std::string& backend, const scene::Scene& scene, const std::vector<std::string>& effects) {
+    std::vector<scene::Problem> problems;
+    std::string known;
+    for (const auto& name : effects) known += (known.empty() ? "" : ", ") + name;
+    if (scene.has("effects"))
+        for (const auto& name : scene.root().table("effects").keys())
+            if (scene.effect(name) && std::find(effects.begin(), effects.end(), name) == effects.end())
+                problems.push_back(scene.problem("effects." + name, "the backend " + backend + " has no effect \"" + name + "\"",
+                                                 "it has " + known + "; or take scheme.backend = \"threads\""));
+    if (scene.dim() == 2)
+        check_periods<2>(backend, scene, problems);
+    else
+        check_periods<3>(backend, scene, problems);
+    if (!problems.empty()) scene.refuse(std::move(problems));
 }
 
 template <int D>

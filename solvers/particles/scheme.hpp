@@ -4,6 +4,7 @@
 #include "backend/device.hpp"
 #include "particles/domain.hpp"
 
+#include <string>
 #include <vector>
 
 namespace weir::particles {
@@ -26,6 +27,10 @@ struct Scheme {
 scene::Key scheme_key(const char* doc, const char* kernel_doc, const Scheme& usual, std::vector<scene::Key> own);
 /// Which machinery a scene chose. Throws BadScene where it is none of those known.
 backend::Choice backend_of(const scene::Scene& scene);
+
+/// Refuses, all at once, what a backend that looks for the nearest image of a neighbour has not got: effects that are not among these, and
+/// periods in which a pair has two images within reach.
+void refuse_what_lacks(const std::string& backend, const scene::Scene& scene, const std::vector<std::string>& effects);
 
 template <int D>
 Kernel<D> density_kernel(const Scheme& scheme, real spacing);

@@ -9,9 +9,14 @@ using particles::Point;
 
 namespace {
 
+const particles::ReferenceEffects& effects() {
+    static const particles::ReferenceEffects list{{"gravity", "predict"}, {"artificial_pressure", "correct"}};
+    return list;
+}
+
 template <int D>
 Fluid<D> start_of(const scene::Scene& scene) {
-    particles::refuse_what_the_reference_lacks(scene, {"gravity", "artificial_pressure"});
+    particles::refuse_what_the_reference_lacks(scene, effects());
     return first_fluid<D>(scene);
 }
 
@@ -19,7 +24,7 @@ Fluid<D> start_of(const scene::Scene& scene) {
 
 template <int D>
 ReferencePbfSolver<D>::ReferencePbfSolver(const scene::Scene& scene) : ReferencePbfSolver(Options(scene), start_of<D>(scene)) {
-    this->take(scene, {{"gravity", "predict"}, {"artificial_pressure", "correct"}});
+    this->take(scene, pbf::effects());
     Fluid<D> unsettled = start_of<D>(scene);
     step_ = even_step(scene, unsettled);  // as on threads
 }

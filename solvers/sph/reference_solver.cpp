@@ -15,10 +15,16 @@ namespace {
 #define WEIR_FN inline
 #include "particles/kernels/sph_state.inl"
 
+const particles::ReferenceEffects& effects() {
+    static const particles::ReferenceEffects list{{"gravity", "integrate"},           {"viscosity", "forces"},
+                                                  {"artificial_viscosity", "forces"}, {"density_diffusion", "density"},
+                                                  {"surface_tension", "forces"},      {"rest_density", "neighbours"}};
+    return list;
+}
+
 template <int D>
 Fluid<D> start_of(const scene::Scene& scene) {
-    particles::refuse_what_the_reference_lacks(
-        scene, {"gravity", "viscosity", "artificial_viscosity", "density_diffusion", "surface_tension", "rest_density"});
+    particles::refuse_what_the_reference_lacks(scene, effects());
     return first_fluid<D>(scene);
 }
 
@@ -30,12 +36,7 @@ ReferenceSphSolver<D>::ReferenceSphSolver(const scene::Scene& scene) : Reference
 template <int D>
 ReferenceSphSolver<D>::ReferenceSphSolver(const scene::Scene& scene, Fluid<D>&& start)
     : ReferenceSphSolver{Options(scene, particles::fastest_flow(scene, start)), std::move(start)} {
-    this->take(scene, {{"gravity", "integrate"},
-                       {"viscosity", "forces"},
-                       {"artificial_viscosity", "forces"},
-                       {"surface_tension", "forces"},
-                       {"density_diffusion", "density"},
-                       {"rest_density", "neighbours"}});
+    this->take(scene, sph::effects());
     this->start_from(scene, fluid_);
 }
 
