@@ -142,8 +142,7 @@ PairPasses<D>::PairPasses(const pbf::Options& options, const particles::Fluid<D>
                          " -DWEIR_KERNEL=" + std::to_string(static_cast<int>(options.smoothing)));
     const real d = fluid.domain.spacing;
     const auto params = pbf::pbf_params<particles::single::PbfParams, D>(options, d);
-    const auto walls =
-        fluid.domain.template walls<particles::single::WallParams>(pbf::density_kernel<D>(options, d), pbf::gradient_kernel<D>(options, d));
+    const auto walls = particles::wall_params<particles::single::WallParams>(options, fluid.domain);
     params_ = copy_of(&params, 1), walls_ = copy_of(&walls, 1);
     state_ = terms_ = device_->alloc(1024);  // read where axes repeat and solids are: nowhere here
     sort(fluid, dt);

@@ -13,7 +13,6 @@ namespace {
 #include "particles/kernels/state_params.h"
 
 constexpr std::size_t usual_group = 256;
-constexpr std::int64_t steps_between_reorders = 16;
 
 template <int D>
 StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& domain, real support) {
@@ -60,6 +59,15 @@ int usual_neighbours(real support_in_spacings) {
 }
 
 }  // namespace
+
+template <int D>
+DeviceSetup with_scheme(DeviceSetup own, const Scheme& scheme, const Domain<D>& domain) {
+    own.device = scheme.backend.device;
+    own.kernel = scheme.kernel();
+    own.walls = wall_params<single::WallParams>(scheme, domain);
+    own.support = scheme.support * domain.spacing;
+    return own;
+}
 
 template <int D>
 DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, const DeviceSetup& setup)
@@ -248,7 +256,7 @@ void DeviceFluid<D>::reorder() {
 }
 
 template <int D>
-typename DeviceFluid<D>::NeighbourCounts DeviceFluid<D>::neighbour_counts() const {
+Pairs::NeighbourCounts DeviceFluid<D>::neighbour_counts() const {
     const int n = sorted_count_;
     if (n == 0) return {};
     std::vector<int> counts(static_cast<std::size_t>(n));
@@ -281,6 +289,8 @@ void DeviceFluid<D>::record(Passes& passes) {
         if (t.calls > 0) passes.add(t.kernel, t.seconds, t.calls);
 }
 
+template DeviceSetup with_scheme(DeviceSetup, const Scheme&, const Domain<2>&);
+template DeviceSetup with_scheme(DeviceSetup, const Scheme&, const Domain<3>&);
 template class DeviceFluid<2>;
 template class DeviceFluid<3>;
 

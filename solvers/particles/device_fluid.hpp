@@ -8,6 +8,7 @@
 #include "particles/device_memory.hpp"
 #include "particles/emitters.hpp"
 #include "particles/passes.hpp"
+#include "particles/scheme.hpp"
 
 #include <memory>
 
@@ -26,6 +27,9 @@ struct DeviceSetup {
     single::WallParams walls{};
     real support = 0;  // [m]
 };
+/// And what the scheme says of it.
+template <int D>
+DeviceSetup with_scheme(DeviceSetup own, const Scheme& scheme, const Domain<D>& domain);
 
 /// The effects that act on a device; what is not named is not compiled.
 template <int D>
@@ -118,10 +122,7 @@ public:
     real speed() const { return device_is_old_ ? host_.max_speed() : speed_; }
     real max_dt() const { return effects_.omega > 0 ? 0.5 / effects_.omega : infinity; }  // of the forces
 
-    struct NeighbourCounts {
-        real mean = 0, most = 0;
-    };
-    NeighbourCounts neighbour_counts() const;
+    Pairs::NeighbourCounts neighbour_counts() const;
     /// State particles in sorted order.
     std::vector<int> sorted_order() const;
     int growths() const { return growths_; }

@@ -9,6 +9,7 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace weir::particles {
 

@@ -25,7 +25,7 @@ struct Flow {
     std::size_t bytes() const { return (velocity.capacity() + change.capacity()) * sizeof(float); }
 };
 
-/// gravity, central_force, xsph, vorticity: what both particle solvers can be asked for.
+/// What every particle method can be asked for (effects.cpp).
 std::vector<scene::Variant> effect_schemas();
 template <int D>
 void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects);
@@ -34,8 +34,6 @@ void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects);
 scene::Key initial_key();
 /// "sinks": shapes that take particles out.
 scene::Key sinks_key();
-/// scheme.support, which every particle solver has.
-scene::Key support_key(real usual);
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid);
 /// The scene's liquid with its initial velocity.

@@ -10,6 +10,9 @@
 
 namespace weir::particles {
 
+/// The state's arrays follow the sorted order this often, so that gathers stay near in memory.
+inline constexpr std::int64_t steps_between_reorders = 16;
+
 template <int D>
 struct Fluid {
     Domain<D> domain;

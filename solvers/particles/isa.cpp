@@ -36,23 +36,4 @@ const PassTable& passes_for(std::string_view name) {
     throw BadInput("instruction set \"" + std::string(name) + "\" is not one that this processor runs: " + known);
 }
 
-scene::Key backend_key() {
-    return {
-        .name = "backend",
-        .type = scene::Type::text,
-        .doc =
-            "threads: the processor, with the best of its instruction sets, or one by name: threads:sse2, threads:avx2, threads:avx512. "
-            "opencl: the first OpenCL device, or one by number: opencl:1 (weir list devices). reference: plain double precision over all "
-            "pairs on one thread, what the others are compared with; for at most a few thousand particles.",
-        .fallback = std::string("threads")};
-}
-
-backend::Choice backend_of(const scene::Scene& scene) {
-    try {
-        return backend::parse_choice(scene.text("scheme.backend"));
-    } catch (const BadInput& error) {
-        scene.refuse("scheme.backend", error.what());
-    }
-}
-
 }  // namespace weir::particles

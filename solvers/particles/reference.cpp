@@ -68,8 +68,7 @@ struct Functions {
 constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(spline), WEIR_FUNCTIONS(c2)};
 
 /// Walls and solids at one particle: gradient, then part.
-template <class Reference>
-std::array<double, 4> walls_at(const Reference& r, const Point& x, std::size_t i) {
+std::array<double, 4> walls_at(const ReferencePairs& r, const Point& x, std::size_t i) {
     double part[3], pull[3], solid[4] = {0, 0, 0, 0}, out[4];
     for (int a = 0; a < 3; ++a) {
         part[a] = wall_part(x[static_cast<std::size_t>(a)], &r.walls, a);
@@ -230,8 +229,8 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
     return a;
 }
 
-template <class Reference, int D>
-void add_solids(Reference& reference, const Domain<D>& domain, const std::vector<Point>& x) {
+template <int D>
+void add_solids(ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x) {
     if (domain.solids.empty()) return;
     const auto& walls = reference.walls;
     reference.solid.assign(x.size(), Point{0, 0, 0});
@@ -246,43 +245,10 @@ void add_solids(Reference& reference, const Domain<D>& domain, const std::vector
     }
 }
 
-namespace {
-
-/// Of two images of a neighbour within reach, apart() would see one.
-template <int D>
-void check_periods(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
-    const Domain<D> domain(scene);
-    const real shortest = 2 * scene.number("scheme.support") * domain.spacing;
-    for (int a = 0; a < D; ++a)
-        if (domain.sides.periodic(a) && domain.hi[a] - domain.lo[a] < shortest)
-            problems.push_back(scene.problem(
-                "grid.size", "the backend reference has no periods shorter than two supports",
-                "from scheme.support and the cells' size: " + std::to_string(shortest) + " m; or take scheme.backend = \"threads\""));
-}
-
-}  // namespace
-
-void refuse_what_the_reference_lacks(const scene::Scene& scene, const std::vector<std::string>& effects) {
-    std::vector<scene::Problem> problems;
-    std::string known;
-    for (const auto& name : effects) known += (known.empty() ? "" : ", ") + name;
-    if (scene.has("effects"))
-        for (const auto& name : scene.root().table("effects").keys())
-            if (scene.effect(name) && std::find(effects.begin(), effects.end(), name) == effects.end())
-                problems.push_back(scene.problem("effects." + name, "the backend reference has no effect \"" + name + "\"",
-                                                 "it has " + known + "; or take scheme.backend = \"threads\""));
-    if (scene.dim() == 2)
-        check_periods<2>(scene, problems);
-    else
-        check_periods<3>(scene, problems);
-    if (!problems.empty()) scene.refuse(std::move(problems));
-}
-
-void add_neighbour_counts(const Neighbours& neighbours, std::vector<Integral>& to) {
+Pairs::NeighbourCounts counts_of(const Neighbours& neighbours) {
     std::size_t sum = 0, most = 0;
     for (const auto& list : neighbours) sum += list.size(), most = std::max(most, list.size());
-    to.push_back({"mean_neighbours", "1", neighbours.empty() ? 0 : static_cast<real>(sum) / static_cast<real>(neighbours.size())});
-    to.push_back({"max_neighbours", "1", static_cast<real>(most)});
+    return {neighbours.empty() ? 0 : static_cast<real>(sum) / static_cast<real>(neighbours.size()), static_cast<real>(most)};
 }
 
 std::size_t bytes_of(const Neighbours& neighbours) {
@@ -291,9 +257,7 @@ std::size_t bytes_of(const Neighbours& neighbours) {
     return sum;
 }
 
-template void add_solids(ReferencePbf&, const Domain<2>&, const std::vector<Point>&);
-template void add_solids(ReferencePbf&, const Domain<3>&, const std::vector<Point>&);
-template void add_solids(ReferenceSph&, const Domain<2>&, const std::vector<Point>&);
-template void add_solids(ReferenceSph&, const Domain<3>&, const std::vector<Point>&);
+template void add_solids(ReferencePairs&, const Domain<2>&, const std::vector<Point>&);
+template void add_solids(ReferencePairs&, const Domain<3>&, const std::vector<Point>&);
 
 }  // namespace weir::particles

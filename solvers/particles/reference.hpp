@@ -1,8 +1,7 @@
 // The plain double-precision path: every pair of particles is looked at for the neighbours of a step, without threads or
 // vectors. It compiles the same text of the pair physics as the fast path and defines what is right. Steps made of it are the backend
-// "reference" (pbf/reference_solver.hpp, sph/reference_solver.hpp); its time grows with the square of the number of particles.
+// "reference" (reference_solver.hpp); its time grows with the square of the number of particles.
 #pragma once
-#include "core/solver.hpp"
 #include "particles/domain.hpp"
 
 #include <array>
@@ -14,15 +13,19 @@ namespace weir::particles {
 using Point = std::array<double, 3>;  // from the centre of the domain; the third is 0 in 2D
 using Neighbours = std::vector<std::vector<std::size_t>>;
 
-/// The pair physics of PBF for one kernel (0: Müller's, 1: cubic, 2: Wendland), over all pairs.
-struct ReferencePbf {
-    plain::PbfParams p{};
+/// What the physics of either method sees of particles: their pairs, walls and solids.
+struct ReferencePairs {
     plain::WallParams walls{};
-    int kernel = 0;
+    int kernel = 0;            // 0: Müller's, 1: cubic, 2: Wendland
     Point period{0, 0, 0};     // of axes that repeat, at least two supports; 0: the axis does not
     std::vector<Point> solid;  // gradient of the part inside solids at each particle; empty: no solids
     std::vector<double> solid_part;
     Neighbours neighbours;
+};
+
+/// The pair physics of PBF over all pairs.
+struct ReferencePbf : ReferencePairs {
+    plain::PbfParams p{};
 
     /// Lines 5-7 of algorithm 1: all pairs closer than the support at the predicted positions; kept through the iterations.
     void find_neighbours(const std::vector<Point>& x);
@@ -35,15 +38,9 @@ struct ReferencePbf {
 };
 
 /// The pair physics of SPH over all pairs.
-struct ReferenceSph {
+struct ReferenceSph : ReferencePairs {
     plain::SphParams p{};
-    plain::WallParams walls{};
-    int kernel = 0;
-    Point period{0, 0, 0};
-    std::vector<Point> solid;  // as for PBF
-    std::vector<double> solid_part;
     bool summed = true;  // density by summation: pairs push by the gradient of its energy
-    Neighbours neighbours;
 
     /// All pairs closer than the support, which the other functions go through.
     void find_neighbours(const std::vector<Point>& x);
@@ -70,14 +67,10 @@ Vec<D> vec_of(const Point& p) {
     return v;
 }
 /// What solids add at each place (solid_terms.hpp); nothing where the domain has none.
-template <class Reference, int D>
-void add_solids(Reference& reference, const Domain<D>& domain, const std::vector<Point>& x);
+template <int D>
+void add_solids(ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x);
 
-/// Refuses, all at once, the effects that are not among `effects`, and periods in which a pair has two images within reach.
-void refuse_what_the_reference_lacks(const scene::Scene& scene, const std::vector<std::string>& effects);
-
-/// "mean_neighbours" and "max_neighbours".
-void add_neighbour_counts(const Neighbours& neighbours, std::vector<Integral>& to);
+Pairs::NeighbourCounts counts_of(const Neighbours& neighbours);
 std::size_t bytes_of(const Neighbours& neighbours);
 
 }  // namespace weir::particles

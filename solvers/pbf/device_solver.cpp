@@ -1,36 +1,25 @@
 #include "pbf/device_solver.hpp"
 
-#include "particles/flow.hpp"
-
 #include <algorithm>
 
 namespace weir::pbf {
 
-using particles::DeviceSetup;
+namespace {
 
 template <int D>
-DeviceSetup DevicePbfSolver<D>::setup(const Options& options, const particles::Domain<D>& domain) {
-    DeviceSetup s;
-    s.device = options.backend.device;
-    s.kernel = static_cast<int>(options.smoothing);
+particles::DeviceSetup setup(const Options& options, const particles::Domain<D>& domain) {
+    particles::DeviceSetup s;
+    s.kernels = pbf_params<particles::single::PbfParams, D>(options, domain.spacing);
     s.files = {"pbf.cl"};
     if (options.warm_start > 0) s.defines += "-DWEIR_KEEP ";
     if (options.pressure_k > 0) s.defines += "-DWEIR_PRESSURE ";
-    s.kernels = pbf_params<particles::single::PbfParams, D>(options, domain.spacing);
-    s.walls = domain.template walls<particles::single::WallParams>(density_kernel<D>(options, domain.spacing),
-                                                                   gradient_kernel<D>(options, domain.spacing));
-    s.support = options.support * domain.spacing;
     return s;
 }
-
-namespace {
 
 template <int D>
 particles::Fluid<D> start_of(const scene::Scene& scene) {
     particles::refuse_what_devices_lack(scene);
-    auto fluid = particles::initial_fluid<D>(scene);
-    particles::refuse_idle_walls(scene, fluid.domain, false, instead_of_sticking);
-    return fluid;
+    return first_fluid<D>(scene);
 }
 
 }  // namespace
@@ -42,12 +31,12 @@ DevicePbfSolver<D>::DevicePbfSolver(const scene::Scene& scene)
 }
 
 template <int D>
-DevicePbfSolver<D>::DevicePbfSolver(const Options& options, particles::Fluid<D> start, const particles::DeviceEffects<D>& effects)
-    : options_(options), fluid_(start, effects, setup(options_, start.domain)) {
+DevicePbfSolver<D>::DevicePbfSolver(const Options& options, const particles::Fluid<D>& start, const particles::DeviceEffects<D>& effects)
+    : Base(options, start, effects, setup(options, start.domain)) {
     fluid_.plan().want(density_, sizeof(float));
     fluid_.plan().want(multiplier_, sizeof(float));
     fluid_.settle_in();
-    settle();
+    this->settle();
 }
 
 /// Numbers at the right are the lines of Algorithm 1.
@@ -58,41 +47,33 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     fluid_.find_neighbours(fluid_.x_star);  //  5-7
     warm_start(dt);
     int iterations = 0;  //  8
-    const int most = options_.tolerance > 0 ? options_.max_iterations : options_.iterations;
-    for (; iterations < most; ++iterations) {
+    for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
-        if (options_.tolerance > 0 && compression().sum <= options_.tolerance * fluid_.count()) break;
+        if (options_.tolerance > 0 && find_compression().sum <= options_.tolerance * fluid_.count()) break;
         correct();  // 12-19
     }
     update(dt, std::max(dt, last_dt_));  // 20-21, 23-24
     last_dt_ = dt;
     fluid_.finish(dt);  // 22
     const real speed = fluid_.max_speed();
-    const Reduced c = compression();
+    const Reduced c = find_compression();
     const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
     fluid_.end_step();
     fluid_.record(passes_);
-    return {.dt = dt,
-            .cfl = dt * speed / fluid_.domain().spacing,
-            .iterations = iterations,
-            .density_error = mean,
-            .max_density_error = c.largest};
+    return this->report(dt, speed, iterations, {mean, c.largest});
 }
 
-/// Takes the density error of the initial lattice out of the positions alone, as PbfSolver does.
 template <int D>
-void DevicePbfSolver<D>::settle() {
-    for (int i = 0; i < options_.settle; ++i) {
-        if (i % settle_between_lists == 0) {
-            if (i > 0 && compression().largest <= settle_good_enough) break;
-            fluid_.predict(0);
-            fluid_.find_neighbours(fluid_.x_star);
-        }
-        fluid_.clear(multiplier_, sizeof(float));
-        find_lambdas();
-        correct();
-        if ((i + 1) % settle_between_lists == 0 || i + 1 == options_.settle) update(0, 0);
-    }
+void DevicePbfSolver<D>::stay() {
+    fluid_.predict(0);
+    fluid_.find_neighbours(fluid_.x_star);
+}
+
+template <int D>
+void DevicePbfSolver<D>::iterate_afresh() {
+    fluid_.clear(multiplier_, sizeof(float));
+    find_lambdas();
+    correct();
 }
 
 /// Starts from the multipliers of the step before: see PbfSolver.
@@ -130,45 +111,13 @@ void DevicePbfSolver<D>::update(real dt, real slow) {
 }
 
 template <int D>
-typename DevicePbfSolver<D>::Reduced DevicePbfSolver<D>::compression() {
+typename DevicePbfSolver<D>::Reduced DevicePbfSolver<D>::find_compression() {
     return fluid_.reduce("pbf_compressions", {fluid_.count(), density_, fluid_.parts()});
 }
 
 template <int D>
-real DevicePbfSolver<D>::advised_dt() const {
-    return std::min(step_, fluid_.max_dt());
-}
-
-template <int D>
-FieldSet DevicePbfSolver<D>::fields() const {
-    FieldSet set;
-    fluid_.host().show(set);
-    return set;
-}
-
-template <int D>
-std::vector<Integral> DevicePbfSolver<D>::integrals() const {
-    auto list = fluid_.host().integrals();
-    const auto neighbours = fluid_.neighbour_counts();
-    list.push_back({"mean_neighbours", "1", neighbours.mean});
-    list.push_back({"max_neighbours", "1", neighbours.most});
-    const auto& rho = fluid_.host().density;
-    const auto excess = [&](int i) { return std::max<real>(0, rho[static_cast<std::size_t>(i)] / fluid_.rest_density() - 1); };
-    const int n = fluid_.count();
-    list.push_back({"mean_compression", "1", n ? particles::block_sum(n, excess) / n : 0});
-    list.push_back({"max_compression", "1", particles::block_max(n, excess)});
-    return list;
-}
-
-template <int D>
-void DevicePbfSolver<D>::save(Checkpoint& to) const {
-    fluid_.save(to);
-    to.put_value("pbf.last_dt", last_dt_);
-}
-template <int D>
-void DevicePbfSolver<D>::restore(const Checkpoint& from) {
-    fluid_.restore(from);
-    last_dt_ = from.get_value<real>("pbf.last_dt");
+Compression DevicePbfSolver<D>::compression() const {
+    return particles::compression_of(fluid_.host(), fluid_.rest_density());
 }
 
 template class DevicePbfSolver<2>;

@@ -1,5 +1,5 @@
 // The registration of "pbf": its keys, its effects, its maker.
-#include "particles/isa.hpp"
+#include "particles/kind.hpp"
 #include "pbf/device_solver.hpp"
 #include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
@@ -13,106 +13,74 @@ namespace {
 
 Key scheme() {
     const Options usual;
-    return {
-        .name = "scheme",
-        .type = Type::table,
-        .doc = "Numerical choices of PBF.",
-        .keys = {
-            {.name = "kernel",
-             .type = Type::choice,
-             .doc = "cubic and wendland: one kernel for the density and its gradient. muller: poly6 for density, spiky for its "
-                    "gradient, as published; a force that is no gradient, so it feeds energy.",
-             .fallback = std::string("cubic"),
-             .choices = {"muller", "cubic", "wendland"}},
-            particles::support_key(usual.support),
-            {.name = "iterations",
-             .type = Type::integer,
-             .doc = "Iterations a step, where no tolerance is given.",
-             .fallback = std::int64_t{usual.iterations},
-             .min = 1},
-            {.name = "tolerance",
-             .type = Type::number,
-             .doc = "Iterate until the mean compression is at most this; 0: a fixed number of iterations.",
-             .fallback = usual.tolerance,
-             .min = 0},
-            {.name = "max_iterations",
-             .type = Type::integer,
-             .doc = "With a tolerance: no more iterations than this.",
-             .fallback = std::int64_t{usual.max_iterations},
-             .min = 1},
-            {.name = "cfm",
-             .type = Type::number,
-             .doc = "Constraint force mixing, epsilon of eq. 11 in units of 1 / support^2.",
-             .fallback = usual.cfm,
-             .min = 0},
-            {.name = "relaxation",
-             .type = Type::number,
-             .doc = "Factor of every correction.",
-             .fallback = usual.relaxation,
-             .min = 0,
-             .max = 2.0,
-             .min_open = true},
-            {.name = "warm_start",
-             .type = Type::number,
-             .doc = "Keep the constraints' multipliers and start the next step's iterations from this part of them, which divides what is "
-                    "left of compression by 1 - warm_start. From 0.5 on a liquid at rest trembles.",
-             .fallback = usual.warm_start,
-             .min = 0,
-             .max = 1.0},
-            {.name = "settle",
-             .type = Type::integer,
-             .doc = "At most so many iterations before the first step take the density error of the initial lattice out of the positions, "
-                    "so that it does not become speed.",
-             .fallback = std::int64_t{usual.settle},
-             .min = 0},
-            particles::backend_key()}};
+    return particles::scheme_key(
+        "Numerical choices of PBF.",
+        "cubic and wendland: one kernel for the density and its gradient. muller: poly6 for density, spiky for its gradient, as published; "
+        "a force that is no gradient, so it feeds energy.",
+        usual,
+        {{.name = "iterations",
+          .type = Type::integer,
+          .doc = "Iterations a step, where no tolerance is given.",
+          .fallback = std::int64_t{usual.iterations},
+          .min = 1},
+         {.name = "tolerance",
+          .type = Type::number,
+          .doc = "Iterate until the mean compression is at most this; 0: a fixed number of iterations.",
+          .fallback = usual.tolerance,
+          .min = 0},
+         {.name = "max_iterations",
+          .type = Type::integer,
+          .doc = "With a tolerance: no more iterations than this.",
+          .fallback = std::int64_t{usual.max_iterations},
+          .min = 1},
+         {.name = "cfm",
+          .type = Type::number,
+          .doc = "Constraint force mixing, epsilon of eq. 11 in units of 1 / support^2.",
+          .fallback = usual.cfm,
+          .min = 0},
+         {.name = "relaxation",
+          .type = Type::number,
+          .doc = "Factor of every correction.",
+          .fallback = usual.relaxation,
+          .min = 0,
+          .max = 2.0,
+          .min_open = true},
+         {.name = "warm_start",
+          .type = Type::number,
+          .doc = "Keep the constraints' multipliers and start the next step's iterations from this part of them, which divides what is "
+                 "left of compression by 1 - warm_start. From 0.5 on a liquid at rest trembles.",
+          .fallback = usual.warm_start,
+          .min = 0,
+          .max = 1.0},
+         {.name = "settle",
+          .type = Type::integer,
+          .doc = "At most so many iterations before the first step take the density error of the initial lattice out of the positions, "
+                 "so that it does not become speed.",
+          .fallback = std::int64_t{usual.settle},
+          .min = 0}});
 }
 
 std::vector<scene::Variant> effects() {
-    auto list = particles::effect_schemas();
     const Options usual;
-    list.push_back({"artificial_pressure",
-                    "Pushes close particles apart (Macklin & Müller 2013, eq. 13 with n = 4).",
-                    {{.name = "k", .type = Type::number, .doc = "Its strength over the support squared.", .fallback = 1e-4, .min = 0},
-                     {.name = "dq",
-                      .type = Type::number,
-                      .doc = "Distance, over the support, at which it has this strength.",
-                      .fallback = usual.pressure_dq,
-                      .min = 0,
-                      .max = 0.9}},
-                    {"k"}});
-    return list;
-}
-
-template <class In2D, class In3D>
-std::unique_ptr<Solver> made(const scene::Scene& scene) {
-    if (scene.dim() == 2) return std::make_unique<In2D>(scene);
-    return std::make_unique<In3D>(scene);
+    return {{"artificial_pressure",
+             "Pushes close particles apart (Macklin & Müller 2013, eq. 13 with n = 4).",
+             {{.name = "k", .type = Type::number, .doc = "Its strength over the support squared.", .fallback = 1e-4, .min = 0},
+              {.name = "dq",
+               .type = Type::number,
+               .doc = "Distance, over the support, at which it has this strength.",
+               .fallback = usual.pressure_dq,
+               .min = 0,
+               .max = 0.9}},
+             {"k"}}};
 }
 
 }  // namespace
 
 scene::SolverKind kind() {
-    scene::SolverSchema schema;
-    schema.name = "pbf";
-    schema.doc = "Position Based Fluids (Macklin & Müller 2013): liquid particles kept at rest density by constraints.";
-    schema.keys = {scheme(), particles::initial_key(), particles::sinks_key()};
-    schema.effects = effects();
-    return {schema,
-            [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
-                switch (particles::backend_of(scene).kind) {
-                    case backend::Choice::Kind::opencl:
-                        return made<DevicePbfSolver<2>, DevicePbfSolver<3>>(scene);
-                    case backend::Choice::Kind::reference:
-                        return made<ReferencePbfSolver<2>, ReferencePbfSolver<3>>(scene);
-                    default:
-                        return made<PbfSolver<2>, PbfSolver<3>>(scene);
-                }
-            },
-            {{"position", "velocity", "density", "id"},
-             {"predict", "neighbours", "warm start", "lambda", "correct", "update"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = { name = \"rotation\", omega = 1.0, centre = "
-             "<0.25> }"}};
+    const char* doc = "Position Based Fluids (Macklin & Müller 2013): liquid particles kept at rest density by constraints.";
+    return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects()}, {}),
+            particles::make_solver<PbfSolver, ReferencePbfSolver, DevicePbfSolver>,
+            particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"})};
 }
 
 }  // namespace weir::pbf

@@ -1,20 +1,12 @@
 // The choices of a PBF scene ("scheme" and two effects), and the numbers that the pair physics reads, made from them.
 #pragma once
-#include "backend/device.hpp"
+#include "core/solver.hpp"
 #include "particles/fluid.hpp"
-#include "particles/kernels.hpp"
-#include "scene/scene.hpp"
-
-#include <string>
+#include "particles/scheme.hpp"
 
 namespace weir::pbf {
 
-/// A method's pair of kernels: one for the density, one for its gradient.
-enum class Smoothing { muller, cubic, wendland };
-
-struct Options {
-    Smoothing smoothing = Smoothing::cubic;
-    real support = 2;    // over the spacing
+struct Options : particles::Scheme {
     int iterations = 4;  // fixed, where tolerance is 0
     real tolerance = 0;  // mean compression at which the iterations end
     int max_iterations = 100;
@@ -24,9 +16,8 @@ struct Options {
     int settle = 300;       // at most so many iterations that take the initial density error out of the positions
     real pressure_k = 0;    // artificial pressure (eq. 13): k in units of support^2, 0: none
     real pressure_dq = 0.2;  // delta q over the support
-    backend::Choice backend;
 
-    Options() = default;
+    Options() : Scheme{particles::Smoothing::cubic, 2} {}
     explicit Options(const scene::Scene& scene);
 };
 
@@ -39,18 +30,9 @@ real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid);
 template <int D>
 StepLimit stable_step(const Options& options, const particles::Fluid<D>& fluid, real speed);
 
-/// What a scene is told whose walls are stuck to.
-inline constexpr const char* instead_of_sticking = "PBF has none: take slip = \"free\", or solver = \"sph\" with its viscosity";
-
-/// Of the iterations that settle the first state: after so many a particle may have got new neighbours, and a compression of the densest
-/// particle of a tenth of what a step leaves is good enough.
-inline constexpr int settle_between_lists = 5;
-inline constexpr real settle_good_enough = 1e-3;
-
+/// The scene's liquid at the start. Throws BadScene where walls are stuck to.
 template <int D>
-particles::Kernel<D> density_kernel(const Options& options, real spacing);
-template <int D>
-particles::Kernel<D> gradient_kernel(const Options& options, real spacing);
+particles::Fluid<D> first_fluid(const scene::Scene& scene);
 
 /// Params is particles::single::PbfParams or particles::plain::PbfParams.
 template <class Params, int D>

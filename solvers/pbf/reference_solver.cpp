@@ -1,7 +1,5 @@
 #include "pbf/reference_solver.hpp"
 
-#include "particles/flow.hpp"
-
 #include <algorithm>
 
 namespace weir::pbf {
@@ -11,40 +9,30 @@ using particles::Point;
 
 namespace {
 
-template <int D>
-Fluid<D> start_of(const scene::Scene& scene) {
-    particles::refuse_what_the_reference_lacks(scene, {"gravity", "artificial_pressure"});
-    auto fluid = particles::initial_fluid<D>(scene);
-    particles::refuse_idle_walls(scene, fluid.domain, false, instead_of_sticking);
-    return fluid;
+const particles::ReferenceEffects& effects() {
+    static const particles::ReferenceEffects list{{"gravity", "predict"}, {"artificial_pressure", "correct"}};
+    return list;
 }
 
-/// Advised for the scene's liquid as it is before it settles, as on threads.
 template <int D>
-real step_of(const scene::Scene& scene) {
-    Fluid<D> fluid = start_of<D>(scene);
-    return even_step(scene, fluid);
+Fluid<D> start_of(const scene::Scene& scene) {
+    particles::refuse_what_the_reference_lacks(scene, effects());
+    return first_fluid<D>(scene);
 }
 
 }  // namespace
 
 template <int D>
 ReferencePbfSolver<D>::ReferencePbfSolver(const scene::Scene& scene) : ReferencePbfSolver(Options(scene), start_of<D>(scene)) {
-    emitters_ = particles::Emitters<D>(scene, fluid_.domain);
-    step_ = step_of<D>(scene);
-    for (const auto& [name, pass] : {std::pair{"gravity", "predict"}, {"artificial_pressure", "correct"}})
-        if (scene.effect(name)) plans_.push_back({.name = name, .inside = pass});
+    this->take(scene, pbf::effects());
+    Fluid<D> unsettled = start_of<D>(scene);
+    step_ = even_step(scene, unsettled);  // as on threads
 }
 
 template <int D>
-ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start) : options_(options), fluid_(std::move(start)) {
-    const auto& domain = fluid_.domain;
-    reference_.p = pbf_params<particles::plain::PbfParams, D>(options_, domain.spacing);
-    reference_.walls = domain.template walls<particles::plain::WallParams>(density_kernel<D>(options_, domain.spacing),
-                                                                           gradient_kernel<D>(options_, domain.spacing));
-    reference_.kernel = static_cast<int>(options_.smoothing);
-    reference_.period = domain.frame().period;
-    settle();
+ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start) : Base(options, std::move(start)) {
+    reference_.p = pbf_params<particles::plain::PbfParams, D>(options_, fluid_.domain.spacing);
+    this->settle();
 }
 
 /// Numbers at the right are the lines of Algorithm 1.
@@ -54,8 +42,7 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
     predict(dt);  // 1-7
     warm_start(dt);
     int iterations = 0;  //  8
-    const int most = options_.tolerance > 0 ? options_.max_iterations : options_.iterations;
-    for (; iterations < most; ++iterations) {
+    for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && compression().mean <= options_.tolerance) break;
         correct();  // 12-19
@@ -67,28 +54,15 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
     last_dt_ = dt;
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = compression();
-    ++fluid_.steps;
-    fluid_.cross_sides();
-    return {.dt = dt,
-            .cfl = dt * speed / fluid_.domain.spacing,
-            .iterations = iterations,
-            .density_error = c.mean,
-            .max_density_error = c.worst};
+    this->end_step();
+    return this->report(dt, speed, iterations, c);
 }
 
-/// Takes the density error of the initial lattice out of the positions alone, as PbfSolver does.
 template <int D>
-void ReferencePbfSolver<D>::settle() {
-    for (int i = 0; i < options_.settle; ++i) {
-        if (i % settle_between_lists == 0) {
-            if (i > 0 && compression().worst <= settle_good_enough) break;
-            predict(0);
-        }
-        multiplier_.assign(x_star_.size(), 0);
-        find_lambdas();
-        correct();
-        if ((i + 1) % settle_between_lists == 0 || i + 1 == options_.settle) update(0, 0);
-    }
+void ReferencePbfSolver<D>::iterate_afresh() {
+    multiplier_.assign(x_star_.size(), 0);
+    find_lambdas();
+    correct();
 }
 
 /// v += dt g, x* = x + dt v, and the pairs there.
@@ -157,7 +131,7 @@ void ReferencePbfSolver<D>::update(real dt, real slow) {
 }
 
 template <int D>
-typename ReferencePbfSolver<D>::Compression ReferencePbfSolver<D>::compression() const {
+Compression ReferencePbfSolver<D>::compression() const {
     Compression c;
     for (const double rho : density_) {
         c.mean += std::max(0.0, rho - 1) / static_cast<real>(density_.size());
@@ -167,42 +141,9 @@ typename ReferencePbfSolver<D>::Compression ReferencePbfSolver<D>::compression()
 }
 
 template <int D>
-FieldSet ReferencePbfSolver<D>::fields() const {
-    FieldSet set;
-    fluid_.show(set);
-    return set;
-}
-
-template <int D>
-std::vector<Integral> ReferencePbfSolver<D>::integrals() const {
-    auto list = fluid_.integrals();
-    particles::add_neighbour_counts(reference_.neighbours, list);
-    const Compression c = compression();
-    list.push_back({"mean_compression", "1", c.mean});
-    list.push_back({"max_compression", "1", c.worst});
-    return list;
-}
-
-template <int D>
-void ReferencePbfSolver<D>::save(Checkpoint& to) const {
-    fluid_.save(to);
-    emitters_.save(to);
-    to.put_value("pbf.last_dt", last_dt_);
-    to.put_value("pbf.speed", speed_);
-}
-template <int D>
-void ReferencePbfSolver<D>::restore(const Checkpoint& from) {
-    fluid_.restore(from);
-    emitters_.restore(from);
-    last_dt_ = from.get_value<real>("pbf.last_dt");
-    speed_ = from.has("pbf.speed") ? from.get_value<real>("pbf.speed") : not_applicable;  // the device does not keep it
-}
-
-template <int D>
-std::size_t ReferencePbfSolver<D>::bytes() const {
-    return fluid_.bytes() + predicted_.capacity() * sizeof(Vec<D>) + x_star_.capacity() * sizeof(Point) +
-           (density_.capacity() + lambda_.capacity() + multiplier_.capacity()) * sizeof(double) +
-           particles::bytes_of(reference_.neighbours);
+std::size_t ReferencePbfSolver<D>::own_bytes() const {
+    return predicted_.capacity() * sizeof(Vec<D>) + x_star_.capacity() * sizeof(Point) +
+           (density_.capacity() + lambda_.capacity() + multiplier_.capacity()) * sizeof(double);
 }
 
 template class ReferencePbfSolver<2>;

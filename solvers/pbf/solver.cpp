@@ -1,7 +1,5 @@
 #include "pbf/solver.hpp"
 
-#include "core/error.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,28 +8,12 @@ namespace weir::pbf {
 using particles::ListChunk;
 using particles::PbfPass;
 
-namespace {
-/// The state's arrays follow the sorted order this often, so that gathers stay near in memory.
-constexpr std::int64_t steps_between_reorders = 16;
-}  // namespace
-
 template <int D>
-PbfSolver<D>::PbfSolver(const scene::Scene& scene)
-    : options_(scene),
-      fluid_(particles::initial_fluid<D>(scene)),
-      emitters_(scene, fluid_.domain),
-      params_(pbf_params<particles::single::PbfParams, D>(options_, fluid_.domain.spacing)),
-      walls_(fluid_.domain.template walls<particles::single::WallParams>(density_kernel<D>(options_, fluid_.domain.spacing),
-                                                                         gradient_kernel<D>(options_, fluid_.domain.spacing))),
-      pairs_(particles::passes_for(options_.backend.isa), fluid_.domain.frame()),
-      solids_(fluid_.domain, fluid_.domain.template walls<particles::plain::WallParams>(
-                                 density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
-      flow_{fluid_, pairs_, params_, {}, {}, static_cast<int>(options_.smoothing)},
-      step_(even_step(scene, fluid_)) {
-    particles::refuse_idle_walls(scene, fluid_.domain, false, instead_of_sticking);
-    particles::add_effects(scene, effects_);
+PbfSolver<D>::PbfSolver(const scene::Scene& scene) : Base(Options(scene), scene, first_fluid<D>(scene)) {
+    kernels_ = pbf_params<particles::single::PbfParams, D>(options_, fluid_.domain.spacing);
+    step_ = even_step(scene, fluid_);
     if (scene.effect("artificial_pressure")) effects_.declare({.name = "artificial_pressure", .inside = "correct"});
-    settle();
+    this->settle();
 }
 
 /// Numbers at the right are the lines of Algorithm 1.
@@ -43,8 +25,7 @@ StepReport PbfSolver<D>::step(real dt) {
     find_neighbours();  //  5-7
     warm_start(dt);
     int iterations = 0;  //  8
-    const int most = options_.tolerance > 0 ? options_.max_iterations : options_.iterations;
-    for (; iterations < most; ++iterations) {
+    for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && compression().mean <= options_.tolerance) break;
         correct();  // 12-15
@@ -57,30 +38,21 @@ StepReport PbfSolver<D>::step(real dt) {
     last_dt_ = dt;
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = compression();
-    if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
-    fluid_.cross_sides();
-    return {.dt = dt,
-            .cfl = dt * speed / fluid_.domain.spacing,
-            .iterations = iterations,
-            .density_error = c.mean,
-            .max_density_error = c.worst};
+    this->end_step();
+    return this->report(dt, speed, iterations, c);
 }
 
-/// Takes the density error of the initial lattice (a few per cent where it meets a wall) out of the positions alone: left to the first step
-/// it would become speed, error / dt, the more the better that step is solved. Stabilisation of Macklin et al. 2014, section 4.4.
 template <int D>
-void PbfSolver<D>::settle() {
-    for (int i = 0; i < options_.settle; ++i) {
-        if (i % settle_between_lists == 0) {
-            if (i > 0 && compression().worst <= settle_good_enough) break;
-            predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
-        }
-        std::fill(multiplier_.begin(), multiplier_.end(), 0.0f);
-        find_lambdas();
-        correct();
-        collide();
-        if ((i + 1) % settle_between_lists == 0 || i + 1 == options_.settle) update(0, 0);
-    }
+void PbfSolver<D>::stay() {
+    predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
+}
+
+template <int D>
+void PbfSolver<D>::iterate_afresh() {
+    std::fill(multiplier_.begin(), multiplier_.end(), 0.0f);
+    find_lambdas();
+    correct();
+    collide();
 }
 
 template <int D>
@@ -104,7 +76,7 @@ void PbfSolver<D>::find_neighbours() {
 template <int D>
 PbfPass PbfSolver<D>::pass(const float* from, float* to) {
     PbfPass a;
-    a.p = &params_;
+    a.p = &kernels_;
     a.walls = &walls_;
     a.count = pairs_.size();
     a.from = from;
@@ -198,7 +170,7 @@ void PbfSolver<D>::update(real dt, real slow) {
 }
 
 template <int D>
-typename PbfSolver<D>::Compression PbfSolver<D>::compression() const {
+Compression PbfSolver<D>::compression() const {
     const auto excess = [&](int k) {
         return pairs_.is_image(k) ? 0 : std::max<real>(0, static_cast<real>(density_[static_cast<std::size_t>(k)]) - 1);
     };
@@ -207,53 +179,8 @@ typename PbfSolver<D>::Compression PbfSolver<D>::compression() const {
 }
 
 template <int D>
-real PbfSolver<D>::advised_dt() const {
-    return std::min(step_, effects_.max_dt(flow_));
-}
-
-template <int D>
-StepLimit PbfSolver<D>::stable_dt() const {
-    return stable_step(options_, fluid_, speed_);
-}
-
-template <int D>
-FieldSet PbfSolver<D>::fields() const {
-    FieldSet set;
-    fluid_.show(set);
-    return set;
-}
-
-template <int D>
-std::vector<Integral> PbfSolver<D>::integrals() const {
-    auto list = fluid_.integrals();
-    const auto neighbours = pairs_.neighbour_counts();
-    list.push_back({"mean_neighbours", "1", neighbours.mean});
-    list.push_back({"max_neighbours", "1", neighbours.most});
-    const Compression c = compression();
-    list.push_back({"mean_compression", "1", c.mean});
-    list.push_back({"max_compression", "1", c.worst});
-    return list;
-}
-
-template <int D>
-void PbfSolver<D>::save(Checkpoint& to) const {
-    fluid_.save(to);
-    emitters_.save(to);
-    to.put_value("pbf.last_dt", last_dt_);
-    to.put_value("pbf.speed", speed_);
-}
-template <int D>
-void PbfSolver<D>::restore(const Checkpoint& from) {
-    fluid_.restore(from);
-    emitters_.restore(from);
-    last_dt_ = from.get_value<real>("pbf.last_dt");
-    speed_ = from.has("pbf.speed") ? from.get_value<real>("pbf.speed") : not_applicable;  // the device does not keep it
-}
-
-template <int D>
-std::size_t PbfSolver<D>::bytes() const {
-    return fluid_.bytes() + pairs_.bytes() + D * x_star_[0].capacity() * sizeof(real) +
-           (density_.capacity() + multiplier_.capacity()) * sizeof(float) + flow_.bytes() + effects_.bytes();
+std::size_t PbfSolver<D>::own_bytes() const {
+    return D * x_star_[0].capacity() * sizeof(real) + (density_.capacity() + multiplier_.capacity()) * sizeof(float);
 }
 
 template class PbfSolver<2>;

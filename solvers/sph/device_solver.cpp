@@ -1,7 +1,6 @@
 #include "sph/device_solver.hpp"
 
 #include "particles/fastest_flow.hpp"
-#include "particles/flow.hpp"
 
 #include <algorithm>
 
@@ -11,22 +10,10 @@ using particles::Fluid;
 
 namespace {
 
-/// Whether the liquid sticks to any.
 template <int D>
-bool sticky(const geometry::Solids<D>& solids) {
-    bool any = false;
-    for (std::size_t i = 0; i < solids.count(); ++i) any = any || solids[i].no_slip;
-    return any;
-}
-
-}  // namespace
-
-template <int D>
-particles::DeviceSetup DeviceSphSolver<D>::setup(const Options& options, const Fluid<D>& fluid) {
-    const real d = fluid.domain.spacing;
+particles::DeviceSetup setup(const Options& options, const Fluid<D>& fluid) {
     particles::DeviceSetup s;
-    s.device = options.backend.device;
-    s.kernel = static_cast<int>(options.smoothing);
+    s.kernels = smoothing_params(sph_params<particles::single::SphParams, D>(options, fluid.domain.spacing, fluid.rho0), fluid);
     s.files = {"sph_state.inl", "sph_pair.inl", "sph.cl"};
     if (options.continuity) s.defines += "-DWEIR_CONTINUITY ";
     if (options.diffusion > 0) s.defines += "-DWEIR_DIFFUSION ";
@@ -38,43 +25,28 @@ particles::DeviceSetup DeviceSphSolver<D>::setup(const Options& options, const F
     if (options.sigma > 0) s.defines += "-DWEIR_TENSION ";
     if (sticky(fluid.domain.solids)) s.defines += "-DWEIR_STICKY_SOLIDS ";
     if (fluid.domain.solids.moving()) s.defines += "-DWEIR_MOVING_SOLIDS ";
-    s.kernels = smoothing_params(sph_params<particles::single::SphParams, D>(options, d, fluid.rho0), fluid);
-    s.walls = fluid.domain.template walls<particles::single::WallParams>(density_kernel<D>(options, d), gradient_kernel<D>(options, d));
-    s.support = options.support * d;
     return s;
 }
-
-namespace {
 
 template <int D>
 Fluid<D> start_of(const scene::Scene& scene) {
     particles::refuse_what_devices_lack(scene);
-    auto fluid = particles::initial_fluid<D>(scene);
-    particles::refuse_idle_walls(scene, fluid.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
-    return fluid;
-}
-
-/// The fluid of a scene with the speed of sound that goes with it.
-template <int D>
-Options options_of(const scene::Scene& scene) {
-    Fluid<D> fluid = start_of<D>(scene);
-    return {scene, particles::fastest_flow(scene, fluid)};
+    return first_fluid<D>(scene);
 }
 
 }  // namespace
 
 template <int D>
-DeviceSphSolver<D>::DeviceSphSolver(const scene::Scene& scene) : DeviceSphSolver(scene, start_of<D>(scene), options_of<D>(scene)) {}
+DeviceSphSolver<D>::DeviceSphSolver(const scene::Scene& scene) : DeviceSphSolver(scene, start_of<D>(scene)) {}
 
 template <int D>
-DeviceSphSolver<D>::DeviceSphSolver(const scene::Scene& scene, Fluid<D> start, const Options& options)
-    : options_(options),
-      fluid_(start, particles::DeviceEffects<D>(scene), setup(options_, start)),
-      rest_density_(scene, start.rho0),
-      sticky_solids_(sticky(start.domain.solids)),
-      rho_rest_(start.rho0),
-      max_dt_(scene.root().number_or("time.max_dt", infinity)) {
-    start_pressure(scene, options_, fluid_.change());
+DeviceSphSolver<D>::DeviceSphSolver(const scene::Scene& scene, Fluid<D>&& start)
+    : DeviceSphSolver(Options(scene, particles::fastest_flow(scene, start)), scene, start) {}
+
+template <int D>
+DeviceSphSolver<D>::DeviceSphSolver(const Options& options, const scene::Scene& scene, const Fluid<D>& start)
+    : Base(options, start, particles::DeviceEffects<D>(scene), setup(options, start)), sticky_solids_(sticky(start.domain.solids)) {
+    this->start_from(scene, fluid_.change());
     fluid_.plan().want(velocities_, 4 * sizeof(float));
     fluid_.plan().want(acceleration_, 4 * sizeof(float));
     if (options_.sigma > 0) fluid_.plan().want(normals_, 4 * sizeof(float));
@@ -100,8 +72,7 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
     fluid_.end_step();
     fluid_.record(passes_);
-    return {
-        .dt = dt, .cfl = dt * (speed + options_.sound) / fluid_.domain().spacing, .density_error = mean, .max_density_error = c.largest};
+    return this->report(dt, speed, {mean, c.largest});
 }
 
 template <int D>
@@ -156,41 +127,6 @@ template <int D>
 void DeviceSphSolver<D>::drift(real dt) {
     fluid_.pass_time(dt);
     fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.x, fluid_.v});
-}
-
-template <int D>
-real DeviceSphSolver<D>::advised_dt() const {
-    return std::min({step_limit<D>(options_, fluid_.setting(), fluid_.speed(), max_acceleration_), max_dt_, fluid_.max_dt(),
-                     tension_limit<D>(options_, fluid_.setting())});
-}
-
-template <int D>
-FieldSet DeviceSphSolver<D>::fields() const {
-    FieldSet set;
-    const auto& fluid = fluid_.host();
-    fluid.show(set);
-    set.fields.push_back({"pressure", "Pa", Where::particle, "particles", {std::span<const real>(fluid.carried)}});
-    return set;
-}
-
-template <int D>
-std::vector<Integral> DeviceSphSolver<D>::integrals() const {
-    auto list = fluid_.host().integrals();
-    const auto neighbours = fluid_.neighbour_counts();
-    list.push_back({"mean_neighbours", "1", neighbours.mean});
-    list.push_back({"max_neighbours", "1", neighbours.most});
-    return list;
-}
-
-template <int D>
-void DeviceSphSolver<D>::save(Checkpoint& to) const {
-    fluid_.save(to);
-    to.put_value("sph.max_acceleration", max_acceleration_);
-}
-template <int D>
-void DeviceSphSolver<D>::restore(const Checkpoint& from) {
-    fluid_.restore(from);
-    max_acceleration_ = from.get_value<real>("sph.max_acceleration");
 }
 
 template class DeviceSphSolver<2>;

@@ -1,5 +1,5 @@
 // The registration of "sph": its keys, its effects, its maker.
-#include "particles/isa.hpp"
+#include "particles/kind.hpp"
 #include "sph/device_solver.hpp"
 #include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
@@ -13,46 +13,39 @@ namespace {
 
 Key scheme() {
     const Options usual;
-    return {
-        .name = "scheme",
-        .type = Type::table,
-        .doc = "Numerical choices of SPH.",
-        .keys = {{.name = "kernel",
-                  .type = Type::choice,
-                  .doc = "wendland and cubic: one kernel for all, so that forces between particles are the gradient of an energy. "
-                         "muller: as published in 2003, poly6 for density, spiky for pressure, its own for viscosity; these have no "
-                         "common energy and feed a liquid at rest, so they need viscosity.",
-                  .fallback = std::string("wendland"),
-                  .choices = {"muller", "cubic", "wendland"}},
-                 particles::support_key(usual.support),
-                 {.name = "sound_speed",
-                  .type = Type::number,
-                  .doc = "Speed of sound; absent: ten times the fastest flow that can be told before the start, which keeps density "
-                         "within one per cent: a fall from the highest liquid to the bottom of the domain, initial velocities, "
-                         "emitters, moving walls and solids (10 m/s where there are none).",
-                  .unit = "m/s",
-                  .min = 0,
-                  .min_open = true},
-                 {.name = "state",
-                  .type = Type::choice,
-                  .doc = "Equation of state. linear: p = c^2 (rho - rho0); tait: c^2 rho0 / gamma ((rho / rho0)^gamma - 1).",
-                  .fallback = std::string("linear"),
-                  .choices = {"linear", "tait"}},
-                 {.name = "gamma", .type = Type::number, .doc = "Of Tait's equation.", .fallback = 7.0, .min = 1.0},
-                 {.name = "density",
-                  .type = Type::choice,
-                  .doc = "summation: of the kernel over neighbours (Müller et al. 2003), which thins at a free surface. continuity: by its "
-                         "rate, which a surface does not thin. delta: continuity with the diffusion of density (delta = 0.1) and the "
-                         "artificial viscosity (alpha = 0.02) of delta-SPH (Marrone et al. 2011), without which a column at rest goes "
-                         "on ringing; the effects of these names set other values.",
-                  .fallback = std::string("delta"),
-                  .choices = {"delta", "continuity", "summation"}},
-                 {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension},
-                 particles::backend_key()}};
+    return particles::scheme_key(
+        "Numerical choices of SPH.",
+        "wendland and cubic: one kernel for all, so that forces between particles are the gradient of an energy. muller: as published in "
+        "2003, poly6 for density, spiky for pressure, its own for viscosity; these have no common energy and feed a liquid at rest, so "
+        "they need viscosity.",
+        usual,
+        {{.name = "sound_speed",
+          .type = Type::number,
+          .doc = "Speed of sound; absent: ten times the fastest flow that can be told before the start, which keeps density "
+                 "within one per cent: a fall from the highest liquid to the bottom of the domain, initial velocities, "
+                 "emitters, moving walls and solids (10 m/s where there are none).",
+          .unit = "m/s",
+          .min = 0,
+          .min_open = true},
+         {.name = "state",
+          .type = Type::choice,
+          .doc = "Equation of state. linear: p = c^2 (rho - rho0); tait: c^2 rho0 / gamma ((rho / rho0)^gamma - 1).",
+          .fallback = std::string("linear"),
+          .choices = {"linear", "tait"}},
+         {.name = "gamma", .type = Type::number, .doc = "Of Tait's equation.", .fallback = 7.0, .min = 1.0},
+         {.name = "density",
+          .type = Type::choice,
+          .doc = "summation: of the kernel over neighbours (Müller et al. 2003), which thins at a free surface. continuity: by its "
+                 "rate, which a surface does not thin. delta: continuity with the diffusion of density (delta = 0.1) and the "
+                 "artificial viscosity (alpha = 0.02) of delta-SPH (Marrone et al. 2011), without which a column at rest goes "
+                 "on ringing; the effects of these names set other values.",
+          .fallback = std::string("delta"),
+          .choices = {"delta", "continuity", "summation"}},
+         {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension}});
 }
 
 std::vector<scene::Variant> effects() {
-    auto list = particles::effect_schemas();
+    std::vector<scene::Variant> list;
     list.push_back({"viscosity",
                     "Viscous forces with fluid.viscosity (Müller et al. 2003, eq. 14; with the other kernels Morris et al. 1997), and at "
                     "walls and solids with slip = \"no\".",
@@ -87,46 +80,23 @@ std::vector<scene::Variant> effects() {
     return list;
 }
 
-Key initial() {
-    Key key = particles::initial_key();
-    key.keys.push_back({.name = "surface",
-                        .type = Type::numbers,
-                        .doc = "A point of the surface: pressure begins as rho g.(x - surface) where that is positive, of effects.gravity. "
-                               "Needs a density by its rate (delta, continuity); absent: no pressure.",
-                        .unit = "m",
-                        .length = -1});
-    return key;
-}
-
-template <class In2D, class In3D>
-std::unique_ptr<Solver> made(const scene::Scene& scene) {
-    if (scene.dim() == 2) return std::make_unique<In2D>(scene);
-    return std::make_unique<In3D>(scene);
+Key surface() {
+    return {.name = "surface",
+            .type = Type::numbers,
+            .doc =
+                "A point of the surface: pressure begins as rho g.(x - surface) where that is positive, of effects.gravity. "
+                "Needs a density by its rate (delta, continuity); absent: no pressure.",
+            .unit = "m",
+            .length = -1};
 }
 
 }  // namespace
 
 scene::SolverKind kind() {
-    scene::SolverSchema schema;
-    schema.name = "sph";
-    schema.doc = "Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003), weakly compressible.";
-    schema.keys = {scheme(), initial(), particles::sinks_key()};
-    schema.effects = effects();
-    return {schema,
-            [](const scene::Scene& scene) -> std::unique_ptr<Solver> {
-                switch (particles::backend_of(scene).kind) {
-                    case backend::Choice::Kind::opencl:
-                        return made<DeviceSphSolver<2>, DeviceSphSolver<3>>(scene);
-                    case backend::Choice::Kind::reference:
-                        return made<ReferenceSphSolver<2>, ReferenceSphSolver<3>>(scene);
-                    default:
-                        return made<SphSolver<2>, SphSolver<3>>(scene);
-                }
-            },
-            {{"position", "velocity", "density", "id", "pressure"},
-             {"neighbours", "density", "forces", "integrate"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = { name = \"rotation\", omega = 1.0, centre = "
-             "<0.25> }"}};
+    const char* doc = "Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003), weakly compressible.";
+    return {particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects()}, {surface()}),
+            particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
+            particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"})};
 }
 
 }  // namespace weir::sph

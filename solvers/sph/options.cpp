@@ -1,6 +1,5 @@
 #include "sph/options.hpp"
 
-#include "particles/isa.hpp"
 #include "particles/passes.hpp"
 
 #include <algorithm>
@@ -8,7 +7,6 @@
 namespace weir::sph {
 
 using particles::Kernel;
-using particles::KernelKind;
 
 template <int D>
 void Options::read_sides(const scene::Scene& scene) {
@@ -22,17 +20,14 @@ void Options::read_sides(const scene::Scene& scene) {
         }
 }
 
-Options::Options(const scene::Scene& scene, real fastest) {
-    const std::string& name = scene.text("scheme.kernel");
-    smoothing = name == "cubic" ? Smoothing::cubic : name == "wendland" ? Smoothing::wendland : Smoothing::muller;
-    support = scene.number("scheme.support");
+Options::Options(const scene::Scene& scene, real fastest) : Options() {
+    read(scene);
     sound = scene.root().number_or("scheme.sound_speed", fastest > 0 ? 10 * fastest : sound);
     gamma = scene.text("scheme.state") == "tait" ? scene.number("scheme.gamma") : 1;
     tension = scene.flag("scheme.tension");
     const std::string& by = scene.text("scheme.density");
     continuity = by != "summation";
     if (by == "delta") diffusion = delta_sph.diffusion, artificial = delta_sph.viscosity;
-    backend = particles::backend_of(scene);
     if (scene.effect("viscosity")) viscosity = scene.number("fluid.viscosity");
     if (const auto* a = scene.effect("artificial_viscosity")) artificial = a->number("alpha");
     if (const auto* d = scene.effect("density_diffusion")) diffusion = d->number("delta");
@@ -64,17 +59,6 @@ real Options::pressure(real rho, real rho0) const {
 real Options::density(real p, real rho0) const {
     const real c2 = sound * sound;
     return gamma == 1 ? rho0 + p / c2 : rho0 * std::pow(1 + gamma * p / (c2 * rho0), 1 / gamma);
-}
-
-template <int D>
-Kernel<D> density_kernel(const Options& o, real spacing) {
-    const KernelKind kinds[] = {KernelKind::poly6, KernelKind::cubic, KernelKind::wendland};
-    return {kinds[static_cast<int>(o.smoothing)], o.support * spacing};
-}
-template <int D>
-Kernel<D> gradient_kernel(const Options& o, real spacing) {
-    const KernelKind kinds[] = {KernelKind::spiky, KernelKind::cubic, KernelKind::wendland};
-    return {kinds[static_cast<int>(o.smoothing)], o.support * spacing};
 }
 
 /// What gravity and walls do to the parameters.
@@ -127,29 +111,11 @@ constexpr real colour_noise = 0.05;
 template <class Params, int D>
 Params sph_params(const Options& o, real spacing, real rho0) {
     using Number = decltype(Params::h);
-    const Kernel<D> w = density_kernel<D>(o, spacing), g = gradient_kernel<D>(o, spacing), v(KernelKind::viscosity, w.support());
-    const real h = w.support(), mass = rho0 * particles::cell_volume<D>(spacing);
-    const real h3 = h * h * h, h5 = h3 * h * h, h6 = h3 * h3;
-    real density = 0, gradient = 0, laplacian = 0;  // factors of the bare profiles in pair.inl
-    switch (o.smoothing) {
-        case Smoothing::muller:
-            density = w.scale() / h6, gradient = -3 * g.scale() / h3, laplacian = (D == 2 ? 1 : 6) * v.scale() / h3;
-            break;
-        case Smoothing::cubic:
-            density = 2 * w.scale() / h3, gradient = -6 * g.scale() / h3, laplacian = -2 * gradient;
-            break;
-        case Smoothing::wendland:
-            density = w.scale() / h5, gradient = -20 * g.scale() / h5, laplacian = -2 * gradient;
-            break;
-    }
+    const Kernel<D> g = particles::gradient_kernel<D>(o, spacing);
+    const real h = g.support(), mass = rho0 * particles::cell_volume<D>(spacing);
     Params p{};
-    p.h = static_cast<Number>(h);
-    p.h2 = static_cast<Number>(h * h);
-    p.guard = static_cast<Number>(1e-10 * h * h);
-    p.self = static_cast<Number>(mass * w.value(0));
-    p.density = static_cast<Number>(mass * density);
-    p.gradient = static_cast<Number>(mass * gradient);
-    p.laplacian = static_cast<Number>(mass * laplacian);
+    particles::set_kernels<D>(p, o, spacing, mass);
+    p.laplacian = static_cast<Number>(mass * particles::profile_factors<D>(o, spacing).laplacian);
     p.wall_rho = static_cast<Number>(rho0);
     p.viscosity = static_cast<Number>(o.viscosity * rho0);
     p.artificial = static_cast<Number>(o.artificial * o.sound * h / 2);
@@ -161,10 +127,6 @@ Params sph_params(const Options& o, real spacing, real rho0) {
     return p;
 }
 
-template Kernel<2> density_kernel(const Options&, real);
-template Kernel<3> density_kernel(const Options&, real);
-template Kernel<2> gradient_kernel(const Options&, real);
-template Kernel<3> gradient_kernel(const Options&, real);
 template particles::single::SphParams sph_params<particles::single::SphParams, 2>(const Options&, real, real);
 template particles::single::SphParams sph_params<particles::single::SphParams, 3>(const Options&, real, real);
 template particles::plain::SphParams sph_params<particles::plain::SphParams, 2>(const Options&, real, real);

@@ -1,15 +1,9 @@
 // The choices of an SPH scene, and the numbers that the pair physics reads, made from them.
 #pragma once
-#include "backend/device.hpp"
 #include "geometry/sides.hpp"
-#include "particles/kernels.hpp"
-#include "scene/scene.hpp"
-
-#include <string>
+#include "particles/scheme.hpp"
 
 namespace weir::sph {
-
-enum class Smoothing { muller, cubic, wendland };
 
 /// The constants of delta-SPH: diffusion of density and artificial viscosity (Marrone et al. 2011, section 2).
 struct DeltaSph {
@@ -17,23 +11,20 @@ struct DeltaSph {
 };
 inline constexpr DeltaSph delta_sph{};
 
-struct Options {
-    Smoothing smoothing = Smoothing::wendland;
-    real support = 4;         // over the spacing
+struct Options : particles::Scheme {
     real sound = 10;          // speed of sound [m/s]
     real gamma = 1;           // 1: the linear equation of state of Müller et al.; else Tait's
     bool tension = false;     // whether pressure may be negative
     bool continuity = false;  // density by its rate, not by a sum
-    backend::Choice backend;
-    real viscosity = 0;   // kinematic, acts only where the effect is named [m^2/s]
-    real artificial = 0;  // alpha
-    real diffusion = 0;   // delta of the density's diffusion
-    real sigma = 0;       // surface tension [N/m]
+    real viscosity = 0;       // kinematic, acts only where the effect is named [m^2/s]
+    real artificial = 0;      // alpha
+    real diffusion = 0;       // delta of the density's diffusion
+    real sigma = 0;           // surface tension [N/m]
     std::array<real, 3> gravity{0, 0, 0};
     std::array<real, 6> stick{};   // 2 nu at the sides where the fluid sticks to a wall: x lo, x hi, y lo, ...
     std::array<real, 18> slide{};  // and the velocities of these walls
 
-    Options() = default;
+    Options() : Scheme{particles::Smoothing::wendland, 4} {}
     /// fastest: the fastest flow that the scene tells [m/s] (particles/fastest_flow.hpp). Where no speed of sound is named, it is ten times
     /// that, or 10 m/s where there is none.
     Options(const scene::Scene& scene, real fastest);
@@ -48,11 +39,6 @@ private:
     template <int D>
     void read_sides(const scene::Scene& scene);
 };
-
-template <int D>
-particles::Kernel<D> density_kernel(const Options& options, real spacing);
-template <int D>
-particles::Kernel<D> gradient_kernel(const Options& options, real spacing);
 
 /// Params is particles::single::SphParams or particles::plain::SphParams.
 template <class Params, int D>

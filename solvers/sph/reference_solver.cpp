@@ -1,7 +1,6 @@
 #include "sph/reference_solver.hpp"
 
 #include "particles/fastest_flow.hpp"
-#include "particles/flow.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,48 +15,34 @@ namespace {
 #define WEIR_FN inline
 #include "particles/kernels/sph_state.inl"
 
-template <int D>
-Fluid<D> start_of(const scene::Scene& scene) {
-    particles::refuse_what_the_reference_lacks(
-        scene, {"gravity", "viscosity", "artificial_viscosity", "density_diffusion", "surface_tension", "rest_density"});
-    auto fluid = particles::initial_fluid<D>(scene);
-    particles::refuse_idle_walls(scene, fluid.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
-    return fluid;
+const particles::ReferenceEffects& effects() {
+    static const particles::ReferenceEffects list{{"gravity", "integrate"},           {"viscosity", "forces"},
+                                                  {"artificial_viscosity", "forces"}, {"density_diffusion", "density"},
+                                                  {"surface_tension", "forces"},      {"rest_density", "neighbours"}};
+    return list;
 }
 
-/// The speed of sound is ten times the fastest flow of the scene's liquid.
 template <int D>
-Options options_of(const scene::Scene& scene) {
-    Fluid<D> fluid = start_of<D>(scene);
-    return {scene, particles::fastest_flow(scene, fluid)};
+Fluid<D> start_of(const scene::Scene& scene) {
+    particles::refuse_what_the_reference_lacks(scene, effects());
+    return first_fluid<D>(scene);
 }
 
 }  // namespace
 
 template <int D>
-ReferenceSphSolver<D>::ReferenceSphSolver(const scene::Scene& scene) : ReferenceSphSolver(options_of<D>(scene), start_of<D>(scene)) {
-    emitters_ = particles::Emitters<D>(scene, fluid_.domain);
-    rest_density_ = RestDensity(scene, fluid_.rho0);
-    max_dt_ = scene.root().number_or("time.max_dt", infinity);
-    start_pressure(scene, options_, fluid_);
-    for (const auto& [name, pass] : {std::pair{"gravity", "integrate"},
-                                     {"viscosity", "forces"},
-                                     {"artificial_viscosity", "forces"},
-                                     {"surface_tension", "forces"},
-                                     {"density_diffusion", "density"},
-                                     {"rest_density", "neighbours"}})
-        if (scene.effect(name)) plans_.push_back({.name = name, .inside = pass});
+ReferenceSphSolver<D>::ReferenceSphSolver(const scene::Scene& scene) : ReferenceSphSolver(scene, start_of<D>(scene)) {}
+
+template <int D>
+ReferenceSphSolver<D>::ReferenceSphSolver(const scene::Scene& scene, Fluid<D>&& start)
+    : ReferenceSphSolver{Options(scene, particles::fastest_flow(scene, start)), std::move(start)} {
+    this->take(scene, sph::effects());
+    this->start_from(scene, fluid_);
 }
 
 template <int D>
-ReferenceSphSolver<D>::ReferenceSphSolver(const Options& options, Fluid<D> start)
-    : fluid_(std::move(start)), options_(options), rest_density_(fluid_.rho0), rho_rest_(fluid_.rho0) {
-    const auto& domain = fluid_.domain;
-    reference_.p = sph_params<particles::plain::SphParams, D>(options_, domain.spacing, fluid_.rho0);
-    reference_.walls = domain.template walls<particles::plain::WallParams>(density_kernel<D>(options_, domain.spacing),
-                                                                           gradient_kernel<D>(options_, domain.spacing));
-    reference_.kernel = static_cast<int>(options_.smoothing);
-    reference_.period = domain.frame().period;
+ReferenceSphSolver<D>::ReferenceSphSolver(const Options& options, Fluid<D> start) : Base(options, std::move(start)) {
+    reference_.p = sph_params<particles::plain::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0);
     reference_.summed = !options_.continuity;
 }
 
@@ -74,9 +59,8 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     real sum = 0, worst = 0;
     for (const real rho : fluid_.density) sum += std::max<real>(0, rho / rho_rest_ - 1), worst = std::max(worst, rho / rho_rest_ - 1);
     const real mean = fluid_.count() ? sum / fluid_.count() : 0;
-    ++fluid_.steps;
-    fluid_.cross_sides();
-    return {.dt = dt, .cfl = dt * (speed + options_.sound) / fluid_.domain.spacing, .density_error = mean, .max_density_error = worst};
+    this->end_step();
+    return this->report(dt, speed, {mean, worst});
 }
 
 template <int D>
@@ -157,46 +141,6 @@ void ReferenceSphSolver<D>::advance_densities(real dt) {
         real& rho = fluid_.density[i];
         rho = density_kept(rho * density_growth(dt * rate[i] / rho), fluid_.rho0);
     }
-}
-
-template <int D>
-real ReferenceSphSolver<D>::advised_dt() const {
-    return std::min({step_limit<D>(options_, fluid_, fluid_.max_speed(), max_acceleration_), max_dt_, tension_limit<D>(options_, fluid_)});
-}
-
-template <int D>
-FieldSet ReferenceSphSolver<D>::fields() const {
-    FieldSet set;
-    fluid_.show(set);
-    set.fields.push_back({"pressure", "Pa", Where::particle, "particles", {std::span<const real>(fluid_.carried)}});
-    return set;
-}
-
-template <int D>
-std::vector<Integral> ReferenceSphSolver<D>::integrals() const {
-    auto list = fluid_.integrals();
-    particles::add_neighbour_counts(reference_.neighbours, list);
-    return list;
-}
-
-template <int D>
-void ReferenceSphSolver<D>::save(Checkpoint& to) const {
-    fluid_.save(to);
-    emitters_.save(to);
-    to.put_value("sph.max_acceleration", max_acceleration_);
-    to.put_value("sph.speed", speed_);
-}
-template <int D>
-void ReferenceSphSolver<D>::restore(const Checkpoint& from) {
-    fluid_.restore(from);
-    emitters_.restore(from);
-    max_acceleration_ = from.get_value<real>("sph.max_acceleration");
-    speed_ = from.has("sph.speed") ? from.get_value<real>("sph.speed") : not_applicable;  // the device does not keep it
-}
-
-template <int D>
-std::size_t ReferenceSphSolver<D>::bytes() const {
-    return fluid_.bytes() + x_.capacity() * sizeof(Point) + particles::bytes_of(reference_.neighbours);
 }
 
 template class ReferenceSphSolver<2>;

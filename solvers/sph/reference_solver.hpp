@@ -1,41 +1,26 @@
 // Smoothed particle hydrodynamics in plain double precision over all pairs on one thread: the step of SphSolver, as simply as it can be
 // written, with which every backend is compared. Its passes allocate what they return.
 #pragma once
-#include "core/effects.hpp"
-#include "core/solver.hpp"
-#include "particles/emitters.hpp"
-#include "particles/reference.hpp"
-#include "sph/options.hpp"
-#include "sph/state.hpp"
+#include "particles/reference_solver.hpp"
+#include "sph/method.hpp"
 
 namespace weir::sph {
 
 template <int D>
-class ReferenceSphSolver final : public Solver {
+class ReferenceSphSolver final : public Sph<particles::ReferenceSolver<D, particles::ReferenceSph>> {
 public:
     explicit ReferenceSphSolver(const scene::Scene& scene);
     /// Without a scene: from particles in a domain; gravity is the fluid's.
     ReferenceSphSolver(const Options& options, particles::Fluid<D> start);
-
     StepReport step(real dt) override;
-    real advised_dt() const override;
-    StepLimit stable_dt() const override { return stable_step(options_, fluid_, speed_); }
-    std::string concern() const override { return too_fast(options_, speed_, fluid_.time); }
-    FieldSet fields() const override;
-    std::vector<Integral> integrals() const override;
-    real time() const override { return fluid_.time; }
-    void save(Checkpoint& to) const override;
-    void restore(const Checkpoint& from) override;
-    const Passes& passes() const override { return passes_; }
-    Passes& passes() override { return passes_; }
-    std::size_t bytes() const override;
-    std::vector<EffectPlan> effects() const override { return plans_; }
-
-    particles::Fluid<D>& fluid() { return fluid_; }
-    const Options& options() const { return options_; }
 
 private:
+    using Base = Sph<particles::ReferenceSolver<D, particles::ReferenceSph>>;
+    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_;
+    using Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
     using Points = std::vector<particles::Point>;
+
+    ReferenceSphSolver(const scene::Scene& scene, particles::Fluid<D>&& start);
     Points velocities() const;
     void find_neighbours();
     void find_densities();
@@ -43,19 +28,9 @@ private:
     void add_drag_of_solids(Points& to) const;
     void kick(real dt);
     void advance_densities(real dt);
+    std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }
 
-    particles::Fluid<D> fluid_;
-    Options options_;
-    particles::Emitters<D> emitters_;
-    particles::ReferenceSph reference_;
     Points x_;  // where the step began
-    RestDensity rest_density_;
-    std::vector<EffectPlan> plans_;
-    real rho_rest_ = 1;
-    real max_acceleration_ = 0;
-    real speed_ = not_applicable;  // of the fastest particle after the last step [m/s]
-    Passes passes_;
-    real max_dt_ = infinity;
 };
 
 }  // namespace weir::sph

@@ -11,10 +11,9 @@ namespace weir::sph {
 using particles::Fluid;
 using particles::ListChunk;
 using particles::SphPass;
+using particles::single::SphParams;
 
 namespace {
-
-constexpr std::int64_t steps_between_reorders = 16;
 
 #define WEIR_FN inline
 #include "particles/kernels/sph_state.inl"
@@ -22,32 +21,24 @@ constexpr std::int64_t steps_between_reorders = 16;
 }  // namespace
 
 template <int D>
-SphSolver<D>::SphSolver(const scene::Scene& scene)
-    : fluid_(particles::initial_fluid<D>(scene)),
-      options_(scene, particles::fastest_flow(scene, fluid_)),
-      emitters_(scene, fluid_.domain),
-      params_(sph_params<particles::single::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
-      smooth_(smoothing_params<D>(params_, fluid_)),
-      walls_(fluid_.domain.template walls<particles::single::WallParams>(density_kernel<D>(options_, fluid_.domain.spacing),
-                                                                         gradient_kernel<D>(options_, fluid_.domain.spacing))),
-      pairs_(particles::passes_for(options_.backend.isa), fluid_.domain.frame()),
-      solids_(fluid_.domain, fluid_.domain.template walls<particles::plain::WallParams>(
-                                 density_kernel<D>(options_, fluid_.domain.spacing), gradient_kernel<D>(options_, fluid_.domain.spacing))),
-      flow_{fluid_, pairs_, smooth_, {}, {}, static_cast<int>(options_.smoothing)},
-      rest_density_(scene, fluid_.rho0),
-      rho_rest_(fluid_.rho0),
-      max_dt_(scene.root().number_or("time.max_dt", infinity)) {
-    particles::refuse_idle_walls(scene, fluid_.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
-    particles::add_effects(scene, effects_);
-    if (scene.effect("surface_tension"))
-        effects_.add("surface_tension", std::make_unique<SurfaceTension<D>>(options_, params_, walls_, solids_));
+SphSolver<D>::SphSolver(const scene::Scene& scene) : SphSolver(scene, first_fluid<D>(scene)) {}
+
+template <int D>
+SphSolver<D>::SphSolver(const scene::Scene& scene, Fluid<D>&& start)
+    : SphSolver{Options(scene, particles::fastest_flow(scene, start)), scene, std::move(start)} {}
+
+template <int D>
+SphSolver<D>::SphSolver(const Options& options, const scene::Scene& scene, Fluid<D>&& start)
+    : Base(options, scene, std::move(start)), params_(sph_params<SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)) {
+    kernels_ = smoothing_params(params_, fluid_);
+    if (scene.effect("surface_tension")) effects_.add("surface_tension", std::make_unique<SurfaceTension<D>>(params_, walls_, solids_));
     for (const auto& [name, pass] : {std::pair{"viscosity", "forces"},
                                      {"artificial_viscosity", "forces"},
                                      {"density_diffusion", "density"},
                                      {"rest_density", "neighbours"}})
         if (scene.effect(name)) effects_.declare({.name = name, .inside = pass});
-    for (std::size_t i = 0; i < fluid_.domain.solids.count(); ++i) sticky_solids_ = sticky_solids_ || fluid_.domain.solids[i].no_slip;
-    start_pressure(scene, options_, fluid_);
+    sticky_solids_ = sticky(fluid_.domain.solids);
+    this->start_from(scene, fluid_);
 }
 
 /// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
@@ -64,13 +55,9 @@ StepReport SphSolver<D>::step(real dt) {
     drift(dt);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     const real speed = speed_ = fluid_.max_speed();
-    const real rest = rho_rest_;
-    const int n = fluid_.count();
-    const auto excess = [&](int i) { return std::max<real>(0, fluid_.density[static_cast<std::size_t>(i)] / rest - 1); };
-    const real mean = n ? particles::block_sum(n, excess) / n : 0, worst = particles::block_max(n, excess);
-    if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
-    fluid_.cross_sides();
-    return {.dt = dt, .cfl = dt * (speed + options_.sound) / fluid_.domain.spacing, .density_error = mean, .max_density_error = worst};
+    const Compression c = particles::compression_of(fluid_, rho_rest_);
+    this->end_step();
+    return this->report(dt, speed, c);
 }
 
 template <int D>
@@ -222,56 +209,8 @@ void SphSolver<D>::drift(real dt) {
 }
 
 template <int D>
-real SphSolver<D>::advised_dt() const {
-    return std::min({step_limit<D>(options_, fluid_, fluid_.max_speed(), max_acceleration_), max_dt_, effects_.max_dt(flow_)});
-}
-
-template <int D>
-StepLimit SphSolver<D>::stable_dt() const {
-    return stable_step(options_, fluid_, speed_);
-}
-
-template <int D>
-std::string SphSolver<D>::concern() const {
-    return too_fast(options_, speed_, fluid_.time);
-}
-
-template <int D>
-FieldSet SphSolver<D>::fields() const {
-    FieldSet set;
-    fluid_.show(set);
-    set.fields.push_back({"pressure", "Pa", Where::particle, "particles", {std::span<const real>(fluid_.carried)}});
-    return set;
-}
-
-template <int D>
-std::vector<Integral> SphSolver<D>::integrals() const {
-    auto list = fluid_.integrals();
-    const auto neighbours = pairs_.neighbour_counts();
-    list.push_back({"mean_neighbours", "1", neighbours.mean});
-    list.push_back({"max_neighbours", "1", neighbours.most});
-    return list;
-}
-
-template <int D>
-void SphSolver<D>::save(Checkpoint& to) const {
-    fluid_.save(to);
-    emitters_.save(to);
-    to.put_value("sph.max_acceleration", max_acceleration_);
-    to.put_value("sph.speed", speed_);
-}
-template <int D>
-void SphSolver<D>::restore(const Checkpoint& from) {
-    fluid_.restore(from);
-    emitters_.restore(from);
-    max_acceleration_ = from.get_value<real>("sph.max_acceleration");
-    speed_ = from.has("sph.speed") ? from.get_value<real>("sph.speed") : not_applicable;  // the device does not keep it
-}
-
-template <int D>
-std::size_t SphSolver<D>::bytes() const {
-    return fluid_.bytes() + pairs_.bytes() + (velocity_.capacity() + acceleration_.capacity() + density_.capacity()) * sizeof(float) +
-           flow_.bytes() + effects_.bytes();
+std::size_t SphSolver<D>::own_bytes() const {
+    return (velocity_.capacity() + acceleration_.capacity() + density_.capacity()) * sizeof(float);
 }
 
 template class SphSolver<2>;

@@ -1,6 +1,7 @@
 #include "sph/state.hpp"
 
 #include "core/parallel.hpp"
+#include "particles/flow.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +9,20 @@
 #include <cmath>
 
 namespace weir::sph {
+
+template <int D>
+particles::Fluid<D> first_fluid(const scene::Scene& scene) {
+    auto fluid = particles::initial_fluid<D>(scene);
+    particles::refuse_idle_walls(scene, fluid.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
+    return fluid;
+}
+
+template <int D>
+bool sticky(const geometry::Solids<D>& solids) {
+    bool any = false;
+    for (std::size_t i = 0; i < solids.count(); ++i) any = any || solids[i].no_slip;
+    return any;
+}
 
 template <int D>
 particles::single::PbfParams smoothing_params(const particles::single::SphParams& p, const particles::Fluid<D>& fluid) {
@@ -98,6 +113,10 @@ void drift(particles::Fluid<D>& fluid, real dt) {
     });
 }
 
+template particles::Fluid<2> first_fluid(const scene::Scene&);
+template particles::Fluid<3> first_fluid(const scene::Scene&);
+template bool sticky(const geometry::Solids<2>&);
+template bool sticky(const geometry::Solids<3>&);
 template StepLimit stable_step(const Options&, const particles::Fluid<2>&, real);
 template StepLimit stable_step(const Options&, const particles::Fluid<3>&, real);
 template void drift(particles::Fluid<2>&, real);

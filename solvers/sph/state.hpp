@@ -9,6 +9,14 @@
 
 namespace weir::sph {
 
+/// The scene's liquid at the start. Throws BadScene where walls are stuck to without viscosity.
+template <int D>
+particles::Fluid<D> first_fluid(const scene::Scene& scene);
+
+/// Whether the liquid sticks to any.
+template <int D>
+bool sticky(const geometry::Solids<D>& solids);
+
 /// The kernels of SPH as XSPH and vorticity read them.
 template <int D>
 particles::single::PbfParams smoothing_params(const particles::single::SphParams& params, const particles::Fluid<D>& fluid);

@@ -1,7 +1,5 @@
 #include "sph/tension.hpp"
 
-#include "sph/state.hpp"
-
 namespace weir::sph {
 
 using particles::ListChunk;
@@ -25,11 +23,6 @@ void SurfaceTension<D>::apply(particles::Flow<D>& flow, real dt) {
     job.acceleration = flow.change.data();
     pairs.list().each_chunk([&](const ListChunk& chunk) { table.tension(job, chunk); });
     flow.add_change(dt);
-}
-
-template <int D>
-real SurfaceTension<D>::max_dt(const particles::Flow<D>& flow) const {
-    return tension_limit(options_, flow.fluid);
 }
 
 template class SurfaceTension<2>;

@@ -9,19 +9,15 @@ namespace weir::sph {
 template <int D>
 class SurfaceTension final : public Effect<particles::Flow<D>> {
 public:
-    SurfaceTension(const Options& options, const particles::single::SphParams& params, const particles::single::WallParams& walls,
-                   particles::SolidTerms<D>& solids)
-        : options_(options), params_(params), walls_(walls), solids_(solids) {}
+    SurfaceTension(const particles::single::SphParams& params, const particles::single::WallParams& walls, particles::SolidTerms<D>& solids)
+        : params_(params), walls_(walls), solids_(solids) {}
     Stage stage() const override { return Stage::force; }
     void needs(FieldPlan& plan) const override { plan.scratch("change of pairs"); }
     /// Reads 1 / rho in the pairs' positions, where the force pass has left it.
     void apply(particles::Flow<D>& flow, real dt) override;
-    /// The period of the shortest capillary wave that a support of two smoothing lengths s holds (Brackbill, Kothe & Zemach 1992).
-    real max_dt(const particles::Flow<D>& flow) const override;
     std::size_t bytes() const override { return normal_.capacity() * sizeof(float); }
 
 private:
-    const Options& options_;
     const particles::single::SphParams& params_;
     const particles::single::WallParams& walls_;
     particles::SolidTerms<D>& solids_;

@@ -1,0 +1,35 @@
+// A particle solver with the whole step on a device (device_fluid.hpp).
+#pragma once
+#include "particles/device_fluid.hpp"
+#include "particles/scheme.hpp"
+#include "particles/solver.hpp"
+
+namespace weir::particles {
+
+template <int D>
+class DeviceSolver : public ParticleSolver<D> {
+public:
+    bool checks_itself() const final { return true; }
+    real time() const final { return fluid_.time(); }
+    std::size_t bytes() const final { return fluid_.bytes(); }
+    std::vector<EffectPlan> effects() const final { return fluid_.effects(); }
+    Fluid<D>& fluid() { return fluid_.change(); }
+    const DeviceFluid<D>& on_device() const { return fluid_; }
+
+protected:
+    using Memory = backend::Memory;
+    using Reduced = typename DeviceFluid<D>::Reduced;
+    DeviceSolver(const Scheme& scheme, const Fluid<D>& start, const DeviceEffects<D>& effects, const DeviceSetup& own)
+        : fluid_(start, effects, with_scheme(own, scheme, start.domain)) {}
+    const Fluid<D>& state() const final { return fluid_.host(); }
+    const Fluid<D>& setting() const final { return fluid_.setting(); }
+    real speed() const final { return fluid_.speed(); }
+    Pairs::NeighbourCounts neighbour_counts() const final { return fluid_.neighbour_counts(); }
+    real max_dt() const final { return fluid_.max_dt(); }
+    void save_state(Checkpoint& to) const final { fluid_.save(to); }
+    void restore_state(const Checkpoint& from) final { fluid_.restore(from); }
+
+    DeviceFluid<D> fluid_;
+};
+
+}  // namespace weir::particles

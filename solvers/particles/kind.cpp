@@ -1,0 +1,23 @@
+#include "particles/kind.hpp"
+
+namespace weir::particles {
+
+scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::Key>& in_initial) {
+    scene::Key initial = initial_key();
+    initial.keys.insert(initial.keys.end(), in_initial.begin(), in_initial.end());
+    own.keys.push_back(std::move(initial));
+    own.keys.push_back(sinks_key());
+    const auto shared = effect_schemas();
+    own.effects.insert(own.effects.begin(), shared.begin(), shared.end());
+    return own;
+}
+
+scene::PlainStep plain_step(std::vector<std::string> more_fields, std::vector<std::string> passes) {
+    std::vector<std::string> fields{"position", "velocity", "density", "id"};
+    fields.insert(fields.end(), more_fields.begin(), more_fields.end());
+    return {fields, std::move(passes),
+            "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = { name = \"rotation\", omega = 1.0, centre = "
+            "<0.25> }"};
+}
+
+}  // namespace weir::particles

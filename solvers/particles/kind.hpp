@@ -1,0 +1,32 @@
+// How a particle method is registered: what every one of them has in its schema, and its solver for the backend and the dimension that a
+// scene names.
+#pragma once
+#include "particles/flow.hpp"
+#include "particles/scheme.hpp"
+#include "scene/solver_kind.hpp"
+
+namespace weir::particles {
+
+/// own: the method's name, its "scheme" and effects; in_initial: its keys of "initial"; plain: fields and passes.
+scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::Key>& in_initial);
+scene::PlainStep plain_step(std::vector<std::string> more_fields, std::vector<std::string> passes);
+
+template <template <int> class On>
+std::unique_ptr<Solver> make_in(int dim, const scene::Scene& scene) {
+    if (dim == 2) return std::make_unique<On<2>>(scene);
+    return std::make_unique<On<3>>(scene);
+}
+
+template <template <int> class OnThreads, template <int> class OnReference, template <int> class OnDevice>
+std::unique_ptr<Solver> make_solver(const scene::Scene& scene) {
+    switch (backend_of(scene).kind) {
+        case backend::Choice::Kind::opencl:
+            return make_in<OnDevice>(scene.dim(), scene);
+        case backend::Choice::Kind::reference:
+            return make_in<OnReference>(scene.dim(), scene);
+        default:
+            return make_in<OnThreads>(scene.dim(), scene);
+    }
+}
+
+}  // namespace weir::particles

@@ -1,0 +1,41 @@
+// A particle solver in plain double precision over all pairs on one thread, with which every backend is compared (reference.hpp). Its time
+// grows with the square of the number of particles, and its passes allocate what they return.
+#pragma once
+#include "particles/reference.hpp"
+#include "particles/scheme.hpp"
+#include "particles/solver.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace weir::particles {
+
+/// The effects that a method has here, with the passes in which they act.
+using ReferenceEffects = std::vector<std::pair<std::string, std::string>>;
+void refuse_what_the_reference_lacks(const scene::Scene& scene, const ReferenceEffects& effects);
+
+/// Physics: ReferencePbf or ReferenceSph.
+template <int D, class Physics>
+class ReferenceSolver : public HostSolver<D> {
+public:
+    std::size_t bytes() const final;
+    std::vector<EffectPlan> effects() const final { return plans_; }
+
+protected:
+    ReferenceSolver(const Scheme& scheme, Fluid<D>&& start);
+    /// What a scene adds: its emitters and its effects.
+    void take(const scene::Scene& scene, const ReferenceEffects& effects);
+    Pairs::NeighbourCounts neighbour_counts() const final { return counts_of(reference_.neighbours); }
+    /// That the method's own arrays take.
+    virtual std::size_t own_bytes() const = 0;
+    void end_step();
+
+    using HostSolver<D>::fluid_;
+    Physics reference_;  // its numbers p are the method's
+
+private:
+    std::vector<EffectPlan> plans_;
+};
+
+}  // namespace weir::particles

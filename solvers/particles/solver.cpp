@@ -1,0 +1,65 @@
+#include "particles/solver.hpp"
+
+#include <algorithm>
+
+namespace weir::particles {
+
+template <int D>
+Compression compression_of(const Fluid<D>& fluid, real rest_density) {
+    const int n = fluid.count();
+    const auto excess = [&](int i) { return std::max<real>(0, fluid.density[static_cast<std::size_t>(i)] / rest_density - 1); };
+    return {n ? block_sum(n, excess) / n : 0, block_max(n, excess)};
+}
+
+template <int D>
+FieldSet ParticleSolver<D>::fields() const {
+    FieldSet set;
+    const Fluid<D>& fluid = state();
+    fluid.show(set);
+    show(fluid, set);
+    return set;
+}
+
+template <int D>
+std::vector<Integral> ParticleSolver<D>::integrals() const {
+    auto list = state().integrals();
+    const auto neighbours = neighbour_counts();
+    list.push_back({"mean_neighbours", "1", neighbours.mean});
+    list.push_back({"max_neighbours", "1", neighbours.most});
+    sum_up(list);
+    return list;
+}
+
+template <int D>
+void ParticleSolver<D>::save(Checkpoint& to) const {
+    save_state(to);
+    save_more(to);
+}
+template <int D>
+void ParticleSolver<D>::restore(const Checkpoint& from) {
+    restore_state(from);
+    restore_more(from);
+}
+
+template <int D>
+void HostSolver<D>::save_state(Checkpoint& to) const {
+    fluid_.save(to);
+    emitters_.save(to);
+    to.put_value(std::string(this->method()) + ".speed", speed_);
+}
+template <int D>
+void HostSolver<D>::restore_state(const Checkpoint& from) {
+    fluid_.restore(from);
+    emitters_.restore(from);
+    const std::string key = std::string(this->method()) + ".speed";
+    speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // the device does not keep it
+}
+
+template Compression compression_of(const Fluid<2>&, real);
+template Compression compression_of(const Fluid<3>&, real);
+template class ParticleSolver<2>;
+template class ParticleSolver<3>;
+template class HostSolver<2>;
+template class HostSolver<3>;
+
+}  // namespace weir::particles

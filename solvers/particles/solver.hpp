@@ -1,0 +1,80 @@
+// What a particle solver is, whatever its method and wherever it runs: what it shows, sums up, keeps and restores. A backend
+// (threaded_solver.hpp, reference_solver.hpp, device_solver.hpp) says where the particles are; a method (pbf, sph) says its step, and what
+// it adds. No call of these is made for a particle.
+#pragma once
+#include "core/passes.hpp"
+#include "core/solver.hpp"
+#include "particles/emitters.hpp"
+#include "particles/fluid.hpp"
+
+namespace weir::particles {
+
+/// How much denser than at rest particles are [1].
+struct Compression {
+    real mean = 0, worst = 0;
+};
+/// Of the densities of the last step.
+template <int D>
+Compression compression_of(const Fluid<D>& fluid, real rest_density);
+
+template <int D>
+class ParticleSolver : public Solver {
+public:
+    static constexpr int dim = D;
+
+    FieldSet fields() const final;
+    std::vector<Integral> integrals() const final;
+    void save(Checkpoint& to) const final;
+    void restore(const Checkpoint& from) final;
+    const Passes& passes() const final { return passes_; }
+    Passes& passes() final { return passes_; }
+
+protected:
+    // A backend's part.
+    /// The state as it is now, and as far as it is known without asking for particles (its box, its constants).
+    virtual const Fluid<D>& state() const = 0;
+    virtual const Fluid<D>& setting() const = 0;
+    /// Of the fastest particle [m/s].
+    virtual real speed() const = 0;
+    virtual Pairs::NeighbourCounts neighbour_counts() const = 0;
+    /// The largest step that the effects which it applies advise [s].
+    virtual real max_dt() const { return infinity; }
+    virtual void save_state(Checkpoint& to) const = 0;
+    virtual void restore_state(const Checkpoint& from) = 0;
+
+    // A method's part.
+    virtual const char* method() const = 0;
+    virtual void show(const Fluid<D>&, FieldSet&) const {}
+    virtual void sum_up(std::vector<Integral>&) const {}
+    virtual void save_more(Checkpoint& to) const = 0;
+    virtual void restore_more(const Checkpoint& from) = 0;
+    /// What is stable, and what is wrong, where the fastest particle has this speed; not a number before the first step.
+    virtual StepLimit stable_at(real speed) const = 0;
+    virtual std::string concern_at(real) const { return {}; }
+
+    Passes passes_;
+};
+
+/// A particle solver whose state is in the processor's memory.
+template <int D>
+class HostSolver : public ParticleSolver<D> {
+public:
+    StepLimit stable_dt() const final { return this->stable_at(speed_); }
+    std::string concern() const final { return this->concern_at(speed_); }
+    real time() const final { return fluid_.time; }
+    Fluid<D>& fluid() { return fluid_; }
+
+protected:
+    explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) {}
+    const Fluid<D>& state() const final { return fluid_; }
+    const Fluid<D>& setting() const final { return fluid_; }
+    real speed() const final { return fluid_.max_speed(); }
+    void save_state(Checkpoint& to) const final;
+    void restore_state(const Checkpoint& from) final;
+
+    Fluid<D> fluid_;
+    Emitters<D> emitters_;
+    real speed_ = not_applicable;  // of the fastest particle after the last step; not known before the first [m/s]
+};
+
+}  // namespace weir::particles

@@ -1,0 +1,39 @@
+// A particle solver on threads and vector lanes: the sorted particles of a step with their neighbours (pairs.hpp), what solids add there,
+// and the effects that every method has (flow.hpp).
+#pragma once
+#include "core/effects.hpp"
+#include "particles/flow.hpp"
+#include "particles/pairs.hpp"
+#include "particles/scheme.hpp"
+#include "particles/solid_terms.hpp"
+#include "particles/solver.hpp"
+
+namespace weir::particles {
+
+template <int D>
+class ThreadedSolver : public HostSolver<D> {
+public:
+    std::size_t bytes() const final;
+    std::vector<EffectPlan> effects() const final { return effects_.plans(); }
+    const Pairs& pairs() const { return pairs_; }
+    Pairs& pairs() { return pairs_; }
+
+protected:
+    ThreadedSolver(const Scheme& scheme, const scene::Scene& scene, Fluid<D>&& start);
+    Pairs::NeighbourCounts neighbour_counts() const final { return pairs_.neighbour_counts(); }
+    real max_dt() const final { return effects_.max_dt(flow_); }
+    /// That the method's own arrays take.
+    virtual std::size_t own_bytes() const = 0;
+    /// Counts a step; the state follows the sorted order now and then; what has crossed a side is taken back or out.
+    void end_step();
+
+    using HostSolver<D>::fluid_;
+    single::PbfParams kernels_{};  // the method's, as PBF, XSPH and vorticity read them
+    single::WallParams walls_;
+    Pairs pairs_;
+    SolidTerms<D> solids_;
+    Flow<D> flow_;
+    Effects<Flow<D>> effects_;
+};
+
+}  // namespace weir::particles

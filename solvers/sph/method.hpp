@@ -1,0 +1,62 @@
+// What smoothed particle hydrodynamics is on every backend: its options, the rest density and the pressure that it starts from, the steps
+// that it advises and stands, what it adds to fields and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
+#pragma once
+#include "particles/solver.hpp"
+#include "sph/options.hpp"
+#include "sph/state.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace weir::sph {
+
+using particles::Compression;
+
+/// Backend: particles::ThreadedSolver<D>, ReferenceSolver<D, ...> or DeviceSolver<D>.
+template <class Backend>
+class Sph : public Backend {
+public:
+    real advised_dt() const final {
+        return std::min({step_limit(options_, this->setting(), this->speed(), max_acceleration_), max_dt_, this->max_dt(),
+                         tension_limit(options_, this->setting())});
+    }
+    const Options& options() const { return options_; }
+    real rest_density() const { return rho_rest_; }
+
+protected:
+    template <class... Arguments>
+    explicit Sph(const Options& options, Arguments&&... arguments)
+        : Backend(options, std::forward<Arguments>(arguments)...),
+          options_(options),
+          rest_density_(this->setting().rho0),
+          rho_rest_(this->setting().rho0) {}
+    /// What a scene says beyond the options.
+    void start_from(const scene::Scene& scene, particles::Fluid<Backend::dim>& fluid) {
+        rest_density_ = RestDensity(scene, fluid.rho0);
+        max_dt_ = scene.root().number_or("time.max_dt", infinity);
+        start_pressure(scene, options_, fluid);
+    }
+
+    const char* method() const final { return "sph"; }
+    StepLimit stable_at(real speed) const final { return stable_step(options_, this->setting(), speed); }
+    std::string concern_at(real speed) const final { return too_fast(options_, speed, this->time()); }
+    void show(const particles::Fluid<Backend::dim>& fluid, FieldSet& set) const final {
+        set.fields.push_back({"pressure", "Pa", Where::particle, "particles", {std::span<const real>(fluid.carried)}});
+    }
+    void save_more(Checkpoint& to) const final { to.put_value("sph.max_acceleration", max_acceleration_); }
+    void restore_more(const Checkpoint& from) final { max_acceleration_ = from.get_value<real>("sph.max_acceleration"); }
+
+    StepReport report(real dt, real speed, const Compression& c) const {
+        return {.dt = dt,
+                .cfl = dt * (speed + options_.sound) / this->setting().domain.spacing,
+                .density_error = c.mean,
+                .max_density_error = c.worst};
+    }
+
+    Options options_;
+    RestDensity rest_density_;
+    real rho_rest_ = 1;  // now [kg/m^3]
+    real max_acceleration_ = 0, max_dt_ = infinity;
+};
+
+}  // namespace weir::sph
