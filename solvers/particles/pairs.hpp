@@ -69,6 +69,7 @@ private:
     CellSort cells_;
     SlicedList list_;
     std::vector<float> a_, b_;
+    std::array<std::vector<float>, 3> axis_;  // positions as the list is built from them
     std::vector<int> owner_;
     // Only with periodic axes:
     std::array<std::vector<real>, 3> with_images_;   // coordinates of particles and images before sorting

@@ -35,7 +35,7 @@ struct ListChunk {
 enum class Built { done, needs_candidates, needs_entries };
 
 struct ListJob {
-    const float* positions = nullptr;  // sorted
+    const float* axis[3] = {};         // sorted coordinates, and room for a register behind them
     int count = 0;                     // particles; the dummy is particle `count`
     const int* start = nullptr;        // of cells
     const int* cell_of = nullptr;      // of sorted particles
