@@ -90,18 +90,22 @@ real block_sum(int count, F&& f) {
         return sum;
     });
 }
+/// The largest of f(i) over [0, count), several at a time in lanes; NaN if any is NaN: once in a lane, nothing compares greater.
 template <class F>
 real block_max(int count, F&& f) {
-    constexpr int block = 2048;
+    constexpr int block = 2048, lanes = 8;
     if (count == 0) return 0;
     return ordered_max((count + block - 1) / block, [&](int b) {
-        real largest = -infinity;
-        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) {
-            const real value = f(i);
-            if (value > largest || std::isnan(value)) largest = value;
-            if (std::isnan(largest)) break;
-        }
-        return largest;
+        std::array<real, lanes> largest;
+        largest.fill(-infinity);
+        const auto meet = [&](std::size_t l, real value) { largest[l] = value > largest[l] || value != value ? value : largest[l]; };
+        int i = b * block;
+        const int end = std::min(count, i + block);
+        for (; i + lanes <= end; i += lanes)
+            for (int l = 0; l < lanes; ++l) meet(static_cast<std::size_t>(l), f(i + l));
+        for (; i < end; ++i) meet(0, f(i));
+        for (std::size_t l = 1; l < lanes; ++l) meet(0, largest[l]);
+        return largest[0];
     });
 }
 
