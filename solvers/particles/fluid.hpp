@@ -90,6 +90,34 @@ real block_sum(int count, F&& f) {
         return sum;
     });
 }
+/// Both the sum, in the order of block_sum, and the largest of f(i) in one sweep.
+struct SumAndMost {
+    real sum = 0, most = 0;
+};
+template <class F>
+SumAndMost block_sum_and_max(int count, F&& f) {
+    constexpr int block = 2048;
+    if (count == 0) return {};
+    const int blocks = (count + block - 1) / block;
+    auto& part = detail::reduction_scratch(2 * static_cast<std::size_t>(blocks));
+    parallel_for(0, blocks, [&](int b) {
+        real sum = 0, most = -infinity;
+        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) {
+            const real value = f(i);
+            sum += value;
+            most = value > most || value != value ? value : most;
+        }
+        part[2 * static_cast<std::size_t>(b)] = sum;
+        part[2 * static_cast<std::size_t>(b) + 1] = most;
+    });
+    SumAndMost all{0, -infinity};
+    for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {
+        all.sum += part[2 * b];
+        const real most = part[2 * b + 1];
+        all.most = most > all.most || most != most ? most : all.most;
+    }
+    return all;
+}
 /// The largest of f(i) over [0, count), several at a time in lanes; NaN if any is NaN: once in a lane, nothing compares greater.
 template <class F>
 real block_max(int count, F&& f) {

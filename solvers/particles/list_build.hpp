@@ -94,7 +94,8 @@ inline void find_hits(const ListJob& job, const ListChunk& chunk, int i, std::ui
         const vf jx = load_numbers(near_x, c), jy = load_numbers(near_y, c), jz = load_numbers(near_z, c), j = load_numbers(offset, c);
         for (int p = 0; p < Count; ++p) {
             const vf dx = jx - x[p], dy = jy - y[p], dz = jz - z[p];
-            to[p] += store_chosen(to[p], j, below_of_others(square_length(dx, dy, dz), radius2, j, static_cast<std::uint32_t>(16 * (i + p))));
+            to[p] +=
+                store_chosen(to[p], j, below_of_others(square_length(dx, dy, dz), radius2, j, static_cast<std::uint32_t>(16 * (i + p))));
         }
     }
     for (int p = 0; p < Count; ++p) {
@@ -149,7 +150,8 @@ inline Built build_list(const ListJob& job, ListChunk& chunk) {
             return Built::needs_entries;
         }
         for (int l = 0; l < lanes; ++l)
-            for (int k = l < end - begin ? found[l] + lanes : 0; k < padded; k += lanes) store_all(as_numbers(chunk.hits + l * stride + k), dummies);
+            for (int k = l < end - begin ? found[l] + lanes : 0; k < padded; k += lanes)
+                store_all(as_numbers(chunk.hits + l * stride + k), dummies);
         write_rows(chunk.entries + chunk.used, chunk.hits, stride, rows);
         job.first[chunk.next] = chunk.used;
         job.rows[chunk.next] = rows;

@@ -112,7 +112,8 @@ Pairs::NeighbourCounts Pairs::neighbour_counts() const {
 }
 
 std::size_t Pairs::bytes() const {
-    return cells_.bytes() + list_.bytes() + (a_.capacity() + b_.capacity() + 3 * axis_[0].capacity()) * sizeof(float) + owner_.capacity() * sizeof(int);
+    return cells_.bytes() + list_.bytes() + (a_.capacity() + b_.capacity() + 3 * axis_[0].capacity()) * sizeof(float) +
+           owner_.capacity() * sizeof(int);
 }
 
 }  // namespace weir::particles

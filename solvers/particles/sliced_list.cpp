@@ -25,7 +25,8 @@ void SlicedList::prepare(Chunk& chunk, int t, int slices, int lanes) {
 void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
     ListChunk& v = chunk.view;
     ++chunk.growths;
-    const std::size_t room = (v.needed + v.needed / 4 + 1024) / 16 * 16;  // lists of hits begin where registers like it
+    // Candidates: lists of hits stand that far apart, in the nearest cache, and begin where registers like it.
+    const std::size_t room = why == Built::needs_candidates ? (v.needed + v.needed / 2) / 16 * 16 : v.needed + v.needed / 4 + 1024;
     if (room * sizeof(std::uint32_t) * (why == Built::needs_candidates ? static_cast<std::size_t>(lanes) : chunks_.size()) > max_bytes)
         throw NumericalFailure("neighbours", "the neighbour list needs more than " + std::to_string(max_bytes >> 20) +
                                                  " MiB: too many particles are closer than the support");
@@ -59,15 +60,8 @@ void SlicedList::build(const PassTable& table, const std::array<const float*, 3>
     first_.resize(static_cast<std::size_t>(slices));
     rows_.resize(static_cast<std::size_t>(slices));
     neighbours_.resize(static_cast<std::size_t>(count));
-    ListJob job{{},
-                count,
-                cells.start().data(),
-                cells.cell_of().data(),
-                {},
-                radius * radius,
-                first_.data(),
-                rows_.data(),
-                neighbours_.data()};
+    ListJob job{
+        {}, count, cells.start().data(), cells.cell_of().data(), {}, radius * radius, first_.data(), rows_.data(), neighbours_.data()};
     for (std::size_t a = 0; a < 3; ++a) job.axis[a] = axis[a], job.cells[a] = cells.cells()[a];
     for_chunks(static_cast<int>(chunks_.size()), static_cast<int>(chunks_.size()), [&](int t, int, int) {
         Chunk& chunk = chunks_[static_cast<std::size_t>(t)];

@@ -67,7 +67,8 @@ StepReport SphSolver<D>::step(real dt) {
     const real rest = rho_rest_;
     const int n = fluid_.count();
     const auto excess = [&](int i) { return std::max<real>(0, fluid_.density[static_cast<std::size_t>(i)] / rest - 1); };
-    const real mean = n ? particles::block_sum(n, excess) / n : 0, worst = particles::block_max(n, excess);
+    const auto [sum, worst] = particles::block_sum_and_max(n, excess);
+    const real mean = n ? sum / n : 0;
     if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
     fluid_.cross_sides();
     return {.dt = dt, .cfl = dt * (speed + options_.sound) / fluid_.domain.spacing, .density_error = mean, .max_density_error = worst};
