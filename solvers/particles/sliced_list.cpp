@@ -25,8 +25,7 @@ void SlicedList::prepare(Chunk& chunk, int t, int slices, int lanes) {
 void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
     ListChunk& v = chunk.view;
     ++chunk.growths;
-    // Candidates: lists of hits stand that far apart, in the nearest cache, and begin where registers like it.
-    const std::size_t room = why == Built::needs_candidates ? (v.needed + v.needed / 2) / 16 * 16 : v.needed + v.needed / 4 + 1024;
+    const std::size_t room = (v.needed + v.needed / 4 + 1024) / 16 * 16;  // lists of hits begin where registers like it
     if (room * sizeof(std::uint32_t) * (why == Built::needs_candidates ? static_cast<std::size_t>(lanes) : chunks_.size()) > max_bytes)
         throw NumericalFailure("neighbours", "the neighbour list needs more than " + std::to_string(max_bytes >> 20) +
                                                  " MiB: too many particles are closer than the support");
