@@ -1,6 +1,6 @@
 // Building the sliced ELL list for one instruction set: included by pair_passes.cpp only. The candidates of a cell are
-// packed once (nine runs of three cells, cut to the bounding box of the cell's particles grown by the radius), then the cell's particles test
-// them lane by lane, two at a time, and append the hits: in the order of the sorted particles, whatever the lanes.
+// packed once (nine runs of three cells, cut to the bounding box of the cell's particles grown by the radius), then the cell's particles
+// test them lane by lane, two at a time, and append the hits: in the order of the sorted particles, whatever the lanes.
 #pragma once
 #include "particles/passes.hpp"
 #include "particles/simd_choose.hpp"
