@@ -8,18 +8,30 @@ namespace weir::particles {
 
 namespace {
 
+/// Of coordinates begin .. end - 1, in lanes. Zero times a number that is not finite is none: it stays in the trace.
+Range range_of(const real* x, int begin, int end) {
+    constexpr int lanes = 8;
+    real lo[lanes], hi[lanes], trace[lanes];
+    for (int l = 0; l < lanes; ++l) lo[l] = infinity, hi[l] = -infinity, trace[l] = 0;
+    const auto meet = [&](int l, real here) {
+        lo[l] = here < lo[l] ? here : lo[l];
+        hi[l] = here > hi[l] ? here : hi[l];
+        trace[l] += 0 * here;
+    };
+    int i = begin;
+    for (; i + lanes <= end; i += lanes)
+        for (int l = 0; l < lanes; ++l) meet(l, x[i + l]);
+    for (; i < end; ++i) meet(0, x[i]);
+    Range r;
+    for (int l = 0; l < lanes; ++l) r = {std::min(r.lo, lo[l]), std::max(r.hi, hi[l]), r.finite && trace[l] == 0};
+    return r;
+}
+
 /// parts: scratch, one range a thread.
 Range range_of(const real* x, int count, std::vector<Range>& parts) {
     parts.resize(static_cast<std::size_t>(threads()));
-    for_chunks(count, static_cast<int>(parts.size()), [&](int t, int begin, int end) {
-        Range r;
-        for (int i = begin; i < end; ++i) {
-            r.lo = std::min(r.lo, x[i]);
-            r.hi = std::max(r.hi, x[i]);
-            r.finite = r.finite && std::isfinite(x[i]);
-        }
-        parts[static_cast<std::size_t>(t)] = r;
-    });
+    for_chunks(count, static_cast<int>(parts.size()),
+               [&](int t, int begin, int end) { parts[static_cast<std::size_t>(t)] = range_of(x, begin, end); });
     Range all;
     for (const Range& r : parts) all = {std::min(all.lo, r.lo), std::max(all.hi, r.hi), all.finite && r.finite};
     return all;
@@ -60,6 +72,18 @@ int CellSort::cell(const Coordinates& x, int i) const {
         c = c * grid_.cells[a] + k;
     }
     return c;
+}
+
+/// cell() of particles begin .. end - 1, an axis at a time: loops that become lanes.
+void CellSort::find_cells(const Coordinates& x, int begin, int end) {
+    int* c = unsorted_.data();
+    std::fill(c + begin, c + end, 0);
+    for (std::size_t a = 3; a-- > 0;) {
+        if (!x[a]) continue;
+        const real *along = x[a], origin = grid_.origin[a], per_cell = grid_.per_cell;
+        const int n = grid_.cells[a];
+        for (int i = begin; i < end; ++i) c[i] = c[i] * n + std::min(static_cast<int>((along[i] - origin) * per_cell), n - 1);
+    }
 }
 
 /// Turns the chunks' histograms into the places where each chunk's particles of each cell begin, and fills the cell starts.
@@ -104,11 +128,8 @@ void CellSort::sort(const Coordinates& x, int count, const CellGrid& grid) {
         auto& histogram = histograms_[static_cast<std::size_t>(t)];
         if (histogram.capacity() < cells) histogram.reserve(cells + cells / 2);
         histogram.assign(cells, 0);
-        for (int i = begin; i < end; ++i) {
-            const int c = cell(x, i);
-            unsorted_[static_cast<std::size_t>(i)] = c;
-            ++histogram[static_cast<std::size_t>(c)];
-        }
+        find_cells(x, begin, end);
+        for (int i = begin; i < end; ++i) ++histogram[static_cast<std::size_t>(unsorted_[static_cast<std::size_t>(i)])];
     });
     place_starts(chunks);
     for_chunks(count, chunks, [&](int t, int begin, int end) {

@@ -53,6 +53,7 @@ public:
     int cell(const Coordinates& x, int i) const;
 
 private:
+    void find_cells(const Coordinates& x, int begin, int end);
     void place_starts(int chunks);
 
     int count_ = 0;

@@ -93,18 +93,50 @@ real block_sum(int count, F&& f) {
         return sum;
     });
 }
+/// Both the sum, in the order of block_sum, and the largest of f(i) in one sweep.
+struct SumAndMost {
+    real sum = 0, most = 0;
+};
 template <class F>
-real block_max(int count, F&& f) {
+SumAndMost block_sum_and_max(int count, F&& f) {
     constexpr int block = 2048;
-    if (count == 0) return 0;
-    return ordered_max((count + block - 1) / block, [&](int b) {
-        real largest = -infinity;
+    if (count == 0) return {};
+    const int blocks = (count + block - 1) / block;
+    auto& part = detail::reduction_scratch(2 * static_cast<std::size_t>(blocks));
+    parallel_for(0, blocks, [&](int b) {
+        real sum = 0, most = -infinity;
         for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) {
             const real value = f(i);
-            if (value > largest || std::isnan(value)) largest = value;
-            if (std::isnan(largest)) break;
+            sum += value;
+            most = value > most || value != value ? value : most;
         }
-        return largest;
+        part[2 * static_cast<std::size_t>(b)] = sum;
+        part[2 * static_cast<std::size_t>(b) + 1] = most;
+    });
+    SumAndMost all{0, -infinity};
+    for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {
+        all.sum += part[2 * b];
+        const real most = part[2 * b + 1];
+        all.most = most > all.most || most != most ? most : all.most;
+    }
+    return all;
+}
+/// The largest of f(i) over [0, count), several at a time in lanes; NaN if any is NaN: once in a lane, nothing compares greater.
+template <class F>
+real block_max(int count, F&& f) {
+    constexpr int block = 2048, lanes = 8;
+    if (count == 0) return 0;
+    return ordered_max((count + block - 1) / block, [&](int b) {
+        std::array<real, lanes> largest;
+        largest.fill(-infinity);
+        const auto meet = [&](std::size_t l, real value) { largest[l] = value > largest[l] || value != value ? value : largest[l]; };
+        int i = b * block;
+        const int end = std::min(count, i + block);
+        for (; i + lanes <= end; i += lanes)
+            for (int l = 0; l < lanes; ++l) meet(static_cast<std::size_t>(l), f(i + l));
+        for (; i < end; ++i) meet(0, f(i));
+        for (std::size_t l = 1; l < lanes; ++l) meet(0, largest[l]);
+        return largest[0];
     });
 }
 

@@ -1,6 +1,6 @@
 // Building the sliced ELL list for one instruction set: included by pair_passes.cpp only. The candidates of a cell are
-// packed once (nine runs of three cells, cut to the bounding box of the cell's particles grown by the radius), then each particle of the
-// cell tests them lane by lane and appends the hits.
+// packed once (nine runs of three cells, cut to the bounding box of the cell's particles grown by the radius), then the cell's particles
+// test them lane by lane, two at a time, and append the hits: in the order of the sorted particles, whatever the lanes.
 #pragma once
 #include "particles/passes.hpp"
 #include "particles/simd_choose.hpp"
@@ -10,6 +10,9 @@ namespace {
 using weir::particles::Built;
 using weir::particles::ListChunk;
 using weir::particles::ListJob;
+
+/// Particles that look through the candidates together: each candidate is read once for all of them.
+inline constexpr int at_once = 2;
 
 /// The contiguous runs of sorted particles around a cell: at most nine.
 struct Runs {
@@ -35,75 +38,95 @@ inline Runs runs_around(const ListJob& job, int cell) {
 
 /// The box of the particles of one cell.
 struct Bounds {
-    __m128 lo, hi;
+    float lo[3], hi[3];
 };
 inline Bounds bounds(const ListJob& job, int cell) {
-    const int begin = job.start[cell], end = job.start[cell + 1];
-    Bounds b{_mm_load_ps(job.positions + 4 * begin), _mm_load_ps(job.positions + 4 * begin)};
-    for (int i = begin + 1; i < end; ++i) {
-        const __m128 p = _mm_load_ps(job.positions + 4 * i);
-        b.lo = _mm_min_ps(b.lo, p);
-        b.hi = _mm_max_ps(b.hi, p);
+    Bounds b;
+    for (int a = 0; a < 3; ++a) {
+        const float* x = job.axis[a];
+        float lo = x[job.start[cell]], hi = lo;
+        for (int i = job.start[cell] + 1; i < job.start[cell + 1]; ++i) {
+            lo = x[i] < lo ? x[i] : lo;
+            hi = x[i] > hi ? x[i] : hi;
+        }
+        b.lo[a] = lo, b.hi[a] = hi;
     }
     return b;
 }
+/// How far a coordinate is outside an interval.
+inline vf outside(vf x, float lo, float hi) { return x - lower(higher(x, broadcast(lo)), broadcast(hi)); }
 
 /// The candidates of the runs that are closer than the radius to the box of the cell's particles, `lanes` at a time.
 inline void pack(const ListJob& job, ListChunk& chunk, int cell, const Runs& runs) {
     const Bounds box = bounds(job, cell);
-    typedef float four __attribute__((vector_size(16)));
-    const four lo = (four)box.lo, hi = (four)box.hi;
+    float *const to_x = chunk.x, *const to_y = chunk.y, *const to_z = chunk.z, *const to_offset = as_numbers(chunk.offset);
+    const float radius2 = job.radius2;
     int n = 0;
     for (int r = 0; r < runs.count; ++r)
-        for (int i = runs.begin[r]; i < runs.end[r]; i += lanes) {
-            const Four p = load_block(job.positions + 4 * i);
-            const vf x = max0(higher(lo[0] - p.x, p.x - hi[0])), y = max0(higher(lo[1] - p.y, p.y - hi[1]));
-            const vf z = max0(higher(lo[2] - p.z, p.z - hi[2]));
-            const unsigned chosen = below(square_length(x, y, z), job.radius2) & block_lanes(runs.end[r] - i);
-            store_chosen(chunk.x + n, p.x, chosen);
-            store_chosen(chunk.y + n, p.y, chosen);
-            store_chosen(chunk.z + n, p.z, chosen);
-            n += store_chosen(reinterpret_cast<float*>(chunk.offset + n), block_offsets(i), chosen);
+        for (int i = runs.begin[r], end = runs.end[r]; i < end; i += lanes) {
+            const vf x = load_numbers(job.axis[0], i), y = load_numbers(job.axis[1], i), z = load_numbers(job.axis[2], i);
+            const vf dx = outside(x, box.lo[0], box.hi[0]), dy = outside(y, box.lo[1], box.hi[1]), dz = outside(z, box.lo[2], box.hi[2]);
+            const unsigned chosen = below(square_length(dx, dy, dz), radius2) & block_lanes(end - i);
+            store_chosen(to_x + n, x, chosen);
+            store_chosen(to_y + n, y, chosen);
+            store_chosen(to_z + n, z, chosen);
+            n += store_chosen(to_offset + n, block_offsets(i), chosen);
         }
-    for (int pad = n; pad < n + lanes; ++pad) chunk.x[pad] = chunk.y[pad] = chunk.z[pad] = weir::particles::dummy_position;
+    for (int pad = n; pad < n + lanes; ++pad) to_x[pad] = to_y[pad] = to_z[pad] = weir::particles::dummy_position;
     chunk.packed = n;
     chunk.packed_cell = cell;
 }
 
-/// Appends the candidates at c .. c + lanes - 1 that are closer than the radius and are not the particle itself.
-inline int append(std::uint32_t* out, int n, const ListChunk& chunk, int c, vf x, vf y, vf z, float radius2, std::uint32_t self) {
-    const vf dx = load_numbers(chunk.x, c) - x, dy = load_numbers(chunk.y, c) - y, dz = load_numbers(chunk.z, c) - z;
-    const vf offsets = load_numbers(reinterpret_cast<const float*>(chunk.offset), c);
-    const unsigned hit = below(square_length(dx, dy, dz), radius2) & ~same_bits(offsets, self);
-    return n + store_chosen(reinterpret_cast<float*>(out + n), offsets, hit);
+/// Lists, for each of `Count` consecutive particles of the packed cell, the candidates that are closer than the radius and are not the
+/// particle itself, with dummies behind them.
+template <int Count>
+inline void find_hits(const ListJob& job, const ListChunk& chunk, int i, std::uint32_t* hits, int stride, int* found, vf dummies) {
+    const float *const near_x = chunk.x, *const near_y = chunk.y, *const near_z = chunk.z, *const offset = as_numbers(chunk.offset);
+    const int packed = chunk.packed;
+    const float radius2 = job.radius2;
+    vf x[Count], y[Count], z[Count];
+    float* to[Count];
+    for (int p = 0; p < Count; ++p) {
+        x[p] = broadcast(job.axis[0][i + p]), y[p] = broadcast(job.axis[1][i + p]), z[p] = broadcast(job.axis[2][i + p]);
+        to[p] = as_numbers(hits + p * stride);
+    }
+    for (int c = 0; c < packed; c += lanes) {
+        const vf jx = load_numbers(near_x, c), jy = load_numbers(near_y, c), jz = load_numbers(near_z, c), j = load_numbers(offset, c);
+        for (int p = 0; p < Count; ++p) {
+            const vf dx = jx - x[p], dy = jy - y[p], dz = jz - z[p];
+            to[p] +=
+                store_chosen(to[p], j, below_of_others(square_length(dx, dy, dz), radius2, j, static_cast<std::uint32_t>(16 * (i + p))));
+        }
+    }
+    for (int p = 0; p < Count; ++p) {
+        store_all(to[p], dummies);
+        found[p] = static_cast<int>(to[p] - as_numbers(hits + p * stride));
+        job.neighbours[i + p] = found[p];
+    }
 }
 
-/// hits (one list a lane, each padded to `rows`) into rows of `lanes` entries: 4 x 4 blocks at a time.
+/// hits (one list a lane, each padded to a multiple of four rows) into rows of `lanes` entries, four at a time.
 inline void write_rows(std::uint32_t* entries, const std::uint32_t* hits, int stride, int rows) {
-    for (int k = 0; k < rows; k += 4)
-        for (int l = 0; l < lanes; l += 4) {
-            __m128 a = _mm_loadu_ps(reinterpret_cast<const float*>(hits + l * stride + k));
-            __m128 b = _mm_loadu_ps(reinterpret_cast<const float*>(hits + (l + 1) * stride + k));
-            __m128 c = _mm_loadu_ps(reinterpret_cast<const float*>(hits + (l + 2) * stride + k));
-            __m128 d = _mm_loadu_ps(reinterpret_cast<const float*>(hits + (l + 3) * stride + k));
-            _MM_TRANSPOSE4_PS(a, b, c, d);
-            float* to = reinterpret_cast<float*>(entries + k * lanes + l);
-            _mm_storeu_ps(to, a);
-            if (k + 1 < rows) _mm_storeu_ps(to + lanes, b);
-            if (k + 2 < rows) _mm_storeu_ps(to + 2 * lanes, c);
-            if (k + 3 < rows) _mm_storeu_ps(to + 3 * lanes, d);
-        }
+    std::uint32_t lane[lanes];
+    for (int l = 0; l < lanes; ++l) lane[l] = static_cast<std::uint32_t>(4 * l * stride);
+    for (int k = 0; k < rows; k += 4) {
+        const Four four = gather(as_numbers(hits + k), lane);
+        float* to = as_numbers(entries + k * lanes);
+        store_all(to, four.x);
+        store_all(to + lanes, four.y);
+        store_all(to + 2 * lanes, four.z);
+        store_all(to + 3 * lanes, four.w);
+    }
 }
 
 /// Builds slices from chunk.next on; stops, having changed nothing of the slice, where scratch or entries are too small.
 inline Built build_list(const ListJob& job, ListChunk& chunk) {
-    const std::uint32_t dummy = static_cast<std::uint32_t>(16 * job.count);
+    const vf dummies = same_in_all(static_cast<std::uint32_t>(16 * job.count));
     for (; chunk.next < chunk.end; ++chunk.next) {
         const int begin = chunk.next * lanes, end = begin + lanes < job.count ? begin + lanes : job.count;
-        int found[lanes], rows = 0;
         const int stride = chunk.candidates;
-        for (int l = 0; l < lanes; ++l) found[l] = 0;
-        for (int i = begin; i < end; ++i) {
+        int found[lanes];
+        for (int i = begin; i < end;) {
             const int cell = job.cell_of[i];
             if (cell != chunk.packed_cell) {
                 const Runs runs = runs_around(job, cell);
@@ -113,26 +136,26 @@ inline Built build_list(const ListJob& job, ListChunk& chunk) {
                 }
                 pack(job, chunk, cell, runs);
             }
-            const float* p = job.positions + 4 * i;
-            const vf x = broadcast(p[0]), y = broadcast(p[1]), z = broadcast(p[2]);
-            int n = 0;
-            for (int c = 0; c < chunk.packed; c += lanes)
-                n = append(chunk.hits + (i - begin) * stride, n, chunk, c, x, y, z, job.radius2, static_cast<std::uint32_t>(16 * i));
-            found[i - begin] = n;
-            job.neighbours[i] = n;
-            rows = n > rows ? n : rows;
+            const int cell_end = job.start[cell + 1] < end ? job.start[cell + 1] : end;
+            for (; i + at_once <= cell_end; i += at_once)
+                find_hits<at_once>(job, chunk, i, chunk.hits + (i - begin) * stride, stride, found + (i - begin), dummies);
+            for (; i < cell_end; ++i) find_hits<1>(job, chunk, i, chunk.hits + (i - begin) * stride, stride, found + (i - begin), dummies);
         }
-        const std::size_t entries = static_cast<std::size_t>(rows) * lanes;
+        int rows = 0;
+        for (int l = 0; l < end - begin; ++l) rows = found[l] > rows ? found[l] : rows;
+        const int padded = (rows + 3) & ~3;
+        const std::size_t entries = static_cast<std::size_t>(padded) * lanes;
         if (chunk.used + entries > chunk.capacity) {
             chunk.needed = chunk.used + entries;
             return Built::needs_entries;
         }
         for (int l = 0; l < lanes; ++l)
-            for (int k = found[l]; k < ((rows + 3) & ~3); ++k) chunk.hits[l * stride + k] = dummy;
+            for (int k = l < end - begin ? found[l] + lanes : 0; k < padded; k += lanes)
+                store_all(as_numbers(chunk.hits + l * stride + k), dummies);
         write_rows(chunk.entries + chunk.used, chunk.hits, stride, rows);
         job.first[chunk.next] = chunk.used;
         job.rows[chunk.next] = rows;
-        chunk.used += entries;
+        chunk.used += static_cast<std::size_t>(rows) * lanes;
     }
     return Built::done;
 }

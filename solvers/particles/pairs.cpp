@@ -61,12 +61,15 @@ void Pairs::find(const Coordinates& x, int count, real radius) {
     owner_.resize(static_cast<std::size_t>(total));
     fit(a_, 4);
     fit(b_, 4);
+    for (auto& axis : axis_) fit(axis, 1);
     each([&](int k) {
         const int i = cells_.order()[static_cast<std::size_t>(k)];
         owner_[static_cast<std::size_t>(k)] = i < count ? i : image_owner_[static_cast<std::size_t>(i - count)];
         for (int a = 0; a < 3; ++a) {
             const real* axis = all[static_cast<std::size_t>(a)];
-            a_[static_cast<std::size_t>(4 * k + a)] = axis ? local(axis[i], a) : 0;
+            const float here = axis ? local(axis[i], a) : 0;
+            a_[static_cast<std::size_t>(4 * k + a)] = here;
+            axis_[static_cast<std::size_t>(a)][static_cast<std::size_t>(k)] = here;
         }
         a_[static_cast<std::size_t>(4 * k + 3)] = 0;
     });
@@ -81,7 +84,7 @@ void Pairs::find(const Coordinates& x, int count, real radius) {
             if (is_image(k))
                 links_.push_back({k, sorted_[static_cast<std::size_t>(owner(k))], cells_.order()[static_cast<std::size_t>(k)] - count});
     }
-    list_.build(table_, a_.data(), cells_, static_cast<float>(radius));
+    list_.build(table_, {axis_[0].data(), axis_[1].data(), axis_[2].data()}, cells_, static_cast<float>(radius));
 }
 
 void Pairs::refresh_images(float* four, bool moves) const {
@@ -109,7 +112,8 @@ Pairs::NeighbourCounts Pairs::neighbour_counts() const {
 }
 
 std::size_t Pairs::bytes() const {
-    return cells_.bytes() + list_.bytes() + (a_.capacity() + b_.capacity()) * sizeof(float) + owner_.capacity() * sizeof(int);
+    return cells_.bytes() + list_.bytes() + (a_.capacity() + b_.capacity() + 3 * axis_[0].capacity()) * sizeof(float) +
+           owner_.capacity() * sizeof(int);
 }
 
 }  // namespace weir::particles

@@ -34,12 +34,8 @@ public:
     void fit(std::vector<float>& numbers, int per_particle) const;
     /// The fast path's coordinate of a state position along an axis.
     float local(real x, int axis) const { return static_cast<float>(x - frame_.centre[static_cast<std::size_t>(axis)]); }
-    /// The same as a number of the state. volatile: GCC 12 at -O3 forgets real(float(x)) in two axes of three where it makes vectors of
-    /// them, and what is a move of the single-precision passes then ends as a position in single precision.
-    real rounded(real x, int axis) const {
-        const volatile float single = local(x, axis);
-        return static_cast<real>(single);
-    }
+    /// Where find() saw sorted particle k: the coordinate that the passes started from.
+    float found_at(int k, int axis) const { return axis_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(k)]; }
     /// Copies owners to their images in an array of float4; `moves`: the first three numbers are positions.
     void refresh_images(float* four, bool moves) const;
     const SlicedList& list() const { return list_; }
@@ -69,6 +65,7 @@ private:
     CellSort cells_;
     SlicedList list_;
     std::vector<float> a_, b_;
+    std::array<std::vector<float>, 3> axis_;  // positions as the list is built from them
     std::vector<int> owner_;
     // Only with periodic axes:
     std::array<std::vector<real>, 3> with_images_;   // coordinates of particles and images before sorting

@@ -5,6 +5,9 @@
 #include <immintrin.h>
 #include <cstdint>
 
+/// Without it compilers call, and pass registers through memory.
+#define WEIR_ALWAYS [[gnu::always_inline]] inline
+
 namespace {
 
 #if WEIR_ISA == 512
@@ -37,14 +40,14 @@ inline vf higher(vf a, vf b) { return (vf)_mm512_max_ps((__m512)a, (__m512)b); }
 inline vf fma(vf a, vf b, vf c) { return (vf)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c); }
 inline vf fnma(vf a, vf b, vf c) { return (vf)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c); }
 /// Four quarters, one a particle, into one register, by halves: cheaper than a masked broadcast for each.
-inline __m256 half(const float* base, std::uint32_t first, std::uint32_t second) {
+WEIR_ALWAYS __m256 half(const float* base, std::uint32_t first, std::uint32_t second) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(at(base, first))), _mm_load_ps(at(base, second)), 1);
 }
-inline __m512 quarters(const float* base, const std::uint32_t* o) {
+WEIR_ALWAYS __m512 quarters(const float* base, const std::uint32_t* o) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(half(base, o[0], o[4])), half(base, o[8], o[12]), 1);
 }
 /// Gathers by 128-bit loads and a 4 x 4 transpose in each quarter: a hardware gather makes every pass twice as slow.
-inline Four gather(const float* base, const std::uint32_t* o) {
+WEIR_ALWAYS Four gather(const float* base, const std::uint32_t* o) {
     const __m512 a = quarters(base, o), b = quarters(base, o + 1), c = quarters(base, o + 2), d = quarters(base, o + 3);
     const __m512 ab_lo = _mm512_unpacklo_ps(a, b), ab_hi = _mm512_unpackhi_ps(a, b);
     const __m512 cd_lo = _mm512_unpacklo_ps(c, d), cd_hi = _mm512_unpackhi_ps(c, d);
@@ -60,10 +63,10 @@ inline vf lower(vf a, vf b) { return (vf)_mm256_min_ps((__m256)a, (__m256)b); }
 inline vf higher(vf a, vf b) { return (vf)_mm256_max_ps((__m256)a, (__m256)b); }
 inline vf fma(vf a, vf b, vf c) { return (vf)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c); }
 inline vf fnma(vf a, vf b, vf c) { return (vf)_mm256_fnmadd_ps((__m256)a, (__m256)b, (__m256)c); }
-inline __m256 halves(const float* base, const std::uint32_t* o) {
+WEIR_ALWAYS __m256 halves(const float* base, const std::uint32_t* o) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(at(base, o[0]))), _mm_load_ps(at(base, o[4])), 1);
 }
-inline Four gather(const float* base, const std::uint32_t* o) {
+WEIR_ALWAYS Four gather(const float* base, const std::uint32_t* o) {
     const __m256 a = halves(base, o), b = halves(base, o + 1), c = halves(base, o + 2), d = halves(base, o + 3);
     const __m256 ab_lo = _mm256_unpacklo_ps(a, b), ab_hi = _mm256_unpackhi_ps(a, b);
     const __m256 cd_lo = _mm256_unpacklo_ps(c, d), cd_hi = _mm256_unpackhi_ps(c, d);
@@ -80,7 +83,7 @@ inline vf higher(vf a, vf b) { return (vf)_mm_max_ps((__m128)a, (__m128)b); }
 /// SSE2 has none: the one instruction set whose bits are its own.
 inline vf fma(vf a, vf b, vf c) { return a * b + c; }
 inline vf fnma(vf a, vf b, vf c) { return c - a * b; }
-inline Four gather(const float* base, const std::uint32_t* o) {
+WEIR_ALWAYS Four gather(const float* base, const std::uint32_t* o) {
     __m128 a = _mm_load_ps(at(base, o[0])), b = _mm_load_ps(at(base, o[1])), c = _mm_load_ps(at(base, o[2])),
            d = _mm_load_ps(at(base, o[3]));
     _MM_TRANSPOSE4_PS(a, b, c, d);

@@ -25,7 +25,7 @@ void SlicedList::prepare(Chunk& chunk, int t, int slices, int lanes) {
 void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
     ListChunk& v = chunk.view;
     ++chunk.growths;
-    const std::size_t room = v.needed + v.needed / 4 + 1024;
+    const std::size_t room = (v.needed + v.needed / 4 + 1024) / 16 * 16;  // lists of hits begin where registers like it
     if (room * sizeof(std::uint32_t) * (why == Built::needs_candidates ? static_cast<std::size_t>(lanes) : chunks_.size()) > max_bytes)
         throw NumericalFailure("neighbours", "the neighbour list needs more than " + std::to_string(max_bytes >> 20) +
                                                  " MiB: too many particles are closer than the support");
@@ -53,15 +53,15 @@ void SlicedList::make_room_ahead(Chunk& chunk) const {
     v.capacity = chunk.entries.size();
 }
 
-void SlicedList::build(const PassTable& table, const float* positions, const CellSort& cells, float radius) {
+void SlicedList::build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius) {
     const int count = cells.count(), lanes = table.lanes, slices = (count + lanes - 1) / lanes;
     chunks_.resize(static_cast<std::size_t>(threads()));
     first_.resize(static_cast<std::size_t>(slices));
     rows_.resize(static_cast<std::size_t>(slices));
     neighbours_.resize(static_cast<std::size_t>(count));
-    ListJob job{positions,       count,         cells.start().data(), cells.cell_of().data(), {},
-                radius * radius, first_.data(), rows_.data(),         neighbours_.data()};
-    for (std::size_t a = 0; a < 3; ++a) job.cells[a] = cells.cells()[a];
+    ListJob job{
+        {}, count, cells.start().data(), cells.cell_of().data(), {}, radius * radius, first_.data(), rows_.data(), neighbours_.data()};
+    for (std::size_t a = 0; a < 3; ++a) job.axis[a] = axis[a], job.cells[a] = cells.cells()[a];
     for_chunks(static_cast<int>(chunks_.size()), static_cast<int>(chunks_.size()), [&](int t, int, int) {
         Chunk& chunk = chunks_[static_cast<std::size_t>(t)];
         chunk.failure.clear();

@@ -11,9 +11,9 @@ namespace weir::particles {
 
 class SlicedList {
 public:
-    /// positions: float4 of `count` sorted particles and at least `lanes` dummies behind them. Pairs closer than `radius` [m].
+    /// axis: coordinates of `count` sorted particles, and room for `lanes` more behind them. Pairs closer than `radius` [m].
     /// Throws NumericalFailure when the list would need more than `max_bytes`.
-    void build(const PassTable& table, const float* positions, const CellSort& cells, float radius);
+    void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius);
 
     /// f(chunk) for every chunk, one a thread.
     template <class F>

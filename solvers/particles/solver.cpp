@@ -8,7 +8,8 @@ template <int D>
 Compression compression_of(const Fluid<D>& fluid, real rest_density) {
     const int n = fluid.count();
     const auto excess = [&](int i) { return std::max<real>(0, fluid.density[static_cast<std::size_t>(i)] / rest_density - 1); };
-    return {n ? block_sum(n, excess) / n : 0, block_max(n, excess)};
+    const auto [sum, worst] = block_sum_and_max(n, excess);
+    return {n ? sum / n : 0, worst};
 }
 
 template <int D>

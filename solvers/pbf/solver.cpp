@@ -161,7 +161,7 @@ void PbfSolver<D>::update(real dt, real slow) {
         const int i = pairs_.owner(k);
         const Vec<D> predicted = particles::Fluid<D>::get(x_star_, i);
         Vec<D> x = predicted;
-        for (int a = 0; a < D; ++a) x[a] += static_cast<real>(now[4 * k + a]) - pairs_.rounded(x[a], a);
+        for (int a = 0; a < D; ++a) x[a] += static_cast<real>(now[4 * k + a]) - static_cast<real>(pairs_.found_at(k, a));
         x = fluid_.domain.kept(x);
         if (dt > 0) particles::Fluid<D>::put(fluid_.v, i, (x - fluid_.position(i)) / dt - too_fast * (x - predicted));
         particles::Fluid<D>::put(fluid_.x, i, x);
@@ -175,7 +175,8 @@ Compression PbfSolver<D>::compression() const {
         return pairs_.is_image(k) ? 0 : std::max<real>(0, static_cast<real>(density_[static_cast<std::size_t>(k)]) - 1);
     };
     const int n = pairs_.particles();
-    return n ? Compression{particles::block_sum(pairs_.size(), excess) / n, particles::block_max(pairs_.size(), excess)} : Compression{};
+    const auto [sum, worst] = particles::block_sum_and_max(n ? pairs_.size() : 0, excess);
+    return n ? Compression{sum / n, worst} : Compression{};
 }
 
 template <int D>

@@ -104,7 +104,7 @@ void SphSolver<D>::find_densities() {
 template <int D>
 void SphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");
-    load([&](int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0; });
+    load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0; });
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
     const auto rate = table.rate[options_.diffusion > 0];
@@ -136,7 +136,7 @@ void SphSolver<D>::load(F&& more) {
         const Vec<D> u = fluid_.velocity(i);
         x[4 * at + 3] = static_cast<float>(1 / fluid_.density[static_cast<std::size_t>(i)]);
         for (std::size_t a = 0; a < 3; ++a) velocity_[4 * at + a] = a < D ? static_cast<float>(u[a]) : 0;
-        velocity_[4 * at + 3] = static_cast<float>(more(i));
+        velocity_[4 * at + 3] = static_cast<float>(more(k, i));
     });
     for (int k = pairs_.size(); k < pairs_.size() + pairs_.table().lanes; ++k)  // the dummy
         for (int c = 0; c < 4; ++c) velocity_[static_cast<std::size_t>(4 * k + c)] = 0;
@@ -144,11 +144,11 @@ void SphSolver<D>::load(F&& more) {
 
 template <int D>
 void SphSolver<D>::find_pressures() {
-    parallel_for(0, fluid_.count(), [&](int i) {
-        const auto at = static_cast<std::size_t>(i);
-        fluid_.carried[at] = options_.pressure(fluid_.density[at], rho_rest_);
+    load([&](int k, int i) {
+        const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], rho_rest_);
+        if (!pairs_.is_image(k)) fluid_.carried[static_cast<std::size_t>(i)] = pressure;
+        return pressure;
     });
-    load([&](int i) { return fluid_.carried[static_cast<std::size_t>(i)]; });
 }
 
 template <int D>
@@ -181,25 +181,20 @@ void SphSolver<D>::drag_at_solids() {
     });
 }
 
-/// v += dt a.
+/// v += dt a, and the largest a.
 template <int D>
 void SphSolver<D>::kick(real dt) {
     const auto timed = passes_.time("integrate");
+    const float* acceleration = acceleration_.data();
     max_acceleration_ = std::sqrt(particles::block_max(pairs_.size(), [&](int k) {
-        real sum = 0;
-        for (std::size_t a = 0; a < D; ++a) {
-            const real c = static_cast<real>(acceleration_[4 * static_cast<std::size_t>(k) + a]);
-            sum += c * c;
+        Vec<D> by;
+        for (int a = 0; a < D; ++a) by[a] = static_cast<real>(acceleration[4 * k + a]);
+        if (!pairs_.is_image(k)) {
+            const int i = pairs_.owner(k);
+            Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * by);
         }
-        return sum;
+        return dot(by, by);
     }));
-    pairs_.each([&](int k) {
-        if (pairs_.is_image(k)) return;
-        const int i = pairs_.owner(k);
-        Vec<D> u = fluid_.velocity(i);
-        for (int a = 0; a < D; ++a) u[a] += dt * static_cast<real>(acceleration_[static_cast<std::size_t>(4 * k + a)]);
-        Fluid<D>::put(fluid_.v, i, u);
-    });
 }
 
 template <int D>

@@ -1,6 +1,8 @@
 // The neighbour list of the fast path: its sets are those of brute force and of nanoflann, on random, clustered, coincident points and
-// points on the borders of cells; periodic images; lattice counts from the reference table.
+// points on the borders of cells, and their order; periodic images; sweeps in lanes; lattice counts from the reference table.
 #include "particles/pairs.hpp"
+#include "core/error.hpp"
+#include "particles/fluid.hpp"
 #include "particles/neighbours.hpp"
 
 #include "support/csv.hpp"
@@ -9,6 +11,7 @@
 #include <nanoflann.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -97,6 +100,77 @@ TEST_IN_2D_AND_3D("the list's sets are those of brute force and of nanoflann, on
                 }
             }
     set_threads(2);
+}
+
+TEST_IN_2D_AND_3D(
+    "neighbours are listed in the order of the sorted particles, on every instruction set and any number of threads") {  // so are sums
+    const int n = 700;
+    const Points p = random_points(n, D, "random");
+    std::vector<std::vector<int>> first;
+    for (const auto* table : available_passes())
+        for (const int count : {1, 3}) {
+            set_threads(count);
+            Pairs pairs(*table, Frame{});
+            pairs.find({p[0].data(), p[1].data(), D == 3 ? p[2].data() : nullptr}, n, 0.125);
+            std::vector<std::vector<int>> lists(static_cast<std::size_t>(n));
+            pairs.list().each_chunk([&](const ListChunk& chunk) {
+                for (int k = chunk.begin * table->lanes; k < std::min(n, chunk.end * table->lanes); ++k)
+                    for (int row = 0; row < pairs.list().rows()[k / table->lanes]; ++row) {
+                        const auto at =
+                            pairs.list().first()[k / table->lanes] + static_cast<std::size_t>(row * table->lanes + k % table->lanes);
+                        if (const auto j = static_cast<int>(chunk.entries[at] / 16); j < n) lists[static_cast<std::size_t>(k)].push_back(j);
+                    }
+            });
+            std::size_t longest = 0;
+            for (const auto& list : lists) {
+                longest = std::max(longest, list.size());
+                ASSERT_TRUE(std::is_sorted(list.begin(), list.end())) << table->name;
+            }
+            EXPECT_GT(longest, 5u);
+            if (first.empty()) first = lists;
+            ASSERT_EQ(lists, first) << table->name << ", " << count << " threads";
+        }
+    set_threads(2);
+}
+
+TEST("sweeps in lanes find what a plain loop finds, wherever it stands, and nothing hides what is not finite") {
+    const real no_number = std::numeric_limits<real>::quiet_NaN();
+    std::mt19937 random(5);
+    std::uniform_real_distribution<real> anywhere(-3, 3);
+    for (const int n : {1, 7, 8, 9, 2047, 2048, 2056, 5003}) {
+        std::vector<real> x(static_cast<std::size_t>(n));
+        for (real& value : x) value = anywhere(random);
+        const auto value = [&](int i) { return x[static_cast<std::size_t>(i)]; };
+        const Coordinates along{x.data(), nullptr, nullptr};
+        for (const int at : {0, n / 2, n - 1}) {
+            const real before = x[static_cast<std::size_t>(at)];
+            for (const real extreme : {10.0, -10.0, no_number, infinity, -infinity}) {
+                x[static_cast<std::size_t>(at)] = extreme;
+                const real largest = block_max(n, value);
+                const auto both = block_sum_and_max(n, value);
+                CellSort cells;
+                if (std::isnan(extreme)) {
+                    EXPECT_TRUE(std::isnan(largest) && std::isnan(both.most) && std::isnan(both.sum));
+                } else {
+                    EXPECT_EQ(largest, *std::max_element(x.begin(), x.end()));
+                    EXPECT_EQ(both.most, largest);
+                    EXPECT_EQ(both.sum, block_sum(n, value));
+                }
+                if (!std::isfinite(extreme)) {
+                    EXPECT_THROW(cells.box(along, n), NumericalFailure);
+                    continue;
+                }
+                const Box box = cells.box(along, n);
+                EXPECT_EQ(box.lo[0], *std::min_element(x.begin(), x.end()));
+                EXPECT_EQ(box.hi[0], *std::max_element(x.begin(), x.end()));
+                cells.sort(along, n, 0.5);
+                for (int k = 0; k < n; ++k)
+                    ASSERT_EQ(cells.cell_of()[static_cast<std::size_t>(k)], cells.cell(along, cells.order()[static_cast<std::size_t>(k)]));
+                EXPECT_TRUE(std::is_sorted(cells.cell_of().begin(), cells.cell_of().end()));
+            }
+            x[static_cast<std::size_t>(at)] = before;
+        }
+    }
 }
 
 TEST_IN_2D_AND_3D("a repeating lattice has the neighbour counts of the reference table at every particle") {
