@@ -48,7 +48,7 @@ struct StoredDiagonal {
 
 /// Pointers to what the entries of one colour in one row see: the other colour's rows, shifted so that entry m finds its own neighbours.
 template <int D, class T>
-std::array<T*, 2 * D> neighbours_of(const Layout<D>& at, int q, int j, int colour, T* other) {
+WEIR_INLINE std::array<T*, 2 * D> neighbours_of(const Layout<D>& at, int q, int j, int colour, T* other) {
     std::array<T*, 2 * D> u;
     const int s = at.parity(q, j);
     u[0] = other + at.offset(at.row(q, j)) + (colour == 0 ? s - 1 : -s);
