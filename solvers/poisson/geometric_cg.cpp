@@ -179,7 +179,7 @@ void GeometricCg<D>::last_half_sweep(int q) {
         const int row = finest.at.row(q, j);
         float* u = finest.u[0] + finest.at.offset(row);
         const float* r = finest.r[0] + finest.at.offset(row);
-        with_row(finest, q, j, 0, [&](const auto neighbours, const auto diagonal) {
+        with_row(finest, q, j, 0, [&](const auto neighbours, const auto diagonal) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(finest, row))
                 for (int m = span.begin; m < span.end; m += lanes) {
                     const f16 next = (load16(r + m) + neighbours(m)) * diagonal.inverse(m);
@@ -203,7 +203,7 @@ void GeometricCg<D>::black_products(int q) {
         const auto diagonal_at = [&, own = finest.at.offset(row)](int m) {
             return finest.by_count ? to_float(finest.count[1] + own + m) : load16(finest.dinv[1] + own + m);
         };
-        with_product(finest, finest.u, q, j, 1, [&](const auto product) {
+        with_product(finest, finest.u, q, j, 1, [&](const auto product) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(finest, row))
                 for (int m = span.begin; m < span.end; m += lanes) {
                     // Past the end of a periodic row stands its first entry again: it must not count twice.
@@ -256,8 +256,8 @@ void GeometricCg<D>::advance_plane(int q, real alpha) {
             double* x = x_[c] + own;
             float* r = finest.r[c] + own;
             const float* p = p_[c] + own;
-            with_product(finest, p_, q, j, colour, [&](const auto product) {
-                with_row(finest, q, j, colour, [&](const auto&, const auto diagonal) {
+            with_product(finest, p_, q, j, colour, [&](const auto product) WEIR_INLINED {
+                with_row(finest, q, j, colour, [&](const auto&, const auto diagonal) WEIR_INLINED {
                     for (const Span& span : RowSpans<D>(finest, row))
                         for (int m = span.begin; m < span.end; m += lanes) {
                             const d16 Ap = product(m), direction = load_wide(p + m), old = load_wide(r + m);

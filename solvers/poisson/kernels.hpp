@@ -113,7 +113,7 @@ void relax_plane(Level<D>& level, int q, int colour) {
         const int row = level.at.row(q, j);
         float* u = level.u[c] + level.at.offset(row);
         const float* r = level.r[c] + level.at.offset(row);
-        with_row(level, q, j, colour, [&](const auto neighbours, const auto diagonal) {
+        with_row(level, q, j, colour, [&](const auto neighbours, const auto diagonal) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(level, row))
                 for (int m = span.begin; m < span.end; m += lanes) store(u + m, (load16(r + m) + neighbours(m)) * diagonal.inverse(m));
         });
@@ -128,7 +128,7 @@ void start_plane(Level<D>& level, int q) {
         const int row = level.at.row(q, j);
         float* u = level.u[0] + level.at.offset(row);
         const float* r = level.r[0] + level.at.offset(row);
-        with_row(level, q, j, 0, [&](const auto&, const auto diagonal) {
+        with_row(level, q, j, 0, [&](const auto&, const auto diagonal) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(level, row))
                 for (int m = span.begin; m < span.end; m += lanes) store(u + m, load16(r + m) * diagonal.inverse(m));
         });

@@ -20,6 +20,7 @@ using i32x16 = std::int32_t __attribute__((vector_size(64)));
 using i32x8 = std::int32_t __attribute__((vector_size(32)));
 
 #define WEIR_INLINE inline __attribute__((always_inline))
+#define WEIR_INLINED __attribute__((always_inline))  // of a lambda
 
 template <class V>
 WEIR_INLINE V load(const void* from) {
