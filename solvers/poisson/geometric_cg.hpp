@@ -5,7 +5,7 @@
 //     then   β = γ/γ',  α = γ / (δ − β γ/α')
 //
 // p, r and the cycle are single precision; x and A p are double. r is replaced by the true b − A x each time it has fallen by a fixed
-// factor, and at the end.
+// factor, and at the end: where the last reduction foretells that, the sweep down takes b − A x itself instead of r − α s.
 #pragma once
 #include "poisson/list_solver.hpp"
 #include "poisson/v_cycle.hpp"
@@ -28,17 +28,28 @@ private:
     struct PlaneSums {
         real rr = 0, ru = 0, uAu = 0, largest = 0;
     };
-    void clear_guess();
+    /// Where the iterations begin: ‖r‖ over ‖b‖, ‖b‖, and whether the cycle for r has begun.
+    struct Start {
+        real norm, b_norm;
+        bool begun;
+    };
+    bool iterate(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
+                 const Start& start);
     void gather(const Natural<D>& problem, const Grid<real, D>& p);
-    void scatter(const Natural<D>& problem, Grid<real, D>& p);
-    real replace_residual(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b);
+    void scatter_plane(const Natural<D>& problem, Grid<real, D>& p, int q);
+    void residual_plane(const Natural<D>& problem, const real* p, const Grid<real, D>& b, int q);
+    real begin_at_zero(const Natural<D>& problem, const Grid<real, D>& b);
+    real begin_at(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b);
     void restart_cycle();
     void finish_cycle();
     real iterate_down(real alpha, real beta);
+    template <class F>
+    real replace_residual(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, bool begin_cycle, F&& before);
+    void move_plane(int q, real alpha);
     void turn_plane(int q, real beta);
     void advance_plane(int q, real alpha);
     void black_products(int q);
-    void red_products(int q);
+    void last_half_sweep(int q);
     template <class F>
     real total(F&& of) const;
 
@@ -46,6 +57,7 @@ private:
     Arena arena_;
     Coloured<double> x_{};
     Coloured<float> p_{};
+    bool at_zero_ = false;  // x is zero, whatever its memory holds
     std::vector<PlaneSums> sums_;
     real gamma_ = 0, delta_ = 0;
 };

@@ -48,7 +48,7 @@ struct StoredDiagonal {
 
 /// Pointers to what the entries of one colour in one row see: the other colour's rows, shifted so that entry m finds its own neighbours.
 template <int D, class T>
-std::array<T*, 2 * D> neighbours_of(const Layout<D>& at, int q, int j, int colour, T* other) {
+WEIR_INLINE std::array<T*, 2 * D> neighbours_of(const Layout<D>& at, int q, int j, int colour, T* other) {
     std::array<T*, 2 * D> u;
     const int s = at.parity(q, j);
     u[0] = other + at.offset(at.row(q, j)) + (colour == 0 ? s - 1 : -s);
@@ -113,7 +113,7 @@ void relax_plane(Level<D>& level, int q, int colour) {
         const int row = level.at.row(q, j);
         float* u = level.u[c] + level.at.offset(row);
         const float* r = level.r[c] + level.at.offset(row);
-        with_row(level, q, j, colour, [&](const auto& neighbours, const auto& diagonal) {
+        with_row(level, q, j, colour, [&](const auto neighbours, const auto diagonal) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(level, row))
                 for (int m = span.begin; m < span.end; m += lanes) store(u + m, (load16(r + m) + neighbours(m)) * diagonal.inverse(m));
         });
@@ -128,7 +128,7 @@ void start_plane(Level<D>& level, int q) {
         const int row = level.at.row(q, j);
         float* u = level.u[0] + level.at.offset(row);
         const float* r = level.r[0] + level.at.offset(row);
-        with_row(level, q, j, 0, [&](const auto&, const auto& diagonal) {
+        with_row(level, q, j, 0, [&](const auto&, const auto diagonal) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(level, row))
                 for (int m = span.begin; m < span.end; m += lanes) store(u + m, load16(r + m) * diagonal.inverse(m));
         });

@@ -15,6 +15,11 @@ public:
         if (report_.iterations >= options_.max_iterations || !std::isfinite(relative_residual)) return false;
         return relative_residual > (options_.fixed_iterations ? nothing_left : options_.tolerance);
     }
+    /// Would one more iteration that reaches this residual be the last?
+    bool would_end(real relative_residual) const {
+        return report_.iterations + 1 >= options_.max_iterations ||
+               relative_residual <= (options_.fixed_iterations ? nothing_left : options_.tolerance);
+    }
     void count(real relative_residual) {
         ++report_.iterations;
         if (options_.record_history) report_.history.push_back(relative_residual);

@@ -43,8 +43,11 @@ public:
     /// Means of the values over closed components, from sums over runs, added in the order of the runs.
     void find_means(const Grid<real, D>& values) const;
     void clear_means() const { std::fill(mean_.begin(), mean_.end(), 0.0); }
-    /// Subtracts from p its mean over each closed component.
-    void remove_means(Grid<real, D>& p) const;
+    /// The same in two parts, for who passes over the values anyway: sums over the runs of every row, then means.
+    void sum_row(int row, const real* values) const;
+    void means_from_sums() const;
+    /// Subtracts from p the mean of its closed component.
+    void subtract_means(Grid<real, D>& p) const;
     /// ‖b − means‖₂ over fluid.
     real norm(const Grid<real, D>& b) const;
     /// Makes p zero outside fluid; answers whether it is zero everywhere.
@@ -54,6 +57,10 @@ public:
     const Run* runs_begin(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row)]; }
     const Run* runs_end(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row) + 1]; }
 
+    /// Is no cell of the row fluid?
+    bool is_dry(int row) const { return runs_begin(row) == runs_end(row); }
+    /// r[i] = b[i] − mean for the fluid cells of a row, 0 elsewhere: the residual of p = 0.
+    void rhs_row(int row, const real* b, real* r) const;
     /// r[i] = b[i] − mean − (A p)[i] for the cells of a row, 0 elsewhere. p is zero outside fluid.
     void residual_row(int q, int j, const real* p, const real* b, real* r) const;
 

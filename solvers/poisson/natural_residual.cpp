@@ -64,17 +64,28 @@ void Natural<D>::residual_row(int q, int j, const real* p, const real* b, real* 
 }
 
 template <int D>
-void Natural<D>::find_means(const Grid<real, D>& values) const {
+void Natural<D>::rhs_row(int row, const real* b, real* r) const {
+    const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(row) * n_[0];
+    std::fill(r, r + n_[0], 0.0);
+    for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
+        const real m = mean(*run);
+        for (int i = run->begin; i < run->end; ++i) r[i] = b[own + i] - m;
+    }
+}
+
+template <int D>
+void Natural<D>::sum_row(int row, const real* values) const {
     if (closed_ == 0) return;
-    parallel_for(0, planes() * rows_in_plane(), [&](int row) {
-        const real* v = values.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
-        for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
-            real sum = 0;
+    for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
+        real sum = 0;
 #pragma omp simd reduction(+ : sum)
-            for (int i = run->begin; i < run->end; ++i) sum += v[i];
-            sum_[static_cast<std::size_t>(run - runs_.data())] = sum;
-        }
-    });
+        for (int i = run->begin; i < run->end; ++i) sum += values[i];
+        sum_[static_cast<std::size_t>(run - runs_.data())] = sum;
+    }
+}
+
+template <int D>
+void Natural<D>::means_from_sums() const {
     clear_means();
     for (std::size_t k = 0; k < runs_.size(); ++k)
         if (runs_[k].component >= 0) mean_[static_cast<std::size_t>(runs_[k].component)] += sum_[k];
@@ -82,9 +93,15 @@ void Natural<D>::find_means(const Grid<real, D>& values) const {
 }
 
 template <int D>
-void Natural<D>::remove_means(Grid<real, D>& p) const {
+void Natural<D>::find_means(const Grid<real, D>& values) const {
     if (closed_ == 0) return;
-    find_means(p);
+    parallel_for(0, planes() * rows_in_plane(), [&](int row) { sum_row(row, values.data() + static_cast<std::ptrdiff_t>(row) * n_[0]); });
+    means_from_sums();
+}
+
+template <int D>
+void Natural<D>::subtract_means(Grid<real, D>& p) const {
+    if (closed_ == 0) return;
     parallel_for(0, planes() * rows_in_plane(), [&](int row) {
         real* v = p.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
         for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {

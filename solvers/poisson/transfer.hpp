@@ -29,7 +29,7 @@ void add_red_residual(const Level<D>& fine, int q, int j, float* t) {
     const int row = fine.at.row(q, j);
     const float* u = fine.u[0] + fine.at.offset(row);
     const float* r = fine.r[0] + fine.at.offset(row);
-    with_row(fine, q, j, 0, [&](const auto& neighbours, const auto& diagonal) {
+    with_row(fine, q, j, 0, [&](const auto neighbours, const auto diagonal) WEIR_INLINED {
         for (const Span& span : RowSpans<D>(fine, row))
             for (int m = span.begin; m < span.end; m += lanes) {
                 const f16 next = (load16(r + m) + neighbours(m)) * diagonal.inverse(m);
@@ -80,7 +80,7 @@ void prolong_plane(Level<D>& fine, const Level<D>& coarse, int q) {
         const float *even = coarse.u[static_cast<std::size_t>(S)] + above, *odd = coarse.u[static_cast<std::size_t>(1 - S)] + above;
         const float* same = coarse.u[static_cast<std::size_t>(s ^ S)] + above;
         const bool halve_x = fine.coarsened[0];
-        with_row(fine, q, j, 0, [&](const auto&, const auto& diagonal) {
+        with_row(fine, q, j, 0, [&](const auto&, const auto diagonal) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(fine, row))
                 for (int m = span.begin; m < span.end; m += lanes) {
                     const f16 e = halve_x ? zip(load<f8>(even + m / 2), load<f8>(odd + m / 2)) : load16(same + m);

@@ -37,15 +37,15 @@ public:
         up(l + 1, 0, [](int, int) {});
     }
 
-    /// Level l: adds the answer of level l + 1 and smooths. `after` stages of the caller's follow; stage 0 of them is told of each plane
-    /// whose red values are final, the next ones of planes whose neighbours are.
+    /// Level l: adds the answer of level l + 1 and smooths. If `after` is not 0, the last half sweep, over red cells, is the caller's
+    /// f(0, plane), and more of its stages follow.
     template <class F>
     void up(std::size_t l, int after, F&& f) {
         Level<D>&fine = level(l), &coarse = level(l + 1);
         wavefront(fine, std::max(5, 4 + after), false).run(threads_for(fine), [&](int stage, int q) {
             if (stage == 0) return prolong_plane(fine, coarse, q);
-            if (stage <= 4) relax_plane(fine, q, stage % 2 == 1 ? 1 : 0);
-            if (stage >= 4 && stage - 4 < after) f(stage - 4, q);
+            if (stage < 4 || after == 0) return relax_plane(fine, q, stage % 2 == 1 ? 1 : 0);
+            f(stage - 4, q);
         });
     }
 

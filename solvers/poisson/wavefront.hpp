@@ -1,7 +1,7 @@
 // Several stages over the planes of a grid in one pass through memory: stage s works on plane q as soon as stage s − 1 has done planes
 // q − 1, q and q + 1, so that a plane is still in the cache. Threads own slabs: each does in its slab what depends on no other slab
-// (a trapezoid in plane and stage), then all close the triangles left at the slabs' ends, stage by stage. Who computes what never changes
-// what is computed: results do not depend on the number of threads.
+// (a trapezoid in plane and stage), then all close the triangles left at the slabs' ends: stage by stage where planes are few, else each
+// thread those at its slab's beginning. Who computes what never changes what is computed: results do not depend on the number of threads.
 #pragma once
 #include "core/parallel.hpp"
 
@@ -34,7 +34,11 @@ struct Wavefront {
             const int begin = boundary(t, team), end = boundary(t + 1, team);
             const bool first = t == 0 && !ring, last = t == team - 1 && !ring;
             sweep(begin, end, first, last, f);
-            for (int s = 1; s < stages; ++s) {
+            if (many_planes()) {
+#pragma omp barrier
+                if (!first) close_below(begin, f);
+            }
+            for (int s = many_planes() ? stages : 1; s < stages; ++s) {
 #pragma omp barrier
                 if (!first)
                     for (int q = begin; q < begin + reach_down(s); ++q) f(s, q);
@@ -51,6 +55,16 @@ private:
         const std::int64_t share = work->back() * t / team;
         const int fair = static_cast<int>(std::lower_bound(work->begin(), work->end(), share) - work->begin()) / 2 * 2;
         return std::clamp(fair, t * thickness(), (planes - (team - t) * thickness()) / 2 * 2);
+    }
+
+    /// Is a triangle so small a part of a slab that one thread had better close it than all meet at every stage?
+    bool many_planes() const { return planes >= 32 * stages; }
+
+    /// The triangles on both sides of the plane at which a slab begins.
+    template <class F>
+    void close_below(int begin, F&& f) const {
+        for (int s = 1; s < stages; ++s)
+            for (int q = begin - s; q < begin + reach_down(s); ++q) f(s, q < 0 ? q + planes : q);
     }
 
     template <class F>

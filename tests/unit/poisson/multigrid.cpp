@@ -99,6 +99,26 @@ TEST_IN_2D_AND_3D("every method gives the same bits on 1, 2 and 3 threads") {
     set_threads(1);
 }
 
+TEST("the same bits on 1, 2 and 3 threads where each closes the triangles at its slab's beginning alone: hundreds of planes") {
+    for (const auto& A : varied<2>({90, 404})) {
+        const auto b = random_values<2>(A.cells.extent(), 22);
+        const auto solve = [&](int count) {
+            set_threads(count);
+            const auto solver = poisson::make_solver<2>("multigrid", {.tolerance = 1e-9, .max_iterations = 200});
+            solver->setup(A);
+            Grid<real, 2> p(A.cells.extent());
+            solver->solve(p, b);
+            return p;
+        };
+        const auto one = solve(1);
+        for (const int count : {2, 3}) {
+            const auto many = solve(count);
+            EXPECT_TRUE(std::equal(one.values().begin(), one.values().end(), many.values().begin())) << count << " threads";
+        }
+    }
+    set_threads(1);
+}
+
 TEST_IN_2D_AND_3D("the second solve allocates nothing") {
     set_threads(1);
     const auto A = random_operator<D>(large<D>(), 3, {.solid = 0.02, .air = 0.01});
