@@ -63,6 +63,7 @@ public:
     }
     void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
+        probes_.update(simulation.probes());  // as they come: a run that is killed leaves all that it measured
         progress_.show(simulation.time(), simulation.steps());
         for (; told_ < simulation.warnings().size(); ++told_) {
             progress_.end();
@@ -71,7 +72,7 @@ public:
     }
     void on_frame(const Simulation& simulation) override {
         if (frames_) frames_->write(simulation.fields(), simulation.time());
-        probes_.update(simulation.probes());
+        probes_.update(simulation.probes());  // those of the start too
         // the log of a long run is long: not more than a few per cent of the time goes into replacing it
         const auto now = clock::now();
         if (now - written_ > 20 * write_time_) write_log("running");

@@ -51,6 +51,12 @@ struct GridView {
     std::array<real, 3> spacing{0, 0, 0};  // [m]
 };
 
+/// The names by which solvers show their free surface: a cell field, signed distance to it [m], negative in the liquid; and the particle
+/// sets of grid and of particle solvers.
+inline constexpr const char* level_set_name = "level_set";
+inline constexpr const char* marker_set_name = "markers";
+inline constexpr const char* particle_set_name = "particles";
+
 /// Everything a solver shows. A particle set's positions are the field named "position" of that set.
 struct FieldSet {
     GridView grid;

@@ -48,6 +48,7 @@ void ProbeFiles::update(const std::vector<ProbeSeries>& probes) {
     std::error_code ignored;
     std::filesystem::create_directories(folder_, ignored);
     for (std::size_t i = 0; i < probes.size(); ++i) {
+        if (!first && written_[i] == probes[i].times.size()) continue;
         const auto path = folder_ / (probes[i].name + ".csv");
         std::ofstream file(path, std::ios::binary | (first ? std::ios::trunc : std::ios::app));
         file << (first ? head(probes[i]) : "") << rows(probes[i], written_[i]);

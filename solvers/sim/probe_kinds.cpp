@@ -3,6 +3,7 @@
 #include "geometry/solids.hpp"
 #include "sim/sampling.hpp"
 #include "sim/surface.hpp"
+#include "sim/wall_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +34,8 @@ public:
         const FieldView& field = *fields.find("", field_.name);
         std::vector<real> row;
         for (const auto& x : points_)
-            for (int c = 0; c < components_; ++c) row.push_back(sample(field, fields.grid, c, x));
+            for (int c = 0; c < components_; ++c)
+                row.push_back(sample_to_wall(field.data[static_cast<std::size_t>(c)], Lattice::of(field, fields.grid, c), x));
         return row;
     }
 
@@ -43,16 +45,17 @@ private:
     int components_ = field_.components();
 };
 
-/// Height of the liquid's surface above the domain's floor on a vertical line: along y, the axis that notation.md calls up.
+/// On a vertical line (along y, the axis that notation.md calls up): the height of the uppermost liquid above the domain's floor, be it a
+/// drop, and the depth, how much of the line lies in liquid.
 class Gauge final : public ProbeKind {
 public:
     explicit Gauge(const Vec<3>& at) : at_(at) {}
     void describe(ProbeSeries& series) const override {
-        series.columns = {"height [m]"};
-        series.positions = {at_};
+        series.columns = {"height [m]", "depth [m]"};
+        series.positions = {at_, at_};
     }
     std::vector<real> measure(const Solver&, const FieldSet& fields) const override {
-        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1]};
+        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1], liquid_depth(fields, at_, 1)};
     }
 
 private:
@@ -91,8 +94,7 @@ private:
     std::vector<std::string> columns_;
 };
 
-/// Pressure on the nearest wall: linear from two samples along its normal. On a side of the domain these are the first two cell centres;
-/// near a body they stand 1.5 and 2.5 cells out, where no sample of the interpolation is inside it.
+/// Pressure on the nearest wall or solid, at its point nearest to a place (wall_fit.hpp).
 template <int D>
 class WallPressure final : public ProbeKind {
 public:
@@ -103,45 +105,11 @@ public:
         for (int d = 0; d < D; ++d) series.positions[0][d] = at_[d];
     }
     std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
-        const GridView& grid = fields.grid;
-        const FieldView& pressure = *fields.find("pressure");
-        auto [wall, normal, first] = nearest_side(grid);
         solids_.set_time(solver.time());
-        const real eps = 1e-3 * grid.spacing[0];  // of the normal's central differences: small beside a cell, large beside rounding
-        if (!solids_.empty() && std::abs(solids_.distance(at_)) < norm(wall - at_)) {
-            normal = solids_.normal(at_, eps);
-            wall = at_ - solids_.distance(at_) * normal;
-            first = 1.5;
-        }
-        const auto pressure_at = [&](real cells_out, const Vec<D>& on_wall, const Vec<D>& n) {
-            Vec<3> x{};
-            for (int d = 0; d < D; ++d) x[d] = on_wall[d] + cells_out * grid.spacing[static_cast<std::size_t>(d)] * n[d];
-            return sample(pressure, grid, 0, x);
-        };
-        const real p1 = pressure_at(first, wall, normal), p2 = pressure_at(first + 1, wall, normal);
-        return {p1 - first * (p2 - p1)};
+        return {wall_pressure(fields, solids_, at_)};
     }
 
 private:
-    struct Wall {
-        Vec<D> point, normal;
-        real first;  // distance of the first sample [cells]
-    };
-    Wall nearest_side(const GridView& grid) const {
-        Wall best{at_, {}, 0.5};
-        real nearest = infinity;
-        for (int a = 0; a < D; ++a)
-            for (int end = 0; end < 2; ++end) {
-                const auto axis = static_cast<std::size_t>(a);
-                const real side = grid.origin[axis] + end * grid.cells[axis] * grid.spacing[axis];
-                if (std::abs(at_[a] - side) >= nearest) continue;
-                nearest = std::abs(at_[a] - side);
-                best.point = at_;
-                best.point[a] = side;
-                best.normal = (end == 0 ? 1.0 : -1.0) * Vec<D>::unit(a);
-            }
-        return best;
-    }
     mutable geometry::Solids<D> solids_;
     Vec<D> at_;
 };

@@ -27,13 +27,17 @@ Lattice Lattice::of(const FieldView& field, const GridView& grid, int component)
     return field.where == Where::face ? of_faces(grid, component) : of_cells(grid);
 }
 
-real sample(std::span<const real> values, const Lattice& lattice, const Vec<3>& x) {
+namespace {
+
+/// Multilinear; `beyond` [cells]: how far beyond the outermost samples they are continued, each row by its last two.
+real multilinear(std::span<const real> values, const Lattice& lattice, const Vec<3>& x, real beyond) {
     std::array<int, 3> lower{}, upper{};
     std::array<real, 3> s{};
     for (std::size_t a = 0; a < 3; ++a) {
         const int last = lattice.n[a] - 1;
-        const real place = std::clamp((x[a] - lattice.first[a]) / lattice.spacing[a], 0.0, static_cast<real>(last));
-        lower[a] = static_cast<int>(place);
+        const real out = last > 0 ? beyond : 0;
+        const real place = std::clamp((x[a] - lattice.first[a]) / lattice.spacing[a], -out, last + out);
+        lower[a] = std::clamp(static_cast<int>(std::floor(place)), 0, std::max(0, out > 0 ? last - 1 : last));
         upper[a] = std::min(lower[a] + 1, last);
         s[a] = place - lower[a];
     }
@@ -43,6 +47,12 @@ real sample(std::span<const real> values, const Lattice& lattice, const Vec<3>& 
     const auto along_y = [&](int k) { return (1 - s[1]) * along_x(lower[1], k) + s[1] * along_x(upper[1], k); };
     return (1 - s[2]) * along_y(lower[2]) + s[2] * along_y(upper[2]);
 }
+
+}  // namespace
+
+real sample(std::span<const real> values, const Lattice& lattice, const Vec<3>& x) { return multilinear(values, lattice, x, 0); }
+
+real sample_to_wall(std::span<const real> values, const Lattice& lattice, const Vec<3>& x) { return multilinear(values, lattice, x, 0.5); }
 
 real sample(const FieldView& field, const GridView& grid, int component, const Vec<3>& x) {
     return sample(field.data[static_cast<std::size_t>(component)], Lattice::of(field, grid, component), x);

@@ -37,6 +37,9 @@ Wet wet_points(const FieldSet& fields) {
     return {fields.find(particle_set_name, "position"), 0.5 * fields.grid.spacing[0]};
 }
 
+/// Whether a distance across the line is no more than half a spacing, but for round-off: on the face between two cells both are near.
+bool within_half(real distance, real spacing) { return std::abs(distance) <= 0.5 * spacing * (1 + 1e-9); }
+
 /// Highest marker or particle no farther than half a cell from the line through x along `axis`.
 real highest_point(const FieldSet& fields, const Vec<3>& x, int axis) {
     const Wet wet = wet_points(fields);
@@ -45,10 +48,46 @@ real highest_point(const FieldSet& fields, const Vec<3>& x, int axis) {
     for (std::size_t m = 0; m < position[0].size(); ++m) {
         bool near = true;
         for (std::size_t a = 0; a < position.size(); ++a)
-            if (static_cast<int>(a) != axis && std::abs(position[a][m] - x[a]) > 0.5 * fields.grid.spacing[a]) near = false;
+            if (static_cast<int>(a) != axis && !within_half(position[a][m] - x[a], fields.grid.spacing[a])) near = false;
         if (near) highest = std::max(highest, position[static_cast<std::size_t>(axis)][m] + wet.reach);
     }
     return highest;
+}
+
+/// Particles near the line, each with its own length and the weights of linear interpolation across: on a lattice these sum to one.
+real depth_of_points(const FieldSet& fields, const Vec<3>& x, int axis) {
+    const auto& position = wet_points(fields).position->data;
+    const auto& spacing = fields.grid.spacing;
+    real depth = 0;
+    for (std::size_t m = 0; m < position[0].size(); ++m) {
+        real weight = 1;
+        for (std::size_t a = 0; a < position.size(); ++a)
+            if (static_cast<int>(a) != axis) {
+                // beyond the outermost layer of a lattice, half a spacing from a side, there is no other to share with
+                const real lower = fields.grid.origin[a] + 0.5 * spacing[a],
+                           upper = upper_corner(fields.grid)[static_cast<int>(a)] - 0.5 * spacing[a];
+                weight *= std::max(
+                    0.0, 1 - std::abs(position[a][m] - std::clamp(x[static_cast<int>(a)], lower, std::max(lower, upper))) / spacing[a]);
+            }
+        depth += weight * spacing[static_cast<std::size_t>(axis)];
+    }
+    return depth;
+}
+
+/// Length of [i, i + 1] on which the line from a to b is negative.
+real negative_part(real a, real b) {
+    if (a < 0 && b < 0) return 1;
+    if (!(a < 0) && !(b < 0)) return 0;
+    return a < 0 ? a / (a - b) : b / (b - a);
+}
+
+/// φ at the centres of the cells that the line through x meets.
+auto along(const FieldView& level_set, const Lattice& lattice, const Vec<3>& x, int axis) {
+    return [&, x, axis](int i) {
+        Vec<3> at = x;
+        at[axis] = coordinate(lattice, axis, i);
+        return sample(level_set.data[0], lattice, at);
+    };
 }
 
 }  // namespace
@@ -59,25 +98,32 @@ real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
     const FieldView* level_set = fields.find(level_set_name);
     if (!level_set) return highest_point(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
-    const real zero = uppermost_zero(lattice.n[static_cast<std::size_t>(axis)], [&](int i) {
-        Vec<3> at = x;
-        at[axis] = coordinate(lattice, axis, i);
-        return sample(level_set->data[0], lattice, at);
-    });
+    const real zero = uppermost_zero(lattice.n[static_cast<std::size_t>(axis)], along(*level_set, lattice, x, axis));
     return zero < 0 ? fields.grid.origin[static_cast<std::size_t>(axis)] : coordinate(lattice, axis, zero);
 }
 
+real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
+    const FieldView* level_set = fields.find(level_set_name);
+    if (!level_set) return depth_of_points(fields, x, axis);
+    const Lattice lattice = Lattice::of_cells(fields.grid);
+    const auto phi = along(*level_set, lattice, x, axis);
+    const int last = lattice.n[static_cast<std::size_t>(axis)] - 1;
+    real cells = 0.5 * (phi(0) < 0) + 0.5 * (phi(last) < 0);
+    for (int i = 0; i < last; ++i) cells += negative_part(phi(i), phi(i + 1));
+    return cells * lattice.spacing[static_cast<std::size_t>(axis)];
+}
+
 real front(const FieldSet& fields, int axis) {
-    const auto along = static_cast<std::size_t>(axis), b = (along + 1) % 3, c = (along + 2) % 3;
-    real farthest = fields.grid.origin[along];
+    const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
+    real farthest = fields.grid.origin[a];
     if (const FieldView* level_set = fields.find(level_set_name)) {
         const Lattice lattice = Lattice::of_cells(fields.grid);
         std::array<int, 3> I{};
         for (I[c] = 0; I[c] < lattice.n[c]; ++I[c])
             for (I[b] = 0; I[b] < lattice.n[b]; ++I[b]) {
-                const real zero = uppermost_zero(lattice.n[along], [&](int i) {
+                const real zero = uppermost_zero(lattice.n[a], [&](int i) {
                     auto at = I;
-                    at[along] = i;
+                    at[a] = i;
                     return level_set->data[0][lattice.linear(at)];
                 });
                 if (zero >= 0) farthest = std::max(farthest, coordinate(lattice, axis, zero));
@@ -85,7 +131,7 @@ real front(const FieldSet& fields, int axis) {
         return farthest;
     }
     const Wet wet = wet_points(fields);
-    for (const real x : wet.position->data[along]) farthest = std::max(farthest, x + wet.reach);
+    for (const real x : wet.position->data[a]) farthest = std::max(farthest, x + wet.reach);
     return farthest;
 }
 

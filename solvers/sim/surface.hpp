@@ -8,15 +8,11 @@
 
 namespace weir::sim {
 
-/// The names by which solvers show them: a cell field, signed distance to the surface [m], negative in the liquid; and the
-/// particle sets of grid and of particle solvers.
-inline constexpr const char* level_set_name = "phi";
-inline constexpr const char* marker_set_name = "markers";
-inline constexpr const char* particle_set_name = "particles";
-
 bool has_surface(const FieldSet& fields);
 /// The highest coordinate along `axis` that liquid reaches on the line through x along that axis [m]; the lower end where it is dry.
 real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis);
+/// How much of the line through x along that axis lies in liquid [m]: a drop in the air counts for itself alone.
+real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis);
 /// The highest coordinate along `axis` that liquid reaches anywhere [m]; the lower end of the domain where there is none.
 real front(const FieldSet& fields, int axis);
 

@@ -10,8 +10,8 @@ template <int D>
 FieldSet Water<D>::fields() const {
     FieldSet set;
     set.grid = grid_view(state_.u);
-    FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, "markers", {}};
-    FieldView carried{"velocity", "m/s", Where::particle, "markers", {}};
+    FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, marker_set_name, {}};
+    FieldView carried{"velocity", "m/s", Where::particle, marker_set_name, {}};
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         velocity.data.push_back(state_.u[a].values());
@@ -20,7 +20,7 @@ FieldSet Water<D>::fields() const {
     }
     set.fields.push_back(std::move(velocity));
     set.fields.push_back({"pressure", "Pa", Where::cell, "", {state_.p.values()}});
-    set.fields.push_back({"level_set", "m", Where::cell, "", {surface_.phi.values()}});
+    set.fields.push_back({level_set_name, "m", Where::cell, "", {surface_.phi.values()}});
     set.fields.push_back(std::move(position));
     if (markers_.carries_velocity()) set.fields.push_back(std::move(carried));
     return set;

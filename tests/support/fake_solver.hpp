@@ -1,16 +1,36 @@
-// A solver without physics: fields on faces, cells and markers that change by a rule known exactly, so that the time loop, probes, output
-// and restarts can be tested apart from any fluid. Its advised step varies from step to step; at step `fail_at` it yields a NaN,
-// and after step `stall_at` its advised step is nothing. It calls steps up to `stable_dt` stable, and is concerned after step 2.
+// A solver without physics: it shows the fields of the real water solver, by the same names, with values that change by a rule known
+// exactly, so that the time loop, probes, output and restarts can be tested apart from any fluid. Its advised step varies from step to
+// step; at step `fail_at` it yields a NaN, and after step `stall_at` its advised step is nothing. It calls steps up to `stable_dt` stable,
+// and is concerned after step 2.
 #pragma once
 #include "core/solver.hpp"
 #include "scene/solver_kind.hpp"
+#include "sim/registry.hpp"
 #include "sim/simulation.hpp"
 
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 namespace weir::test {
+
+/// What the solver "mac_water" shows, read off a small one: names, units, places and sets, without their data.
+inline const std::vector<FieldView>& fields_of_water(int dim) {
+    static const auto read = [](int d) {
+        const bool flat = d == 2;
+        const Simulation real(scene::parse(
+            "solver = \"mac_water\"\ndim = " + std::to_string(d) + "\ngrid = { cells = " + (flat ? "[4, 4]" : "[4, 4, 4]") +
+                ", size = " + (flat ? "[1, 1]" : "[1, 1, 1]") + " }\ntime = { end = 1 }\nliquid = [ { shape = \"box\", min = " +
+                (flat ? "[0, 0], max = [1, 0.5]" : "[0, 0, 0], max = [1, 0.5, 1]") + " } ]\n",
+            "real.toml", sim::schemas()));
+        auto fields = real.fields().fields;
+        for (auto& field : fields) field.data.clear();
+        return fields;
+    };
+    static const std::vector<FieldView> in_2d = read(2), in_3d = read(3);
+    return dim == 2 ? in_2d : in_3d;
+}
 
 class FakeSolver final : public Solver {
 public:
@@ -32,7 +52,7 @@ public:
             static_cast<std::size_t>(grid_.cells[0]) * static_cast<std::size_t>(grid_.cells[1]) * static_cast<std::size_t>(grid_.cells[2]);
         for (int a = 0; a < dim_; ++a) faces_.emplace_back(n / static_cast<std::size_t>(cells[a]) * static_cast<std::size_t>(cells[a] + 1));
         level_set_.resize(n), pressure_.resize(n);
-        for (int a = 0; a < dim_; ++a) positions_.emplace_back(10);
+        for (int a = 0; a < dim_; ++a) positions_.emplace_back(10), still_.emplace_back(10);
         fill();
     }
     StepReport step(real dt) override {
@@ -50,10 +70,8 @@ public:
     FieldSet fields() const override {
         FieldSet set;
         set.grid = grid_;
-        FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, "markers", {}};
-        for (const auto& f : faces_) velocity.data.emplace_back(f);
-        for (const auto& p : positions_) position.data.emplace_back(p);
-        set.fields = {velocity, {"pressure", "Pa", Where::cell, "", {pressure_}}, {"phi", "m", Where::cell, "", {level_set_}}, position};
+        set.fields = fields_of_water(dim_);
+        for (FieldView& field : set.fields) fill_in(field);
         return set;
     }
     std::vector<Integral> integrals() const override { return {{"mass", "kg", 1 + memory_}}; }
@@ -73,12 +91,25 @@ public:
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override { return level_set_.size() * sizeof(real); }
 
-    /// What the fields are: velocity_a = (a + 1) x_a + t, pressure = 3 x - 2 y, phi = y - 0.4 - t / 10 + 0.05 x.
+    /// What the fields are: velocity_a = (a + 1) x_a + t, pressure = 3 x - 2 y, level_set = y - 0.4 - t / 10 + 0.05 x.
     static real velocity(int a, real x_a, real t) { return (a + 1) * x_a + t; }
     static real pressure(real x, real y) { return 3 * x - 2 * y; }
     static real surface(real x, real t) { return 0.4 + t / 10 - 0.05 * x; }
 
 private:
+    /// A field of the real solver that the fake does not know is a mistake of the fake's.
+    void fill_in(FieldView& field) const {
+        if (field.set == marker_set_name)
+            for (const auto& p : field.name == "position" ? positions_ : still_) field.data.emplace_back(p);
+        else if (field.name == "velocity")
+            for (const auto& f : faces_) field.data.emplace_back(f);
+        else if (field.name == "pressure")
+            field.data = {pressure_};
+        else if (field.name == level_set_name)
+            field.data = {level_set_};
+        else
+            throw std::logic_error("the fake has no field \"" + field.name + "\" of the real solver");
+    }
     void fill() {
         for (int a = 0; a < dim_; ++a)
             each(a, [&](std::size_t i, const Vec<3>& x) { faces_[static_cast<std::size_t>(a)][i] = velocity(a, x[a], time_); });
@@ -109,7 +140,7 @@ private:
     std::int64_t fail_at_, stall_at_;
     real stable_dt_;
     GridView grid_;
-    std::vector<std::vector<real>> faces_, positions_;
+    std::vector<std::vector<real>> faces_, positions_, still_;  // still_: velocities of markers
     std::vector<real> pressure_, level_set_;
     real time_ = 0, memory_ = 0.3;
     std::int64_t step_ = 0;

@@ -102,7 +102,7 @@ TEST("every compression reads back the same numbers; single precision halves the
 TEST("only the fields that are asked for are written, and unknown ones are refused with the known") {
     TemporaryFolder folder;
     auto simulation = fake_simulation("time = { end = 1.0 }");
-    Frames frames(folder, {.fields = {"phi"}});
+    Frames frames(folder, {.fields = {"level_set"}});
     frames.write(simulation.fields(), 0);
     const auto image = weir::test::read_image(folder.path() / "frames/grid_000000.vti");
     EXPECT_EQ(image->GetCellData()->GetNumberOfArrays(), 1);
@@ -110,7 +110,7 @@ TEST("only the fields that are asked for are written, and unknown ones are refus
         weir::output::check({.fields = {"smoke"}}, simulation.fields());
         FAIL() << "accepted";
     } catch (const weir::BadInput& bad) {
-        EXPECT_NE(std::string(bad.what()).find("no field \"smoke\"; known: phi, position, pressure, velocity"), std::string::npos)
+        EXPECT_NE(std::string(bad.what()).find("no field \"smoke\"; known: level_set, position, pressure, velocity"), std::string::npos)
             << bad.what();
     }
 }
