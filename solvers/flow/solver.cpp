@@ -134,8 +134,7 @@ template <int D>
 void FlowSolver<D>::advect_velocity(real dt) {
     const auto timed = passes_.time("advect velocity");
     const bool second_order = options_.scheme == Scheme::maccormack;
-    const real half_push = 0.5 * dt / state_.rho;
-    if (second_order) add_gradient(state_.u, state_, -half_push);
+    const PressurePush<D> taken(state_, -0.5 * dt / state_.rho), given_back(state_, 0.5 * dt / state_.rho);
     for (int a = 0; a < D; ++a) {
         const auto& boundary = state_.boundary[static_cast<std::size_t>(a)];
         const auto faces = free_faces(state_.u, state_.sides, a);
@@ -143,10 +142,16 @@ void FlowSolver<D>::advect_velocity(real dt) {
             add_momentum_flux(state_.before, state_.u.h, faces, dt, state_.u[a]);
             continue;
         }
-        if (second_order) fill(carried_[a], state_.u[a], boundary);
-        characteristics_.advect(second_order ? carried_[a] : state_.before[a], boundary, faces, trace_, dt, state_.u[a]);
+        if (!second_order) {
+            characteristics_.advect(state_.before[a], boundary, faces, trace_, dt, state_.u[a]);
+            continue;
+        }
+        fill_rows(carried_[a], boundary, [&](const Index<D>& first, int count, real* row) {
+            std::copy_n(&state_.u[a](first), count, row);
+            taken.add(a, first, count, row);
+        });
+        characteristics_.advect(carried_[a], boundary, faces, trace_, dt, state_.u[a], &given_back);
     }
-    if (second_order) add_gradient(state_.u, state_, half_push);
     sync_periodic(state_.u, state_.sides);
 }
 

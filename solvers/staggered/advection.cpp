@@ -70,11 +70,11 @@ std::vector<scene::Key> AdvectionOptions::keys() {
 
 template <int D>
 void CharacteristicAdvection<D>::advect(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes,
-                                        const Backtrace<D>& trace, real dt, Grid<real, D>& q) {
+                                        const Backtrace<D>& trace, real dt, Grid<real, D>& q, const PressurePush<D>* on_arrival) {
     if (options_.scheme == Scheme::semi_lagrangian) return semi_lagrangian(source, nodes, trace, dt, q);
     predict(source, nodes, trace, dt);
     fill_ghosts(predicted_[static_cast<std::size_t>(nodes.axis + 1)], boundary);
-    correct(source, nodes, trace, dt, q);
+    correct(source, nodes, trace, dt, q, on_arrival);
 }
 
 template <int D>
@@ -124,7 +124,7 @@ void CharacteristicAdvection<D>::predict(const Padded<D>& source, const Nodes<D>
 /// q = q̂ + ½ (q − A⁻¹(q̂)), limited.
 template <int D>
 void CharacteristicAdvection<D>::correct(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
-                                         Grid<real, D>& q) const {
+                                         Grid<real, D>& q, const PressurePush<D>* on_arrival) const {
     const auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
     for_each_row(nodes.lo, nodes.hi, [&](const Index<D>& first, int count) {
         Displacement<D> x;
@@ -143,12 +143,16 @@ void CharacteristicAdvection<D>::correct(const Padded<D>& source, const Nodes<D>
         };
         switch (options_.limiter) {
             case Limiter::clamp:
-                return each([](real value, real, real least, real most) { return std::min(std::max(value, least), most); });
+                each([](real value, real, real least, real most) { return std::min(std::max(value, least), most); });
+                break;
             case Limiter::revert:
-                return each([](real value, real safe, real least, real most) { return value < least || value > most ? safe : value; });
+                each([](real value, real safe, real least, real most) { return value < least || value > most ? safe : value; });
+                break;
             case Limiter::none:
-                return each([](real value, real, real, real) { return value; });
+                each([](real value, real, real, real) { return value; });
+                break;
         }
+        if (on_arrival) on_arrival->add(nodes.axis, first, count, out);
     });
 }
 
