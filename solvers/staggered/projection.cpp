@@ -1,5 +1,7 @@
 #include "staggered/projection.hpp"
 
+#include "staggered/rows.hpp"
+
 namespace weir::staggered {
 
 using poisson::Cell;
@@ -60,7 +62,19 @@ void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count,
 
 template <int D>
 real max_divergence(const MacState<D>& s) {
-    return max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? std::abs(flux_divergence(s, I)) : 0; });
+    Index<D> rows = s.extent();
+    rows[0] = 1;
+    return max_over(rows, [&](const Index<D>& I) {
+        real largest = 0;
+        for_each_block(I, s.extent()[0], [&](const Index<D>& first, int count) {
+            alignas(64) real divergence[row_block];
+            flux_divergence_row(s, first, count, divergence);
+            const Cell* cell = &s.cells(first);
+            for (int i = 0; i < count; ++i) divergence[i] = cell[i] == Cell::fluid ? divergence[i] : 0;
+            largest = largest_magnitude(divergence, static_cast<std::size_t>(count), largest);
+        });
+        return largest;
+    });
 }
 
 template <int D>
