@@ -198,6 +198,12 @@ real FlowSolver<D>::rate() const {
     return std::isnan(fluid) ? fluid : std::max({fluid, side_rate_, solids_.max_rate(state_)});
 }
 
+/// The same without a sweep where the last step has found max |u|/h.
+template <int D>
+real FlowSolver<D>::last_rate() const {
+    return std::isnan(fastest_) ? rate() : std::max({fastest_, side_rate_, solids_.max_rate(state_)});
+}
+
 template <int D>
 StepReport FlowSolver<D>::report(real dt) {
     const real fastest = fastest_ = max_rate(state_.u);
@@ -213,7 +219,7 @@ StepReport FlowSolver<D>::report(real dt) {
 
 template <int D>
 real FlowSolver<D>::advised_dt() const {
-    const real fastest = rate();
+    const real fastest = last_rate();
     return std::min(fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_));
 }
 
@@ -221,7 +227,7 @@ real FlowSolver<D>::advised_dt() const {
 template <int D>
 StepLimit FlowSolver<D>::stable_dt() const {
     if (options_.scheme != Scheme::conservative) return {};
-    const real fastest = std::isnan(fastest_) ? rate() : std::max({fastest_, side_rate_, solids_.max_rate(state_)});
+    const real fastest = last_rate();
     return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
 }
 
