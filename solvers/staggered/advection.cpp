@@ -72,8 +72,11 @@ template <int D>
 void CharacteristicAdvection<D>::advect(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes,
                                         const Backtrace<D>& trace, real dt, Grid<real, D>& q, const PressurePush<D>* on_arrival) {
     if (options_.scheme == Scheme::semi_lagrangian) return semi_lagrangian(source, nodes, trace, dt, q);
+    Padded<D>& predicted = prepare(source, nodes);
+    if (trace.is_near(dt) && options_.interpolation == Interpolation::linear)
+        return follow_planes(source, boundary, nodes, trace, dt, q, on_arrival);
     predict(source, nodes, trace, dt);
-    fill_ghosts(predicted_[static_cast<std::size_t>(nodes.axis + 1)], boundary);
+    fill_ghosts(predicted, boundary);
     correct(source, nodes, trace, dt, q, on_arrival);
 }
 
@@ -101,14 +104,59 @@ void CharacteristicAdvection<D>::semi_lagrangian(const Padded<D>& source, const 
     });
 }
 
+/// q̂ for nodes of this kind, with the values of those that are no unknowns: faces on closed sides.
+template <int D>
+Padded<D>& CharacteristicAdvection<D>::prepare(const Padded<D>& source, const Nodes<D>& nodes) {
+    auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
+    if (predicted.empty()) predicted = Padded<D>(source.extent());
+    if (low_.size() < product(source.extent())) low_ = high_ = Grid<real, D>(source.extent());
+    if (nodes.axis >= 0) copy_ends(source, nodes.axis, predicted);
+    return predicted;
+}
+
+namespace {
+
+/// The nodes of one plane across the last axis.
+template <int D>
+Nodes<D> plane_of(Nodes<D> nodes, int plane) {
+    nodes.lo[D - 1] = plane;
+    nodes.hi[D - 1] = plane + 1;
+    return nodes;
+}
+
+}  // namespace
+
+/// Points less than a cell away lie between neighbouring planes: a plane is corrected as soon as the next one is predicted, while what both
+/// read is still in the cache. The first and last plane of each thread's share wait for their neighbours.
+template <int D>
+void CharacteristicAdvection<D>::follow_planes(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes,
+                                               const Backtrace<D>& trace, real dt, Grid<real, D>& q, const PressurePush<D>* on_arrival) {
+    auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
+    const int lo = nodes.lo[D - 1], hi = nodes.hi[D - 1], shares = std::min(threads(), hi - lo);
+    const auto begin_of = [&](int share) { return lo + (hi - lo) * share / shares; };
+    const auto correct_plane = [&](int k) { correct(source, plane_of(nodes, k), trace, dt, q, on_arrival); };
+    parallel_for(0, shares, [&](int share) {
+        const int begin = begin_of(share), end = begin_of(share + 1);
+        for (int k = begin; k < end; ++k) {
+            predict(source, plane_of(nodes, k), trace, dt);
+            fill_plane_ghosts(predicted, boundary, k);
+            if (k - 1 > begin) correct_plane(k - 1);
+        }
+    });
+    for (int k = 0; k < lo; ++k) fill_plane_ghosts(predicted, boundary, k);
+    for (int k = hi; k < source.extent()[D - 1]; ++k) fill_plane_ghosts(predicted, boundary, k);
+    fill_end_planes(predicted, boundary);
+    parallel_for(0, shares, [&](int share) {
+        const int first = begin_of(share), last = begin_of(share + 1) - 1;
+        correct_plane(first);
+        if (last > first) correct_plane(last);
+    });
+}
+
 /// q̂ = A(q), and the bounds that the corrected value must keep.
 template <int D>
 void CharacteristicAdvection<D>::predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt) {
     auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
-    if (predicted.empty()) predicted = Padded<D>(source.extent());
-    const auto entries = product(source.extent());
-    if (low_.size() < entries) low_ = high_ = Grid<real, D>(source.extent());
-    if (nodes.axis >= 0) copy_ends(source, nodes.axis, predicted);  // faces on closed sides are no unknowns
     for_each_row(nodes.lo, nodes.hi, [&](const Index<D>& first, int count) {
         Displacement<D> x;
         trace.row(nodes.axis, first, count, dt, x);

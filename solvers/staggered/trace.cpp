@@ -99,7 +99,7 @@ void GridBacktrace<D>::row(int home_axis, const Index<D>& first, int count, real
     Displacement<D> k, x;
     Vec<D> cells;  // displacement [cells] per unit of velocity
     for (int a = 0; a < D; ++a) cells[a] = -dt / h_[a];
-    to.near = std::abs(dt) * max_rate_ <= 1;  // interpolated velocities never exceed their nodes, so no stage goes farther
+    to.near = is_near(dt);  // interpolated velocities never exceed their nodes, so no stage goes farther
     velocity_at_home(home_axis, first, count, k);
     scale(k, rk_.b[0] * cells, count, to);
     for (int s = 1; s < rk_.stages; ++s) {
