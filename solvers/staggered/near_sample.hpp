@@ -42,30 +42,40 @@ template <int D>
 struct NearPoints {
     std::array<Lanes, D> d;
     std::array<Side, D> side;
-    bool one_sided = true;  // along every axis
+    unsigned mixed = 0;  // bits of the axes along which they stand on both sides
 
     [[gnu::always_inline]] void find_sides() {
-        for (std::size_t a = 0; a < D; ++a) one_sided = (side[a] = side_of(d[a])) != Side::both && one_sided;
+        for (std::size_t a = 0; a < D; ++a) {
+            side[a] = side_of(d[a]);
+            mixed |= side[a] == Side::both ? 1U << a : 0U;
+        }
     }
 };
 
 /// Interpolation at eight points. Bits of Aligned tell along which axes homes and nodes are aligned; along the others they are half a cell
 /// apart. q is the node with the index of the first home or, along those others, the lower of the two around it.
 template <class Value, unsigned Aligned, int D>
-struct Near {
-    const NearPoints<D>& x;
-    std::array<std::ptrdiff_t, D> stride;
-    std::array<std::ptrdiff_t, D> step;  // to the outer node on the side of the points
-
+class Near {
+public:
     [[gnu::always_inline]] Near(const NearPoints<D>& points, const std::array<int, D>& strides) : x(points) {
         for (std::size_t a = 0; a < D; ++a) {
             stride[a] = a == 0 ? 1 : strides[a];
             step[a] = static_cast<int>(points.side[a]) * stride[a];
         }
     }
-    [[gnu::always_inline]] Value at(const real* q) const { return x.one_sided ? along<D - 1, true>(q) : along<D - 1, false>(q); }
+    [[gnu::always_inline]] Value at(const real* q) const {
+        const unsigned mixed = x.mixed & Aligned;
+        if (mixed == 0) return along<D - 1, 0>(q);
+        if constexpr ((Aligned & (Aligned - 1)) != 0) {  // of several axes one is more often mixed than all
+            if (mixed == (Aligned & 1U)) return along<D - 1, Aligned & 1U>(q);
+            if (mixed == (Aligned & 2U)) return along<D - 1, Aligned & 2U>(q);
+            if (mixed == (Aligned & 4U)) return along<D - 1, Aligned & 4U>(q);
+        }
+        return along<D - 1, Aligned>(q);
+    }
 
-    template <int Axis, bool OneSided>
+private:
+    template <int Axis, unsigned Mixed>
     [[gnu::always_inline]] Value along(const real* q) const {
         constexpr auto a = static_cast<std::size_t>(Axis);
         if constexpr (Axis < 0) {
@@ -74,14 +84,20 @@ struct Near {
                 return v;
             else
                 return {v, v, v};
-        } else if constexpr ((Aligned >> Axis & 1U) == 0) {
-            return blend_halves(x.d[a], along<Axis - 1, OneSided>(q), along<Axis - 1, OneSided>(q + stride[a]));
-        } else if constexpr (OneSided) {
-            return blend_one_side(x.d[a], along<Axis - 1, true>(q), along<Axis - 1, true>(q + step[a]));
         } else {
-            return blend(x.d[a], along<Axis - 1, false>(q - stride[a]), along<Axis - 1, false>(q), along<Axis - 1, false>(q + stride[a]));
+            const auto node = [&](std::ptrdiff_t at) __attribute__((always_inline)) { return along<Axis - 1, Mixed>(q + at); };
+            if constexpr ((Aligned >> Axis & 1U) == 0)
+                return blend_halves(x.d[a], node(0), node(stride[a]));
+            else if constexpr ((Mixed >> Axis & 1U) == 0)
+                return blend_one_side(x.d[a], node(0), node(step[a]));
+            else
+                return blend(x.d[a], node(-stride[a]), node(0), node(stride[a]));
         }
     }
+
+    const NearPoints<D>& x;
+    std::array<std::ptrdiff_t, D> stride;
+    std::array<std::ptrdiff_t, D> step;  // to the outer node on the side of the points
 };
 
 /// The node that `Near` starts from, seen from the first home of a row.

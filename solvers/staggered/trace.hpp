@@ -39,6 +39,8 @@ struct Domain {
         for (int a = 0; a < D; ++a) periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
     }
     void keep_inside(int home_axis, const Index<D>& first, int count, Displacement<D>& x) const;
+    /// Displacements along axis a that a node may have there; along a periodic one the ghost layers are there.
+    std::array<real, 2> reach(int home_axis, const Index<D>& first, int a) const;
 };
 
 /// Through the staggered velocity itself, frozen over the step.
@@ -54,6 +56,8 @@ public:
 private:
     void velocity_at(int home_axis, const Index<D>& first, int count, const Displacement<D>& x, Displacement<D>& k) const;
     void velocity_at_home(int home_axis, const Index<D>& first, int count, Displacement<D>& k) const;
+    template <int Home>
+    void near_midpoint(const Index<D>& first, int count, real dt, Displacement<D>& to) const;
     const PaddedVelocity<D>& u_;
     Vec<D> h_;
     Domain<D> domain_;
