@@ -39,17 +39,17 @@ public:
 private:
     void sample(const Padded<D>& field, const Index<D>& first, int axis, const Displacement<D>& x, int count, real* out) const;
     void semi_lagrangian(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, Grid<real, D>& q) const;
-    Padded<D>& prepare(const Padded<D>& source, const Nodes<D>& nodes);
-    void predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt);
+    Padded<D>& prepare(const Padded<D>& source, const Nodes<D>& nodes, int planes_of_bounds);
+    void predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, int bounds_from);
     void correct(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, Grid<real, D>& q,
-                 const PressurePush<D>* on_arrival) const;
+                 const PressurePush<D>* on_arrival, int bounds_from) const;
 
     void follow_planes(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
                        Grid<real, D>& q, const PressurePush<D>* on_arrival);
 
     AdvectionOptions options_;
     std::array<Padded<D>, D + 1> predicted_;  // q̂, one per kind of node: they differ in extent
-    Grid<real, D> low_, high_;                // of the nodes around each departure point
+    std::vector<real> low_, high_;            // of the nodes around each departure point, by planes
 };
 
 }  // namespace weir::staggered
