@@ -107,13 +107,16 @@ void FlowSolver<D>::apply(Stage stage, real dt) {
 template <int D>
 void FlowSolver<D>::remember() {
     const auto timed = passes_.time("ghosts");
-    for (int a = 0; a < D; ++a) fill(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]);
+    real fluid = 0;  // max |u|/h
+    for (int a = 0; a < D; ++a)
+        fluid = larger_or_nan(
+            fluid, fill_and_measure(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]) / state_.u.h[a]);
     solids_.extend_velocity(state_);
     for (auto& field : state_.fields) {
         fill(field.before, field.values, field.boundary);
         solids_.extend_field(state_, field.before);
     }
-    trace_.set_max_rate(rate());
+    trace_.set_max_rate(rate(fluid));
 }
 
 template <int D>
@@ -191,17 +194,16 @@ void FlowSolver<D>::clear_solids() {
     });
 }
 
-/// Largest number of cells that anything crosses in a second.
+/// Largest number of cells that anything crosses in a second, where the fluid crosses as many as it is said to.
 template <int D>
-real FlowSolver<D>::rate() const {
-    const real fluid = max_rate(state_.u);
+real FlowSolver<D>::rate(real fluid) const {
     return std::isnan(fluid) ? fluid : std::max({fluid, side_rate_, solids_.max_rate(state_)});
 }
 
-/// The same without a sweep where the last step has found max |u|/h.
+/// The same after the last step, which knows its fastest flow.
 template <int D>
 real FlowSolver<D>::last_rate() const {
-    return std::isnan(fastest_) ? rate() : std::max({fastest_, side_rate_, solids_.max_rate(state_)});
+    return rate(std::isnan(fastest_) ? max_rate(state_.u) : fastest_);
 }
 
 template <int D>

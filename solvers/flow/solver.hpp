@@ -54,7 +54,7 @@ private:
     void move_solids(real t);
     void project(real dt);
     void clear_solids();
-    real rate() const;
+    real rate(real fluid) const;
     real last_rate() const;
     StepReport report(real dt);
 

@@ -169,6 +169,20 @@ void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary)
 }
 
 template <int D>
+real fill_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
+    const real largest = ordered_max(to.extent()[D - 1], [&](int plane) {
+        real most = 0;
+        fill_plane(to, boundary, plane, [&](const Index<D>& first, int count, real* row) {
+            std::copy_n(from.data() + from.linear(first), count, row);
+            most = larger_or_nan(most, largest_magnitude(row, static_cast<std::size_t>(count)));
+        });
+        return most;
+    });
+    fill_end_planes(to, boundary);
+    return largest;
+}
+
+template <int D>
 void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary) {
     parallel_for(0, q.extent()[D - 1], [&](int plane) { fill_plane_ghosts(q, boundary, plane); });
     fill_end_planes(q, boundary);
@@ -182,6 +196,8 @@ template Boundary<2> field_boundary(const geometry::Sides<2>&, const std::string
 template Boundary<3> field_boundary(const geometry::Sides<3>&, const std::string&);
 template void fill(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
 template void fill(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
+template real fill_and_measure(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
+template real fill_and_measure(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
 template void fill_plane_ghosts(Padded<2>&, const Boundary<2>&, int);
 template void fill_plane_ghosts(Padded<3>&, const Boundary<3>&, int);
 template void fill_end_planes(Padded<2>&, const Boundary<2>&);

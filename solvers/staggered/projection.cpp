@@ -71,7 +71,7 @@ real max_divergence(const MacState<D>& s) {
             flux_divergence_row(s, first, count, divergence);
             const Cell* cell = &s.cells(first);
             for (int i = 0; i < count; ++i) divergence[i] = cell[i] == Cell::fluid ? divergence[i] : 0;
-            largest = largest_magnitude(divergence, static_cast<std::size_t>(count), largest);
+            largest = larger_or_nan(largest, largest_magnitude(divergence, static_cast<std::size_t>(count)));
         });
         return largest;
     });

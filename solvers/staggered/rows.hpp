@@ -23,9 +23,12 @@ void for_each_row(const Index<D>& lo, const Index<D>& hi, F&& f) {
     for_each_in(lo, first_column, [&](const Index<D>& I) { for_each_block(I, hi[0], f); });
 }
 
-/// The larger of `most` and |q|; NaN if any value is NaN or infinite.
-inline real largest_magnitude(const real* q, std::size_t count, real most, real zero = 0) {
-    real poison = 0;  // x - x is 0, or NaN where x is not finite
+/// The larger; NaN if either is.
+inline real larger_or_nan(real a, real b) { return b > a || std::isnan(b) ? b : a; }
+
+/// Largest |q - zero|; NaN if any value is NaN or infinite.
+inline real largest_magnitude(const real* q, std::size_t count, real zero = 0) {
+    real most = 0, poison = 0;  // x - x is 0, or NaN where x is not finite
 #pragma omp simd reduction(max : most) reduction(+ : poison)
     for (std::size_t i = 0; i < count; ++i) {
         most = std::max(most, std::abs(q[i] - zero));
@@ -41,7 +44,7 @@ real max_magnitude(const Grid<real, D>& q, real zero = 0) {
     const std::size_t plane = planes > 0 ? q.size() / static_cast<std::size_t>(planes) : 0;
     return ordered_max(planes, [&](int k) {
         const real* values = q.data() + static_cast<std::size_t>(k) * plane;
-        return largest_magnitude(values, plane, 0, zero);
+        return largest_magnitude(values, plane, zero);
     });
 }
 
