@@ -40,9 +40,7 @@ struct Buoyancy final : MacEffect<D> {
     }
     real max_dt(const MacState<D>& s) const override {
         real f = 0;
-        const auto strongest = [&](const Grid<real, D>& q, real factor, real zero) {
-            return std::abs(factor) * max_over(q.extent(), [&](const Index<D>& I) { return std::abs(q(I) - zero); });
-        };
+        const auto strongest = [&](const Grid<real, D>& q, real factor, real zero) { return std::abs(factor) * max_magnitude(q, zero); };
         if (beta != 0) f += strongest(*s.find("temperature"), beta, ambient);
         if (alpha != 0) f += strongest(*s.find("smoke"), alpha, 0);
         return acceleration_limit(f, s.u.h[up], cfl);

@@ -1,5 +1,6 @@
 // Vorticity confinement: gives back to vortices what the advection scheme takes (Steinhoff & Underhill 1994; Fedkiw, Stam & Jensen 2001).
 #include "flow/effects.hpp"
+#include "staggered/rows.hpp"
 
 namespace weir::flow {
 
@@ -18,44 +19,111 @@ struct Confinement final : MacEffect<D> {
     }
     void apply(MacState<D>& s, real dt) override {
         auto& magnitude = s.scratch_field("vorticity_magnitude");
-        for_each_cell(s.extent(), [&](const Index<D>& I) {
-            const auto w = vorticity(s, I);
-            magnitude(I) = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-        });
-        std::array<Grid<real, D>*, D> f;
+        std::array<Grid<real, D>*, D> f;  // first ω, then the force
         for (std::size_t a = 0; a < D; ++a) f[a] = &s.scratch_field(force[a]);
+        for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
+            vorticity(s, first, count, f);
+            find_magnitude(f, first, count, &magnitude(first));
+        });
         const real strength = epsilon * *std::min_element(s.u.h.begin(), s.u.h.end());
-        for_each_cell(s.extent(), [&](const Index<D>& I) {
-            const auto n = towards_vortex(s, magnitude, I), w = vorticity(s, I);
-            const std::array<real, 3> cross{n[1] * w[2] - n[2] * w[1], n[2] * w[0] - n[0] * w[2], n[0] * w[1] - n[1] * w[0]};
-            for (std::size_t a = 0; a < D; ++a) (*f[a])(I) = s.cells(I) == poisson::Cell::fluid ? strength * cross[a] : 0;
+        for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
+            Row n[D];
+            for (int a = 0; a < D; ++a) slope(magnitude, a, s.u.h[a], first, count, n[a]);
+            normalise(n, count);
+            cross(n, &s.cells(first), strength, first, count, f);
         });
         for (int a = 0; a < D; ++a)
-            for_each_inner_face(s.u, a, [&](const Index<D>& I) { s.u[a](I) += dt * at_face(*f[static_cast<std::size_t>(a)], I, a); });
+            for_each_row(e<D>(a), s.extent(), [&](const Index<D>& first, int count) {  // inner faces
+                real* u = &s.u[a](first);
+                const Grid<real, D>& force_a = *f[static_cast<std::size_t>(a)];
+                const real *here = &force_a(first), *below = &force_a(first - e<D>(a));
+#pragma omp simd
+                for (int i = 0; i < count; ++i) u[i] += dt * (0.5 * (below[i] + here[i]));
+            });
     }
 
 private:
-    /// ω at a cell's centre by central differences of the velocity at the centres around it; 2D has only the third component.
-    static std::array<real, 3> vorticity(const MacState<D>& s, const Index<D>& I) {
-        const auto centre = [&](int a, const Index<D>& J) { return 0.5 * (s.before[a](J) + s.before[a](J + e<D>(a))); };
-        const auto slope = [&](int a, int b) { return (centre(a, I + e<D>(b)) - centre(a, I - e<D>(b))) / (2 * s.u.h[b]); };
-        if constexpr (D == 2)
-            return {0, 0, slope(1, 0) - slope(0, 1)};
-        else
-            return {slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)};
-    }
-    /// ∇|ω| / |∇|ω||, one-sided at the sides of the domain; 0 where the gradient is.
-    static std::array<real, 3> towards_vortex(const MacState<D>& s, const Grid<real, D>& magnitude, const Index<D>& I) {
-        std::array<real, 3> n{};
-        for (int a = 0; a < D; ++a) {
-            Index<D> lo = I, hi = I;
-            lo[a] = std::max(I[a] - 1, 0);
-            hi[a] = std::min(I[a] + 1, s.extent()[a] - 1);
-            n[static_cast<std::size_t>(a)] = hi[a] > lo[a] ? (magnitude(hi) - magnitude(lo)) / ((hi[a] - lo[a]) * s.u.h[a]) : 0;
+    struct alignas(64) Row : std::array<real, row_block> {};
+
+    /// ω at the centres of a row of cells by central differences of the velocity at the centres around them; 2D has only the third
+    /// component, which stands in the first field.
+    static void vorticity(const MacState<D>& s, const Index<D>& first, int count, const std::array<Grid<real, D>*, D>& omega) {
+        for (int c = 0; c < (D == 2 ? 1 : 3); ++c) {
+            const int a = D == 2 ? 0 : (c + 1) % 3, b = D == 2 ? 1 : (c + 2) % 3;
+            Row along_a, along_b;
+            slope_of_velocity(s, b, a, first, count, along_a);
+            slope_of_velocity(s, a, b, first, count, along_b);
+            real* out = &(*omega[static_cast<std::size_t>(c)])(first);
+            for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) out[i] = along_a[i] - along_b[i];
         }
-        const real length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        for (real& component : n) component = length > 0 ? component / length : 0;
-        return n;
+    }
+    /// Along b, of component a.
+    static void slope_of_velocity(const MacState<D>& s, int a, int b, const Index<D>& first, int count, Row& slope) {
+        const auto& u = s.before[a];
+        const real *q = u.at(first), width = 2 * s.u.h[b];
+        const std::ptrdiff_t sa = u.stride(a), sb = u.stride(b);
+        real* out = slope.data();
+#pragma omp simd
+        for (int i = 0; i < count; ++i) out[i] = (0.5 * (q[i + sb] + q[i + sb + sa]) - 0.5 * (q[i - sb] + q[i - sb + sa])) / width;
+    }
+    static void find_magnitude(const std::array<Grid<real, D>*, D>& omega, const Index<D>& first, int count, real* out) {
+        const real *x = &(*omega[0])(first), *y = &(*omega[1])(first), *z = &(*omega[D - 1])(first);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) out[i] = std::sqrt(D == 2 ? x[i] * x[i] : x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+    }
+    /// Of a cell field along one axis, one-sided at the sides of the domain.
+    static void slope(const Grid<real, D>& q, int a, real h, const Index<D>& first, int count, Row& slope) {
+        const int last = q.extent()[a] - 1;
+        real* out = slope.data();
+        const auto differences = [&](int begin, int end, int index) {  // index of the first along a
+            const int lo = std::max(index - 1, 0), hi = std::min(index + 1, last);
+            const real *at = &q(first), width = (hi - lo) * h;
+            const std::ptrdiff_t to_lo = (lo - index) * q.stride(a), to_hi = (hi - index) * q.stride(a);
+#pragma omp simd
+            for (int i = begin; i < end; ++i) out[i] = (at[i + to_hi] - at[i + to_lo]) / width;
+        };
+        if (last == 0) {
+            std::fill_n(out, count, 0.0);
+        } else if (a > 0) {
+            differences(0, count, first[a]);
+        } else {
+            const int begin = first[0] == 0 ? 1 : 0, end = first[0] + count > last ? count - 1 : count;
+            differences(0, begin, 0);
+            if (end > begin) differences(begin, end, first[0] + begin);
+            differences(end, count, last);
+        }
+    }
+    /// N = n / |n|, 0 where n is.
+    static void normalise(Row (&n)[D], int count) {
+        real *x = n[0].data(), *y = n[1].data(), *z = n[D - 1].data();
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const real squares = x[i] * x[i] + y[i] * y[i], length = std::sqrt(D == 2 ? squares : squares + z[i] * z[i]);
+            const real most = length > 0 ? length : infinity;
+            x[i] = x[i] / most;
+            y[i] = y[i] / most;
+            if constexpr (D == 3) z[i] = z[i] / most;
+        }
+    }
+    /// ε h (N × ω) in fluid cells, in the place of ω.
+    static void cross(const Row (&n)[D], const poisson::Cell* cells, real strength, const Index<D>& first, int count,
+                      const std::array<Grid<real, D>*, D>& f) {
+        Row fluid;  // ε h, or 0
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) fluid[i] = cells[i] == poisson::Cell::fluid ? strength : 0;
+        const real *weight = fluid.data(), *nx = n[0].data(), *ny = n[1].data(), *nz = n[D - 1].data();
+        real *x = &(*f[0])(first), *y = &(*f[1])(first), *z = &(*f[D - 1])(first);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const real wx = x[i], wy = y[i], wz = z[i];
+            if constexpr (D == 2) {
+                x[i] = weight[i] * (ny[i] * wx);
+                y[i] = weight[i] * -(nx[i] * wx);
+            } else {
+                x[i] = weight[i] * (ny[i] * wz - nz[i] * wy);
+                y[i] = weight[i] * (nz[i] * wx - nx[i] * wz);
+                z[i] = weight[i] * (nx[i] * wy - ny[i] * wx);
+            }
+        }
     }
 };
 

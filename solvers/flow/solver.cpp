@@ -107,13 +107,16 @@ void FlowSolver<D>::apply(Stage stage, real dt) {
 template <int D>
 void FlowSolver<D>::remember() {
     const auto timed = passes_.time("ghosts");
-    for (int a = 0; a < D; ++a) fill(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]);
+    real fluid = 0;  // max |u|/h
+    for (int a = 0; a < D; ++a)
+        fluid = larger_or_nan(
+            fluid, fill_and_measure(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]) / state_.u.h[a]);
     solids_.extend_velocity(state_);
     for (auto& field : state_.fields) {
         fill(field.before, field.values, field.boundary);
         solids_.extend_field(state_, field.before);
     }
-    trace_.set_max_rate(rate());
+    trace_.set_max_rate(rate(fluid));
 }
 
 template <int D>
@@ -134,8 +137,7 @@ template <int D>
 void FlowSolver<D>::advect_velocity(real dt) {
     const auto timed = passes_.time("advect velocity");
     const bool second_order = options_.scheme == Scheme::maccormack;
-    const real half_push = 0.5 * dt / state_.rho;
-    if (second_order) add_gradient(state_.u, state_, -half_push);
+    const PressurePush<D> taken(state_, -0.5 * dt / state_.rho), given_back(state_, 0.5 * dt / state_.rho);
     for (int a = 0; a < D; ++a) {
         const auto& boundary = state_.boundary[static_cast<std::size_t>(a)];
         const auto faces = free_faces(state_.u, state_.sides, a);
@@ -143,10 +145,16 @@ void FlowSolver<D>::advect_velocity(real dt) {
             add_momentum_flux(state_.before, state_.u.h, faces, dt, state_.u[a]);
             continue;
         }
-        if (second_order) fill(carried_[a], state_.u[a], boundary);
-        characteristics_.advect(second_order ? carried_[a] : state_.before[a], boundary, faces, trace_, dt, state_.u[a]);
+        if (!second_order) {
+            characteristics_.advect(state_.before[a], boundary, faces, trace_, dt, state_.u[a]);
+            continue;
+        }
+        fill_rows(carried_[a], boundary, [&](const Index<D>& first, int count, real* row) {
+            std::copy_n(&state_.u[a](first), count, row);
+            taken.add(a, first, count, row);
+        });
+        characteristics_.advect(carried_[a], boundary, faces, trace_, dt, state_.u[a], &given_back);
     }
-    if (second_order) add_gradient(state_.u, state_, half_push);
     sync_periodic(state_.u, state_.sides);
 }
 
@@ -186,11 +194,16 @@ void FlowSolver<D>::clear_solids() {
     });
 }
 
-/// Largest number of cells that anything crosses in a second.
+/// Largest number of cells that anything crosses in a second, where the fluid crosses as many as it is said to.
 template <int D>
-real FlowSolver<D>::rate() const {
-    const real fluid = max_rate(state_.u);
+real FlowSolver<D>::rate(real fluid) const {
     return std::isnan(fluid) ? fluid : std::max({fluid, side_rate_, solids_.max_rate(state_)});
+}
+
+/// The same after the last step, which knows its fastest flow.
+template <int D>
+real FlowSolver<D>::last_rate() const {
+    return rate(std::isnan(fastest_) ? max_rate(state_.u) : fastest_);
 }
 
 template <int D>
@@ -208,7 +221,7 @@ StepReport FlowSolver<D>::report(real dt) {
 
 template <int D>
 real FlowSolver<D>::advised_dt() const {
-    const real fastest = rate();
+    const real fastest = last_rate();
     return std::min(fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_));
 }
 
@@ -216,7 +229,7 @@ real FlowSolver<D>::advised_dt() const {
 template <int D>
 StepLimit FlowSolver<D>::stable_dt() const {
     if (options_.scheme != Scheme::conservative) return {};
-    const real fastest = std::isnan(fastest_) ? rate() : std::max({fastest_, side_rate_, solids_.max_rate(state_)});
+    const real fastest = last_rate();
     return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
 }
 

@@ -37,7 +37,11 @@ public:
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
     const MacState<D>& state() const { return state_; }
-    MacState<D>& state() { return state_; }
+    /// To be changed: what the last step knew of it is forgotten.
+    MacState<D>& state() {
+        fastest_ = not_applicable;
+        return state_;
+    }
     /// The report of the last pressure solve.
     const poisson::Report& pressure_report() const { return *report_; }
 
@@ -50,7 +54,8 @@ private:
     void move_solids(real t);
     void project(real dt);
     void clear_solids();
-    real rate() const;
+    real rate(real fluid) const;
+    real last_rate() const;
     StepReport report(real dt);
 
     Effects<MacState<D>> effects_;

@@ -13,9 +13,10 @@ Enum named(const std::string& name, std::initializer_list<std::pair<const char*,
     throw std::logic_error("\"" + name + "\" is in the schema but has no meaning");
 }
 
-/// Position of a node in a field without ghosts.
+/// Position of a node in a field without ghosts whose first plane is `plane`.
 template <int D>
-std::size_t offset(const Index<D>& extent, const Index<D>& I) {
+std::size_t offset(const Index<D>& extent, Index<D> I, int plane) {
+    I[D - 1] -= plane;
     std::size_t at = 0;
     for (int d = D - 1; d >= 0; --d) at = at * static_cast<std::size_t>(extent[d]) + static_cast<std::size_t>(I[d]);
     return at;
@@ -70,11 +71,14 @@ std::vector<scene::Key> AdvectionOptions::keys() {
 
 template <int D>
 void CharacteristicAdvection<D>::advect(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes,
-                                        const Backtrace<D>& trace, real dt, Grid<real, D>& q) {
+                                        const Backtrace<D>& trace, real dt, Grid<real, D>& q, const PressurePush<D>* on_arrival) {
     if (options_.scheme == Scheme::semi_lagrangian) return semi_lagrangian(source, nodes, trace, dt, q);
-    predict(source, nodes, trace, dt);
-    fill_ghosts(predicted_[static_cast<std::size_t>(nodes.axis + 1)], boundary);
-    correct(source, nodes, trace, dt, q);
+    if (trace.is_near(dt) && options_.interpolation == Interpolation::linear)
+        return follow_planes(source, boundary, nodes, trace, dt, q, on_arrival);
+    Padded<D>& predicted = prepare(source, nodes, source.extent()[D - 1]);
+    predict(source, nodes, trace, dt, 0);
+    fill_ghosts(predicted, boundary);
+    correct(source, nodes, trace, dt, q, on_arrival, 0);
 }
 
 template <int D>
@@ -101,19 +105,71 @@ void CharacteristicAdvection<D>::semi_lagrangian(const Padded<D>& source, const 
     });
 }
 
-/// q̂ = A(q), and the bounds that the corrected value must keep.
+/// q̂ for nodes of this kind, with the values of those that are no unknowns: faces on closed sides; and room for the bounds.
 template <int D>
-void CharacteristicAdvection<D>::predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt) {
+Padded<D>& CharacteristicAdvection<D>::prepare(const Padded<D>& source, const Nodes<D>& nodes, int planes_of_bounds) {
     auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
     if (predicted.empty()) predicted = Padded<D>(source.extent());
-    const auto entries = product(source.extent());
-    if (low_.size() < entries) low_ = high_ = Grid<real, D>(source.extent());
-    if (nodes.axis >= 0) copy_ends(source, nodes.axis, predicted);  // faces on closed sides are no unknowns
+    Index<D> planes = source.extent();
+    planes[D - 1] = planes_of_bounds;
+    if (low_.size() < product(planes)) low_ = high_ = std::vector<real>(product(planes));
+    if (nodes.axis >= 0) copy_ends(source, nodes.axis, predicted);
+    return predicted;
+}
+
+namespace {
+
+/// The nodes of one plane across the last axis.
+template <int D>
+Nodes<D> plane_of(Nodes<D> nodes, int plane) {
+    nodes.lo[D - 1] = plane;
+    nodes.hi[D - 1] = plane + 1;
+    return nodes;
+}
+
+}  // namespace
+
+/// Points less than a cell away lie between neighbouring planes: a plane is corrected as soon as the next one is predicted, while what both
+/// read is still in the cache. The first and last plane of each thread's share wait for their neighbours, so that the bounds of three
+/// planes are kept at once: those of the first, and of the last two.
+template <int D>
+void CharacteristicAdvection<D>::follow_planes(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes,
+                                               const Backtrace<D>& trace, real dt, Grid<real, D>& q, const PressurePush<D>* on_arrival) {
+    const int lo = nodes.lo[D - 1], hi = nodes.hi[D - 1], shares = std::min(threads(), hi - lo);
+    Padded<D>& predicted = prepare(source, nodes, 3 * shares);
+    const auto begin_of = [&](int share) { return lo + (hi - lo) * share / shares; };
+    const auto bounds_from = [&](int k, int share) { return k - (3 * share + (k == begin_of(share) ? 0 : 1 + k % 2)); };
+    const auto correct_plane = [&](int k, int share) {
+        correct(source, plane_of(nodes, k), trace, dt, q, on_arrival, bounds_from(k, share));
+    };
+    parallel_for(0, shares, [&](int share) {
+        const int begin = begin_of(share), end = begin_of(share + 1);
+        for (int k = begin; k < end; ++k) {
+            predict(source, plane_of(nodes, k), trace, dt, bounds_from(k, share));
+            fill_plane_ghosts(predicted, boundary, k);
+            if (k - 1 > begin) correct_plane(k - 1, share);
+        }
+    });
+    for (int k = 0; k < lo; ++k) fill_plane_ghosts(predicted, boundary, k);
+    for (int k = hi; k < source.extent()[D - 1]; ++k) fill_plane_ghosts(predicted, boundary, k);
+    fill_end_planes(predicted, boundary);
+    parallel_for(0, shares, [&](int share) {
+        const int first = begin_of(share), last = begin_of(share + 1) - 1;
+        correct_plane(first, share);
+        if (last > first) correct_plane(last, share);
+    });
+}
+
+/// q̂ = A(q), and the bounds that the corrected value must keep; those of plane k are stored as plane k - bounds_from.
+template <int D>
+void CharacteristicAdvection<D>::predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
+                                         int bounds_from) {
+    auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
     for_each_row(nodes.lo, nodes.hi, [&](const Index<D>& first, int count) {
         Displacement<D> x;
         trace.row(nodes.axis, first, count, dt, x);
         const RowView<D> view(source, first, nodes.axis, nodes.axis);
-        const std::size_t at = offset(source.extent(), first);
+        const std::size_t at = offset(source.extent(), first, bounds_from);
         real *low = low_.data() + at, *high = high_.data() + at, *out = predicted.at(first);
         if (x.near && options_.interpolation == Interpolation::linear) return sample_near_bounded(view, x, count, out, low, high);
         sample(source, first, nodes.axis, x, count, out);
@@ -124,7 +180,7 @@ void CharacteristicAdvection<D>::predict(const Padded<D>& source, const Nodes<D>
 /// q = q̂ + ½ (q − A⁻¹(q̂)), limited.
 template <int D>
 void CharacteristicAdvection<D>::correct(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
-                                         Grid<real, D>& q) const {
+                                         Grid<real, D>& q, const PressurePush<D>* on_arrival, int bounds_from) const {
     const auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
     for_each_row(nodes.lo, nodes.hi, [&](const Index<D>& first, int count) {
         Displacement<D> x;
@@ -132,7 +188,7 @@ void CharacteristicAdvection<D>::correct(const Padded<D>& source, const Nodes<D>
         trace.row(nodes.axis, first, count, -dt, x);
         sample(predicted, first, nodes.axis, x, count, returned);
         const real *before = source.at(first), *hat = predicted.at(first);
-        const std::size_t at = offset(source.extent(), first);
+        const std::size_t at = offset(source.extent(), first, bounds_from);
         const real *low = low_.data() + at, *high = high_.data() + at;
         real* out = &q(first);
         // The limits are pure functions of their arguments: g++ 12 mishandles variables captured in simd loops (clamped values were
@@ -143,12 +199,16 @@ void CharacteristicAdvection<D>::correct(const Padded<D>& source, const Nodes<D>
         };
         switch (options_.limiter) {
             case Limiter::clamp:
-                return each([](real value, real, real least, real most) { return std::min(std::max(value, least), most); });
+                each([](real value, real, real least, real most) { return std::min(std::max(value, least), most); });
+                break;
             case Limiter::revert:
-                return each([](real value, real safe, real least, real most) { return value < least || value > most ? safe : value; });
+                each([](real value, real safe, real least, real most) { return value < least || value > most ? safe : value; });
+                break;
             case Limiter::none:
-                return each([](real value, real, real, real) { return value; });
+                each([](real value, real, real, real) { return value; });
+                break;
         }
+        if (on_arrival) on_arrival->add(nodes.axis, first, count, out);
     });
 }
 

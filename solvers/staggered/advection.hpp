@@ -4,6 +4,7 @@
 #include "core/grid.hpp"
 #include "scene/scene.hpp"
 #include "staggered/ghosts.hpp"
+#include "staggered/projection.hpp"
 #include "staggered/trace.hpp"
 
 namespace weir::staggered {
@@ -30,20 +31,25 @@ template <int D>
 class CharacteristicAdvection {
 public:
     explicit CharacteristicAdvection(const AdvectionOptions& options) : options_(options) {}
-    /// q(I) = source(departure point of I) on `nodes`; source must have its ghosts.
+    /// q(I) = source(departure point of I) on `nodes`, plus what it is given on arrival; source must have its ghosts.
     void advect(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
-                Grid<real, D>& q);
+                Grid<real, D>& q, const PressurePush<D>* on_arrival = nullptr);
     std::size_t bytes() const;
 
 private:
     void sample(const Padded<D>& field, const Index<D>& first, int axis, const Displacement<D>& x, int count, real* out) const;
     void semi_lagrangian(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, Grid<real, D>& q) const;
-    void predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt);
-    void correct(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, Grid<real, D>& q) const;
+    Padded<D>& prepare(const Padded<D>& source, const Nodes<D>& nodes, int planes_of_bounds);
+    void predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, int bounds_from);
+    void correct(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt, Grid<real, D>& q,
+                 const PressurePush<D>* on_arrival, int bounds_from) const;
+
+    void follow_planes(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
+                       Grid<real, D>& q, const PressurePush<D>* on_arrival);
 
     AdvectionOptions options_;
     std::array<Padded<D>, D + 1> predicted_;  // q̂, one per kind of node: they differ in extent
-    Grid<real, D> low_, high_;                // of the nodes around each departure point
+    std::vector<real> low_, high_;            // of the nodes around each departure point, by planes
 };
 
 }  // namespace weir::staggered

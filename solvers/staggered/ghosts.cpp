@@ -40,24 +40,28 @@ EndRule velocity_rule(const geometry::Sides<D>& sides, const MacVelocity<D>& u, 
     return {Kind::dirichlet, side.velocity[component], {}};
 }
 
-/// Fills the layers beyond one end of one axis, for one line of nodes along it: `q` is the first inner node, n their number.
-inline void fill_end(real* q, std::ptrdiff_t stride, int n, int end, const EndRule& rule, std::size_t side_node) {
+/// Fills the layers beyond one end of one axis, for `count` lines of nodes along it that are neighbours in memory: `q` is the first inner
+/// node of the first line, n the number along each, v what Dirichlet's rule imposes.
+inline void fill_end(real* q, std::ptrdiff_t stride, int n, int end, EndRule::Kind kind, real v, int count) {
     const std::ptrdiff_t s = end == 0 ? stride : -stride;
     real* edge = end == 0 ? q : q + (n - 1) * stride;  // the inner node next to the side, or on it
     for (int k = 1; k <= ghost_layers; ++k) {
-        real& outer = edge[-k * s];
-        switch (rule.kind) {
+        real* outer = edge - k * s;
+        const real* inner = edge + std::min(kind == Kind::odd_about_node ? k : k - 1, n - 1) * s;
+        switch (kind) {
             case Kind::dirichlet:
-                outer = 2 * rule.value_at(side_node) - edge[std::min(k - 1, n - 1) * s];
+#pragma omp simd
+                for (int i = 0; i < count; ++i) outer[i] = 2 * v - inner[i];
                 break;
             case Kind::neumann:
-                outer = edge[std::min(k - 1, n - 1) * s];
+                std::copy_n(inner, count, outer);
                 break;
             case Kind::odd_about_node:
-                outer = 2 * edge[0] - edge[std::min(k, n - 1) * s];
+#pragma omp simd
+                for (int i = 0; i < count; ++i) outer[i] = 2 * edge[i] - inner[i];
                 break;
             case Kind::constant_beyond_node:
-                outer = edge[0];
+                std::copy_n(edge, count, outer);
                 break;
             case Kind::periodic:
                 break;
@@ -66,28 +70,34 @@ inline void fill_end(real* q, std::ptrdiff_t stride, int n, int end, const EndRu
 }
 
 /// Periodic axis of n cells: node m is node m + n, also where the grid stores n + 1 nodes.
-inline void wrap(real* q, std::ptrdiff_t stride, int nodes, int n) {
-    for (int k = 1; k <= ghost_layers; ++k) q[-k * stride] = q[((n - k) % n + n) % n * stride];
-    for (int m = n; m < nodes + ghost_layers; ++m) q[m * stride] = q[m % n * stride];
+inline void wrap(real* q, std::ptrdiff_t stride, int nodes, int n, int count) {
+    for (int k = 1; k <= ghost_layers; ++k) std::copy_n(q + ((n - k) % n + n) % n * stride, count, q - k * stride);
+    for (int m = n; m < nodes + ghost_layers; ++m) std::copy_n(q + m % n * stride, count, q + m * stride);
 }
 
+/// The layers beyond both ends of `axis` for the lines from I, I + e₀ .. on.
 template <int D>
-void fill_axis(Padded<D>& q, int axis, const Boundary<D>& boundary, int periodic_cells) {
-    Index<D> lo{}, hi = q.extent();
-    for (int b = 0; b < axis; ++b) lo[b] = -ghost_layers, hi[b] += ghost_layers;
-    lo[axis] = 0;
-    hi[axis] = 1;
-    const Index<D> nodes = side_extent(q.extent(), axis);
+void fill_lines(Padded<D>& q, int axis, const Boundary<D>& boundary, const Index<D>& I, int count) {
     const auto& ends = boundary.end[static_cast<std::size_t>(axis)];
     const int n = q.extent()[axis];
-    for_each_in(lo, hi, [&](const Index<D>& I) {
-        real* first = q.at(I);
-        if (ends[0].kind == Kind::periodic) return wrap(first, q.stride(axis), n, periodic_cells);
-        std::size_t side_node = 0;
-        for (int d = D - 1; d >= 0; --d)
-            side_node = side_node * static_cast<std::size_t>(nodes[d]) + static_cast<std::size_t>(std::clamp(I[d], 0, nodes[d] - 1));
-        for (int end = 0; end < 2; ++end) fill_end(first, q.stride(axis), n, end, ends[static_cast<std::size_t>(end)], side_node);
-    });
+    real* first = q.at(I);
+    const std::ptrdiff_t stride = q.stride(axis);
+    if (ends[0].kind == Kind::periodic) return wrap(first, stride, n, n - (axis == boundary.node_axis ? 1 : 0), count);
+    const Index<D> nodes = side_extent(q.extent(), axis);
+    for (int end = 0; end < 2; ++end) {
+        const EndRule& rule = ends[static_cast<std::size_t>(end)];
+        if (rule.profile.empty()) {
+            fill_end(first, stride, n, end, rule.kind, rule.value, count);
+            continue;
+        }
+        for (int i = 0; i < count; ++i) {
+            std::size_t side_node = 0;
+            for (int d = D - 1; d >= 0; --d)
+                side_node = side_node * static_cast<std::size_t>(nodes[d]) +
+                            static_cast<std::size_t>(std::clamp(I[d] + (d == 0 ? i : 0), 0, nodes[d] - 1));
+            fill_end(first + i, stride, n, end, rule.kind, rule.value_at(side_node), 1);
+        }
+    }
 }
 
 }  // namespace
@@ -128,17 +138,54 @@ Boundary<D> field_boundary(const geometry::Sides<D>& sides, const std::string& f
 }
 
 template <int D>
+void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane) {
+    Index<D> I{};
+    I[D - 1] = plane;
+    for (int j = 0; j < (D == 2 ? 1 : q.extent()[1]); ++j) {
+        if constexpr (D == 3) I[1] = j;
+        fill_lines(q, 0, boundary, I, 1);
+    }
+    if constexpr (D == 2) return;
+    I[0] = -ghost_layers;
+    I[1] = 0;
+    fill_lines(q, 1, boundary, I, q.extent()[0] + 2 * ghost_layers);
+}
+
+template <int D>
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary) {
+    Index<D> rows = q.extent() + Index<D>::constant(2 * ghost_layers);
+    parallel_for(0, D == 2 ? 1 : rows[1], [&](int j) {
+        Index<D> I = Index<D>::constant(-ghost_layers);
+        if constexpr (D == 3) I[1] += j;
+        I[D - 1] = 0;
+        fill_lines(q, D - 1, boundary, I, rows[0]);
+    });
+}
+
+template <int D>
 void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
-    Index<D> rows = from.extent();
-    const int n = rows[0];
-    rows[0] = 1;
-    for_each_cell(rows, [&](const Index<D>& I) { std::copy_n(from.data() + from.linear(I), n, to.at(I)); });
-    fill_ghosts(to, boundary);
+    fill_rows(to, boundary,
+              [&](const Index<D>& first, int count, real* row) { std::copy_n(from.data() + from.linear(first), count, row); });
+}
+
+template <int D>
+real fill_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
+    const real largest = ordered_max(to.extent()[D - 1], [&](int plane) {
+        real most = 0;
+        fill_plane(to, boundary, plane, [&](const Index<D>& first, int count, real* row) {
+            std::copy_n(from.data() + from.linear(first), count, row);
+            most = larger_or_nan(most, largest_magnitude(row, static_cast<std::size_t>(count)));
+        });
+        return most;
+    });
+    fill_end_planes(to, boundary);
+    return largest;
 }
 
 template <int D>
 void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary) {
-    for (int axis = 0; axis < D; ++axis) fill_axis(q, axis, boundary, q.extent()[axis] - (axis == boundary.node_axis ? 1 : 0));
+    parallel_for(0, q.extent()[D - 1], [&](int plane) { fill_plane_ghosts(q, boundary, plane); });
+    fill_end_planes(q, boundary);
 }
 
 template struct Boundary<2>;
@@ -149,6 +196,12 @@ template Boundary<2> field_boundary(const geometry::Sides<2>&, const std::string
 template Boundary<3> field_boundary(const geometry::Sides<3>&, const std::string&);
 template void fill(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
 template void fill(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
+template real fill_and_measure(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
+template real fill_and_measure(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
+template void fill_plane_ghosts(Padded<2>&, const Boundary<2>&, int);
+template void fill_plane_ghosts(Padded<3>&, const Boundary<3>&, int);
+template void fill_end_planes(Padded<2>&, const Boundary<2>&);
+template void fill_end_planes(Padded<3>&, const Boundary<3>&);
 template void fill_ghosts(Padded<2>&, const Boundary<2>&);
 template void fill_ghosts(Padded<3>&, const Boundary<3>&);
 

@@ -79,4 +79,32 @@ void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary)
 template <int D>
 void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary);
 
+/// The two halves of fill_ghosts: those of one plane across the last axis, within it, and then the planes beyond both ends of that axis.
+template <int D>
+void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane);
+template <int D>
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary);
+
+/// f(first, count, to) on every row of one plane of the inner box, which it writes, and the ghosts around it.
+template <int D, class F>
+void fill_plane(Padded<D>& q, const Boundary<D>& boundary, int plane, F&& f) {
+    Index<D> first{};
+    first[D - 1] = plane;
+    const int rows = D == 2 ? 1 : q.extent()[1];
+    for (int j = 0; j < rows; ++j) {
+        if constexpr (D == 3) first[1] = j;
+        f(first, q.extent()[0], q.at(first));
+    }
+    fill_plane_ghosts(q, boundary, plane);
+}
+/// The same for all planes, and then the ghosts beyond them.
+template <int D, class F>
+void fill_rows(Padded<D>& q, const Boundary<D>& boundary, F&& f) {
+    parallel_for(0, q.extent()[D - 1], [&](int plane) { fill_plane(q, boundary, plane, f); });
+    fill_end_planes(q, boundary);
+}
+/// As fill; the largest magnitude of `from`, or NaN, is found on the way.
+template <int D>
+real fill_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
+
 }  // namespace weir::staggered

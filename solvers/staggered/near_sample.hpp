@@ -1,61 +1,131 @@
 // Multilinear interpolation at points less than one cell from their home node: the stencil is then known before the displacement is, so
-// that rows are read contiguously and the loop vectorises without gathers (about ten times faster than sample.hpp; results agree to
-// round-off). Along an axis on which home and nodes are aligned the point lies between nodes −1, 0, 1 with the weights of a hat function,
+// that rows are read contiguously, eight points at a time and without gathers (results agree with sample.hpp to round-off). Along an axis
+// on which home and nodes are aligned the point lies between nodes −1, 0, 1 with the weights of a hat function,
 //     w₋ = max(−d, 0),  w₀ = 1 − |d|,  w₊ = max(d, 0),            |d| ≤ 1;
 // where they are half a cell apart it lies between the two nodes around the home: ½ − d and ½ + d, |d| ≤ ½.
+// A flow is smooth, so that eight neighbours mostly stand on one side of their homes along every axis. Then one of the outer nodes has no
+// weight for any of them and is not read: 8 nodes instead of 27, and the same bits.
 #pragma once
+#include "staggered/lanes.hpp"
 #include "staggered/sample.hpp"
 
 namespace weir::staggered {
 
 /// A value and the range of the nodes it was made from (only those whose weight is not zero).
 struct Bounded {
-    real value, low, high;
+    Lanes value, low, high;
 };
 
-[[gnu::always_inline]] inline real blend(real d, real below, real here, real above) {
-    return (std::max(-d, 0.0) * below + std::max(d, 0.0) * above) + (1 - std::abs(d)) * here;
+[[gnu::always_inline]] inline Lanes blend(const Lanes& d, const Lanes& below, const Lanes& here, const Lanes& above) {
+    const Lanes zero{};
+    return (larger(-d, zero) * below + larger(d, zero) * above) + (1 - magnitude(d)) * here;
 }
-[[gnu::always_inline]] inline Bounded blend(real d, const Bounded& below, const Bounded& here, const Bounded& above) {
-    const real low = d < 0 ? below.low : d > 0 ? above.low : here.low;
-    const real high = d < 0 ? below.high : d > 0 ? above.high : here.high;
-    return {blend(d, below.value, here.value, above.value), std::min(here.low, low), std::max(here.high, high)};
+[[gnu::always_inline]] inline Bounded blend(const Lanes& d, const Bounded& below, const Bounded& here, const Bounded& above) {
+    const Lanes zero{};
+    const Lanes low = d < zero ? below.low : d > zero ? above.low : here.low;
+    const Lanes high = d < zero ? below.high : d > zero ? above.high : here.high;
+    return {blend(d, below.value, here.value, above.value), smaller(here.low, low), larger(here.high, high)};
 }
-[[gnu::always_inline]] inline real blend(real d, real below, real above) { return (0.5 - d) * below + (0.5 + d) * above; }
+/// Where all points stand on the side of `other`, or all on their homes.
+[[gnu::always_inline]] inline Lanes blend_one_side(const Lanes& d, const Lanes& here, const Lanes& other) {
+    return magnitude(d) * other + (1 - magnitude(d)) * here;
+}
+[[gnu::always_inline]] inline Bounded blend_one_side(const Lanes& d, const Bounded& here, const Bounded& other) {
+    return {blend_one_side(d, here.value, other.value), smaller(here.low, other.low), larger(here.high, other.high)};
+}
+[[gnu::always_inline]] inline Lanes blend_halves(const Lanes& d, const Lanes& below, const Lanes& above) {
+    return (0.5 - d) * below + (0.5 + d) * above;
+}
 
-/// Interpolation along axes 0 .. axis of the nodes around q; `near_axis` tells which axes are aligned (bit set) or half a cell apart.
-template <class Value, unsigned Aligned, int D>
-struct Near {
-    const Displacement<D>& x;
-    std::array<int, D> stride;
-    std::array<int, D> lower;  // of the two nodes of a half axis: −1 or 0
+/// Eight points that are neighbours in a row: displacements from their homes [cells], and the side of all of them.
+template <int D>
+struct NearPoints {
+    std::array<Lanes, D> d;
+    std::array<Side, D> side;
+    unsigned mixed = 0;  // bits of the axes along which they stand on both sides
 
-    template <int Axis>
-    [[gnu::always_inline]] Value along(const real* q, int i) const {
-        if constexpr (Axis < 0) {
-            if constexpr (std::is_same_v<Value, real>)
-                return q[i];
-            else
-                return {q[i], q[i], q[i]};
-        } else {
-            const int s = Axis == 0 ? 1 : stride[static_cast<std::size_t>(Axis)];
-            const real d = x.d[Axis][i];
-            if constexpr ((Aligned >> Axis & 1U) != 0) {
-                return blend(d, along<Axis - 1>(q - s, i), along<Axis - 1>(q, i), along<Axis - 1>(q + s, i));
-            } else {
-                const real* below = q + lower[static_cast<std::size_t>(Axis)] * s;
-                return blend(d, along<Axis - 1>(below, i), along<Axis - 1>(below + s, i));
-            }
+    [[gnu::always_inline]] void find_sides() {
+        for (std::size_t a = 0; a < D; ++a) {
+            side[a] = side_of(d[a]);
+            mixed |= side[a] == Side::both ? 1U << a : 0U;
         }
     }
 };
 
+/// Interpolation at eight points. Bits of Aligned tell along which axes homes and nodes are aligned; along the others they are half a cell
+/// apart. q is the node with the index of the first home or, along those others, the lower of the two around it.
+template <class Value, unsigned Aligned, int D>
+class Near {
+public:
+    [[gnu::always_inline]] Near(const NearPoints<D>& points, const std::array<int, D>& strides) : x(points) {
+        for (std::size_t a = 0; a < D; ++a) {
+            stride[a] = a == 0 ? 1 : strides[a];
+            step[a] = static_cast<int>(points.side[a]) * stride[a];
+        }
+    }
+    [[gnu::always_inline]] Value at(const real* q) const {
+        const unsigned mixed = x.mixed & Aligned;
+        if (mixed == 0) return along<D - 1, 0>(q);
+        if constexpr ((Aligned & (Aligned - 1)) != 0) {  // of several axes one is more often mixed than all
+            if (mixed == (Aligned & 1U)) return along<D - 1, Aligned & 1U>(q);
+            if (mixed == (Aligned & 2U)) return along<D - 1, Aligned & 2U>(q);
+            if (mixed == (Aligned & 4U)) return along<D - 1, Aligned & 4U>(q);
+        }
+        return along<D - 1, Aligned>(q);
+    }
+
+private:
+    template <int Axis, unsigned Mixed>
+    [[gnu::always_inline]] Value along(const real* q) const {
+        constexpr auto a = static_cast<std::size_t>(Axis);
+        if constexpr (Axis < 0) {
+            const Lanes v = load(q);
+            if constexpr (std::is_same_v<Value, Lanes>)
+                return v;
+            else
+                return {v, v, v};
+        } else {
+            const auto node = [&](std::ptrdiff_t at) __attribute__((always_inline)) { return along<Axis - 1, Mixed>(q + at); };
+            if constexpr ((Aligned >> Axis & 1U) == 0)
+                return blend_halves(x.d[a], node(0), node(stride[a]));
+            else if constexpr ((Mixed >> Axis & 1U) == 0)
+                return blend_one_side(x.d[a], node(0), node(step[a]));
+            else
+                return blend(x.d[a], node(-stride[a]), node(0), node(stride[a]));
+        }
+    }
+
+    const NearPoints<D>& x;
+    std::array<std::ptrdiff_t, D> stride;
+    std::array<std::ptrdiff_t, D> step;  // to the outer node on the side of the points
+};
+
+/// The node that `Near` starts from, seen from the first home of a row.
+template <int D>
+const real* near_node(const RowView<D>& v) {
+    const real* q = v.q;
+    for (std::size_t a = 0; a < D; ++a) q -= v.shift[a] > 0 ? v.stride[a] : 0;
+    return q;
+}
+
+/// f(i, points, count) for each group of eight points of a row.
+template <int D, class F>
+[[gnu::always_inline]] inline void for_each_near(const Displacement<D>& x, int count, F&& f) {
+    for (int i = 0; i < count; i += lanes) {
+        NearPoints<D> points;
+        for (std::size_t a = 0; a < D; ++a) points.d[a] = load(&x.d[a][i], count - i);
+        points.find_sides();
+        f(i, points, count - i);
+    }
+}
+
 template <unsigned Aligned, int D>
 void near_row(const RowView<D>& v, const Displacement<D>& x, int count, real* out) {
-    Near<real, Aligned, D> near{x, v.stride, {}};
-    for (std::size_t a = 0; a < D; ++a) near.lower[a] = v.shift[a] > 0 ? -1 : 0;
-#pragma omp simd
-    for (int i = 0; i < count; ++i) out[i] = near.template along<D - 1>(v.q, i);
+    const real* q = near_node(v);
+    for_each_near(
+        x, count, [&](int i, const NearPoints<D>& points, int rest) __attribute__((always_inline)) {
+            store(out + i, Near<Lanes, Aligned, D>(points, v.stride).at(q + i), rest);
+        });
 }
 
 /// The value at each point of a row; nodes may be half a cell off along some axes.
@@ -94,14 +164,13 @@ void sample_near(const RowView<D>& v, const Displacement<D>& x, int count, real*
 /// Value and bounds on nodes aligned with their homes.
 template <int D>
 void sample_near_bounded(const RowView<D>& v, const Displacement<D>& x, int count, real* out, real* low, real* high) {
-    const Near<Bounded, (1U << D) - 1, D> near{x, v.stride, {}};
-#pragma omp simd
-    for (int i = 0; i < count; ++i) {
-        const Bounded b = near.template along<D - 1>(v.q, i);
-        out[i] = b.value;
-        low[i] = b.low;
-        high[i] = b.high;
-    }
+    for_each_near(
+        x, count, [&](int i, const NearPoints<D>& points, int rest) __attribute__((always_inline)) {
+            const Bounded b = Near<Bounded, (1U << D) - 1, D>(points, v.stride).at(v.q + i);
+            store(out + i, b.value, rest);
+            store(low + i, b.low, rest);
+            store(high + i, b.high, rest);
+        });
 }
 
 }  // namespace weir::staggered

@@ -1,5 +1,7 @@
 #include "staggered/projection.hpp"
 
+#include "staggered/rows.hpp"
+
 namespace weir::staggered {
 
 using poisson::Cell;
@@ -60,47 +62,65 @@ void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count,
 
 template <int D>
 real max_divergence(const MacState<D>& s) {
-    return max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? std::abs(flux_divergence(s, I)) : 0; });
+    Index<D> rows = s.extent();
+    rows[0] = 1;
+    return max_over(rows, [&](const Index<D>& I) {
+        real largest = 0;
+        for_each_block(I, s.extent()[0], [&](const Index<D>& first, int count) {
+            alignas(64) real divergence[row_block];
+            flux_divergence_row(s, first, count, divergence);
+            const Cell* cell = &s.cells(first);
+            for (int i = 0; i < count; ++i) divergence[i] = cell[i] == Cell::fluid ? divergence[i] : 0;
+            largest = larger_or_nan(largest, largest_magnitude(divergence, static_cast<std::size_t>(count)));
+        });
+        return largest;
+    });
+}
+
+template <int D>
+void PressurePush<D>::add(int a, const Index<D>& first, int count, real* values) const {
+    const int n = s_.u.cells[a];
+    const real f = factor_ / s_.u.h[a];
+    const Grid<real, D>* open = s_.solid.any() ? &s_.solid.open[static_cast<std::size_t>(a)] : nullptr;
+    // above[i] and below[i]: pressures on both sides of the face first + i
+    const auto inner = [&](int begin, int end, const real* above, const real* below) {
+        const real* w = open ? &(*open)(first) : nullptr;
+        if (w) {
+            for (int i = begin; i < end; ++i) values[i] += w[i] > 0 ? f * (above[i] - below[i]) : 0;
+        } else {
+#pragma omp simd
+            for (int i = begin; i < end; ++i) values[i] += f * (above[i] - below[i]);
+        }
+    };
+    const auto outer = [&](int begin, int end, int side) {
+        Index<D> cells = first;  // the row of cells inside
+        cells[a] = side == 0 ? 0 : n - 1;
+        const real *p = &s_.p(cells) - (a == 0 ? begin : 0), *w = open ? &(*open)(first) : nullptr;
+        if (s_.sides.periodic(a)) {
+            if (side == 1) return;  // a copy of the other end
+            cells[a] = n - 1;
+            return inner(begin, end, p, &s_.p(cells) - (a == 0 ? begin : 0));
+        }
+        if (!s_.sides.open(a, side)) return;
+        const real twice = side == 0 ? 2 : -2;  // p = 0 stands half a cell from the cell's centre
+        for (int i = begin; i < end; ++i)
+            if (!w || w[i] > 0) values[i] += f * (twice * p[i]);
+    };
+    if (a > 0) {
+        if (first[a] == 0 || first[a] == n) return outer(0, count, first[a] == 0 ? 0 : 1);
+        return inner(0, count, &s_.p(first), &s_.p(first - e<D>(a)));
+    }
+    const int begin = first[0] == 0 ? 1 : 0, end = std::min(count, n - first[0]);
+    if (begin > 0) outer(0, 1, 0);
+    if (end > begin) inner(begin, end, &s_.p(first), &s_.p(first) - 1);
+    if (end < count) outer(end, count, 1);
 }
 
 template <int D>
 void add_gradient(MacVelocity<D>& u, const MacState<D>& s, real factor) {
-    for (int a = 0; a < D; ++a) {
-        const real f = factor / u.h[a];
-        const Grid<real, D>* open = s.solid.any() ? &s.solid.open[static_cast<std::size_t>(a)] : nullptr;
-        const auto add = [&](const Index<D>& I, real difference) {
-            if (!open || (*open)(I) > 0) u[a](I) += f * difference;
-        };
-        for_each_row(e<D>(a), u.cells, [&](const Index<D>& first, int count) {
-            const real *p = &s.p(first), *below = &s.p(first - e<D>(a)), *w = open ? &(*open)(first) : nullptr;
-            real* out = &u[a](first);
-            if (w) {
-                for (int i = 0; i < count; ++i) out[i] += w[i] > 0 ? f * (p[i] - below[i]) : 0;
-            } else {
-#pragma omp simd
-                for (int i = 0; i < count; ++i) out[i] += f * (p[i] - below[i]);
-            }
-        });
-        const int n = u.cells[a];
-        const Index<D> first{};
-        Index<D> end = u.cells;
-        end[a] = 1;
-        if (s.sides.periodic(a))
-            for_each_in(first, end, [&](Index<D> I) {
-                Index<D> before = I;
-                before[a] = n - 1;
-                add(I, s.p(I) - s.p(before));
-            });
-        // on an open side p = 0 stands half a cell from the cell's centre
-        if (s.sides.open(a, 0)) for_each_in(first, end, [&](const Index<D>& I) { add(I, 2 * s.p(I)); });
-        if (s.sides.open(a, 1))
-            for_each_in(first, end, [&](Index<D> I) {
-                Index<D> inside = I;
-                inside[a] = n - 1;
-                I[a] = n;
-                add(I, -2 * s.p(inside));
-            });
-    }
+    const PressurePush<D> push(s, factor);
+    for (int a = 0; a < D; ++a)
+        for_each_row(Index<D>{}, u[a].extent(), [&](const Index<D>& first, int count) { push.add(a, first, count, &u[a](first)); });
     sync_periodic(u, s.sides);
 }
 
@@ -165,6 +185,8 @@ template void flux_divergence_row(const MacState<2>&, const Index<2>&, int, real
 template void flux_divergence_row(const MacState<3>&, const Index<3>&, int, real*);
 template real max_divergence(const MacState<2>&);
 template real max_divergence(const MacState<3>&);
+template class PressurePush<2>;
+template class PressurePush<3>;
 template void add_gradient(MacVelocity<2>&, const MacState<2>&, real);
 template void add_gradient(MacVelocity<3>&, const MacState<3>&, real);
 template class Projection<2>;

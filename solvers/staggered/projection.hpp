@@ -27,7 +27,20 @@ void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count,
 template <int D>
 real max_divergence(const MacState<D>& s);
 
-/// u += factor ∇p on free faces that are not closed; p = 0 on open sides.
+/// factor ∇p on free faces that are not closed; p = 0 on open sides.
+template <int D>
+class PressurePush {
+public:
+    PressurePush(const MacState<D>& s, real factor) : s_(s), factor_(factor) {}
+    /// Adds it to the values of the faces along `axis` first, first + 1, .. of a row; faces that are not free get nothing.
+    void add(int axis, const Index<D>& first, int count, real* values) const;
+
+private:
+    const MacState<D>& s_;
+    real factor_;
+};
+
+/// u += factor ∇p
 template <int D>
 void add_gradient(MacVelocity<D>& u, const MacState<D>& s, real factor);
 

@@ -52,6 +52,13 @@ void Domain<D>::keep_inside(int home_axis, const Index<D>& first, int count, Dis
 }
 
 template <int D>
+std::array<real, 2> Domain<D>::reach(int home_axis, const Index<D>& first, int a) const {
+    if (periodic[static_cast<std::size_t>(a)]) return {-infinity, infinity};
+    const real home = first[a] + (a == home_axis ? 0.0 : 0.5);
+    return {-home, cells[a] - home};
+}
+
+template <int D>
 GridBacktrace<D>::GridBacktrace(const PaddedVelocity<D>& u, const MacVelocity<D>& grid, const geometry::Sides<D>& sides,
                                 const std::string& scheme)
     : u_(u), h_(grid.h), domain_(grid.cells, sides), rk_(tableau(scheme)) {}
@@ -94,12 +101,113 @@ static void scale(const Displacement<D>& k, const Vec<D>& factor, int count, Dis
     }
 }
 
+namespace {
+
+/// Component B seen from homes of one kind, eight at a time.
+template <int D, int Home, int B>
+class NearComponent {
+public:
+    NearComponent(const Padded<D>& u, const Index<D>& first) : q_(u.at(first)) {
+        for (int a = 0; a < D; ++a) stride_[static_cast<std::size_t>(a)] = static_cast<int>(u.stride(a));
+    }
+    /// As velocity_at_home.
+    [[gnu::always_inline]] Lanes at_home(int i) const {
+        const real* q = q_ + i;
+        const int up = stride_[B];
+        if constexpr (B == Home)
+            return load(q);
+        else if constexpr (Home < 0)
+            return 0.5 * (load(q) + load(q + up));
+        else
+            return 0.25 * ((load(q) + load(q + up)) + (load(q - stride_[Home]) + load(q - stride_[Home] + up)));
+    }
+    [[gnu::always_inline]] Lanes at(const NearPoints<D>& x, int i) const {
+        const int lower = Home < 0 || Home == B ? 0 : stride_[static_cast<std::size_t>(std::max(Home, 0))];
+        return Near<Lanes, aligned, D>(x, stride_).at(q_ + i - lower);
+    }
+
+private:
+    static constexpr unsigned half = (1U << B) ^ (Home < 0 ? 0U : 1U << std::max(Home, 0));  // axes along which nodes are half a cell off
+    static constexpr unsigned aligned = ((1U << D) - 1U) & ~half;
+    const real* q_;
+    std::array<int, D> stride_;
+};
+
+template <int D, int Home>
+class NearVelocity {
+public:
+    NearVelocity(const PaddedVelocity<D>& u, const Index<D>& first) : x_(u[0], first), y_(u[1], first), z_(u[D - 1], first) {}
+    [[gnu::always_inline]] void at_home(int i, std::array<Lanes, D>& k) const {
+        k[0] = x_.at_home(i);
+        k[1] = y_.at_home(i);
+        if constexpr (D == 3) k[2] = z_.at_home(i);
+    }
+    [[gnu::always_inline]] void at(const NearPoints<D>& x, int i, std::array<Lanes, D>& k) const {
+        k[0] = x_.at(x, i);
+        k[1] = y_.at(x, i);
+        if constexpr (D == 3) k[2] = z_.at(x, i);
+    }
+
+private:
+    NearComponent<D, Home, 0> x_;
+    NearComponent<D, Home, 1> y_;
+    NearComponent<D, Home, D - 1> z_;
+};
+
+}  // namespace
+
+/// The two stages of the midpoint rule for points that stay within a cell, in one loop.
+template <int D>
+template <int Home>
+void GridBacktrace<D>::near_midpoint(const Index<D>& first, int count, real dt, Displacement<D>& to) const {
+    const NearVelocity<D, Home> u(u_, first);
+    Vec<D> half, whole;  // displacement [cells] per unit of velocity
+    std::array<std::array<real, 2>, D> reach;
+    bool beside = false;  // a side
+    for (int a = 0; a < D; ++a) {
+        const real cells = -dt / h_[a];
+        half[a] = rk_.c[1] * cells;
+        whole[a] = rk_.b[1] * cells;
+        reach[static_cast<std::size_t>(a)] = domain_.reach(Home, first, a);
+        if (a > 0) beside = beside || reach[static_cast<std::size_t>(a)][0] > -1 || reach[static_cast<std::size_t>(a)][1] < 1;
+    }
+    const int cells_end = domain_.cells[0];
+    const auto follow = [&](int i, auto&& inside) __attribute__((always_inline)) {
+        std::array<Lanes, D> k;
+        NearPoints<D> x;
+        u.at_home(i, k);
+        for (std::size_t a = 0; a < D; ++a) x.d[a] = inside(half[a] * k[a], a);
+        x.find_sides();
+        u.at(x, i, k);
+        for (std::size_t a = 0; a < D; ++a) store(&to.d[a][i], inside(whole[a] * k[a], a));
+    };
+    for (int i = 0; i < count; i += lanes) {
+        if (!beside && first[0] + i > 0 && first[0] + i + lanes < cells_end) {
+            follow(
+                i, [](const Lanes& d, std::size_t) __attribute__((always_inline)) { return d; });
+            continue;
+        }
+        const Lanes along_row = counting() + i;
+        follow(
+            i, [&](const Lanes& d, std::size_t a) __attribute__((always_inline)) {
+                const Lanes zero{}, step = a == 0 ? along_row : zero, low = reach[a][0] - step, high = reach[a][1] - step;
+                return d < low ? low : d > high ? high : d;
+            });
+    }
+}
+
 template <int D>
 void GridBacktrace<D>::row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const {
     Displacement<D> k, x;
     Vec<D> cells;  // displacement [cells] per unit of velocity
     for (int a = 0; a < D; ++a) cells[a] = -dt / h_[a];
-    to.near = std::abs(dt) * max_rate_ <= 1;  // interpolated velocities never exceed their nodes, so no stage goes farther
+    to.near = is_near(dt);  // interpolated velocities never exceed their nodes, so no stage goes farther
+    if (to.near && rk_.stages == 2) {
+        if (home_axis < 0) return near_midpoint<-1>(first, count, dt, to);
+        if (home_axis == 0) return near_midpoint<0>(first, count, dt, to);
+        if (home_axis == 1) return near_midpoint<1>(first, count, dt, to);
+        if constexpr (D == 3) return near_midpoint<2>(first, count, dt, to);
+    }
     velocity_at_home(home_axis, first, count, k);
     scale(k, rk_.b[0] * cells, count, to);
     for (int s = 1; s < rk_.stages; ++s) {

@@ -26,6 +26,8 @@ public:
     /// Displacement, in cells, of the points from which the nodes [first, first + count) of the row are reached in dt; negative dt:
     /// to which they will go. `home_axis`: which faces the nodes are, −1 for cell centres. The points stay in the domain.
     virtual void row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const = 0;
+    /// Whether none of them is farther than a cell.
+    virtual bool is_near(real) const { return false; }
 };
 
 /// The box that traced points must not leave: clamped to it, or wrapped along periodic axes.
@@ -37,6 +39,8 @@ struct Domain {
         for (int a = 0; a < D; ++a) periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
     }
     void keep_inside(int home_axis, const Index<D>& first, int count, Displacement<D>& x) const;
+    /// Displacements along axis a that a node may have there; along a periodic one the ghost layers are there.
+    std::array<real, 2> reach(int home_axis, const Index<D>& first, int a) const;
 };
 
 /// Through the staggered velocity itself, frozen over the step.
@@ -45,12 +49,15 @@ class GridBacktrace final : public Backtrace<D> {
 public:
     GridBacktrace(const PaddedVelocity<D>& u, const MacVelocity<D>& grid, const geometry::Sides<D>& sides, const std::string& scheme);
     void row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const override;
+    bool is_near(real dt) const override { return std::abs(dt) * max_rate_ <= 1; }
     /// max |u/h| [1/s] of the velocity now: traces of less than a cell take the fast path of near_sample.hpp.
     void set_max_rate(real rate) { max_rate_ = rate; }
 
 private:
     void velocity_at(int home_axis, const Index<D>& first, int count, const Displacement<D>& x, Displacement<D>& k) const;
     void velocity_at_home(int home_axis, const Index<D>& first, int count, Displacement<D>& k) const;
+    template <int Home>
+    void near_midpoint(const Index<D>& first, int count, real dt, Displacement<D>& to) const;
     const PaddedVelocity<D>& u_;
     Vec<D> h_;
     Domain<D> domain_;

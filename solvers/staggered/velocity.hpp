@@ -121,9 +121,7 @@ template <int D>
 real max_rate(const MacVelocity<D>& u) {
     real rate = 0;
     for (int a = 0; a < D; ++a) {
-        const real m = max_magnitude(u[a]) / u.h[a];
-        if (m > rate || std::isnan(m)) rate = m;
-        if (std::isnan(rate)) break;
+        rate = larger_or_nan(rate, max_magnitude(u[a]) / u.h[a]);
     }
     return rate;
 }

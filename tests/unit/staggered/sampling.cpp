@@ -80,6 +80,37 @@ TEST_IN_2D_AND_3D("the fast path for short displacements agrees with the general
         }
 }
 
+TEST_IN_2D_AND_3D("whichever axes eight neighbours stand on one side of their homes along, or on them, the fast path agrees") {
+    const auto wild = [](const Vec<D>& x) { return std::sin(5 * x[0] + 3 * x[1] * x[1]) + std::cos(7 * x[D - 1]); };
+    constexpr int count = 8, cases = D == 2 ? 16 : 64;  // along each axis: both sides, above, below, on
+    const Index<D> first = e<D>(1) + e<D>(D - 1);
+    real general[count], fast[count], low[count], high[count], low_fast[count], high_fast[count];
+    for (int home = -1; home < D; ++home)
+        for (int node = -1; node < D; ++node)
+            for (int sides = 0; sides < cases; ++sides) {
+                const auto q = filled<D>(node, wild);
+                auto x = displaced<D>(count, home == node ? 1.0 : 0.5, node + 5);
+                for (int d = 0; d < D; ++d)
+                    for (int i = 0; i < count; ++i) {
+                        const int side = sides >> (2 * d) & 3;
+                        real& at = x.d[d][i];
+                        at = side == 0 ? at : side == 1 ? std::abs(at) : side == 2 ? -std::abs(at) : 0;
+                    }
+                const RowView<D> view(q, first, node, home);
+                sample_linear(view, x, count, general);
+                sample_near(view, x, count, fast);
+                for (int i = 0; i < count; ++i) EXPECT_NEAR(fast[i], general[i], 1e-14);
+                if (home != node) continue;
+                sample_bounds(view, x, count, low, high);
+                sample_near_bounded(view, x, count, fast, low_fast, high_fast);
+                for (int i = 0; i < count; ++i) {
+                    EXPECT_NEAR(fast[i], general[i], 1e-14);
+                    EXPECT_EQ(low[i], low_fast[i]);
+                    EXPECT_EQ(high[i], high_fast[i]);
+                }
+            }
+}
+
 TEST("the monotone cubic never leaves the range of its data; Lagrange's does") {
     const real data[] = {0, 0, 1, 1};
     real most = 0, least = 1, lagrange_least = 1;
@@ -117,6 +148,10 @@ TEST_IN_2D_AND_3D("mirrored points give the same bits from mirrored data") {
             real left = 0, right = 0;
             sample_linear(RowView<D>(q, home, node, node), x, 1, &left);
             sample_linear(RowView<D>(mirrored, image, node, node), y, 1, &right);
+            EXPECT_EQ(left, right);
+            for (int d = 0; d < D; ++d) x.d[d][0] /= 2, y.d[d][0] /= 2;  // 0.95
+            sample_near(RowView<D>(q, home, node, node), x, 1, &left);
+            sample_near(RowView<D>(mirrored, image, node, node), y, 1, &right);
             EXPECT_EQ(left, right);
             sample_cubic(RowView<D>(q, home, node, node), x, 1, monotone_cubic, &left);
             sample_cubic(RowView<D>(mirrored, image, node, node), y, 1, monotone_cubic, &right);
