@@ -119,6 +119,7 @@ void Water<D>::save(Checkpoint& to) const {
     const std::array<std::int64_t, 3> counts{steps_, escaped_, reseeded_};
     to.put_value("water.reals", reals);
     to.put_value("water.counts", counts);
+    to.put_value("water.rate", rate_);
 }
 
 template <int D>
@@ -135,13 +136,15 @@ void Water<D>::restore(const Checkpoint& from) {
     steps_ = counts[0], escaped_ = counts[1], reseeded_ = counts[2];
     markers_.sort(frame_);
     mark_liquid_faces();
-    rate_ = max_speed_rate();
+    rate_ = from.has("water.rate") ? from.get_value<real>("water.rate") : max_speed_rate();
 }
 
 template <int D>
 std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
-                        (viscosity_ ? viscosity_->bytes() : 0) + closed_.size() + near_solid_.size() + curvature_.size() * sizeof(real);
+                        (viscosity_ ? viscosity_->bytes() : 0) + closed_.size() + near_solid_.size() + not_solved_for_.size() +
+                        curvature_.size() * sizeof(real);
+    for (const auto& emitter : emitters_) total += emitter.bytes();
     for (const auto& faces : solid_faces_) total += faces.size() * (sizeof(SolidFace<D>) + sizeof(Index<D>));
     for (const auto& sum : sums_.sum) total += sum.size() * (sizeof(FaceSum) + 1);  // with its mark
     return total;

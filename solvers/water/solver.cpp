@@ -12,13 +12,13 @@ StepReport Water<D>::step(real dt) {
     move_surface(dt);                             // Dx/Dt = u for markers, Dφ/Dt = 0
     pour_and_drain(dt);                           // emitters, open sides
     redistribute_markers();                       // no holes, no heaps
-    correct_surface();                            // φ joins escaped markers, and is a distance again
+    correct_surface(dt);                          // φ joins escaped markers, and is a distance again
     momentum_to_faces(dt);                        // u* = what the markers carry, or D u/Dt = 0 on the grid
     forces(dt);                                   // u* += dt f
     const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
-    extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
-    momentum_to_markers();
+    extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
+    momentum_to_markers(dt);
     state_.time += dt;
     ++steps_;
     return {.dt = dt,
@@ -38,7 +38,7 @@ void Water<D>::move_surface(real dt) {
 }
 
 template <int D>
-void Water<D>::correct_surface() {
+void Water<D>::correct_surface(real dt) {
     {
         const auto timed = passes_.time("level set");
         escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
@@ -47,7 +47,7 @@ void Water<D>::correct_surface() {
     }
     curvature();
     const auto timed = passes_.time("level set");
-    pressure_.set_surface(surface_, closed_, state_);
+    pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 
 template <int D>
@@ -57,8 +57,8 @@ void Water<D>::momentum_to_faces(real dt) {
         advect_faces(dt);
     else
         markers_to_faces(markers_, frame_, sums_, state_.u, known_);
-    impose_emitters(dt);
     set_fixed_faces();
+    impose_emitters(dt, &Emitter<D>::Face::moves);
     forget_faces_in_solids();
     extrapolate_(state_.u, known_, surface_, in_solids_, 2);  // liquid cells without a marker, faces at the edge
     if (options_.transfer == Transfer::flip) {
@@ -83,13 +83,15 @@ void Water<D>::forces(real dt) {
 template <int D>
 poisson::Report Water<D>::project(real dt) {
     const auto timed = passes_.time("project");
+    impose_emitters(dt, &Emitter<D>::Face::pours);
     return pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr);
 }
 
 template <int D>
-void Water<D>::extend_velocity() {
+void Water<D>::extend_velocity(real dt) {
     const auto timed = passes_.time("extrapolate");
     mark_liquid_faces();
+    impose_emitters(dt, &Emitter<D>::Face::moves);
     extrapolate_(state_.u, known_, surface_, in_solids_, surface_.layers() - 1);
     constrain_velocity_in_solids();
     sync_periodic(state_.u, state_.sides);
@@ -97,18 +99,22 @@ void Water<D>::extend_velocity() {
 }
 
 template <int D>
-void Water<D>::momentum_to_markers() {
+void Water<D>::momentum_to_markers(real dt) {
     const auto timed = passes_.time("faces to markers");
     switch (options_.transfer) {
         case Transfer::grid:
             return;
         case Transfer::pic:
-            return pic_to_markers(state_.u, frame_, markers_);
+            pic_to_markers(state_.u, frame_, markers_);
+            break;
         case Transfer::flip:
-            return flip_to_markers(state_.u, before_, options_.flip_blend, frame_, markers_);
+            flip_to_markers(state_.u, before_, options_.flip_blend, frame_, markers_);
+            break;
         case Transfer::apic:
-            return apic_to_markers(state_.u, frame_, markers_);
+            apic_to_markers(state_.u, frame_, markers_);
+            break;
     }
+    carry_emitters_velocity(dt);
 }
 
 /// Du/Dt = 0 by semi-Lagrangian advection (Stam 1999), on all faces near the liquid; known_ marks them.
@@ -238,6 +244,10 @@ real Water<D>::advised_dt() const {
     if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
     if (g > 0) dt = std::min(dt, std::sqrt(h / (pi * g)));
     if (options_.sigma > 0) dt = std::min(dt, std::sqrt(state_.rho * h * h * h / (4 * pi * options_.sigma)));
+    for (const auto& emitter : emitters_)
+        if (emitter.works(state_.time, state_.time + dt))
+            for (int a = 0; a < D; ++a)
+                if (emitter.velocity[a] != 0) dt = std::min(dt, options_.cfl * frame_.h[a] / std::abs(emitter.velocity[a]));
     return std::min(dt, effects_.max_dt(state_));
 }
 

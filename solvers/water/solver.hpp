@@ -9,6 +9,7 @@
 #include "staggered/projection.hpp"
 #include "staggered/solid_faces.hpp"
 #include "staggered/state.hpp"
+#include "water/emitters.hpp"
 #include "water/extrapolate.hpp"
 #include "water/level_set.hpp"
 #include "water/marker_motion.hpp"
@@ -47,17 +48,6 @@ struct WaterOptions {
     explicit WaterOptions(const scene::Scene& scene);
 };
 
-/// A region that pours liquid in while it is open.
-template <int D>
-struct Emitter {
-    geometry::ShapePtr<D> shape;
-    Vec<D> velocity{};
-    real start = 0, end = infinity;
-    Index<D> lo{}, hi{};  // the cells that it can reach
-    /// Whether it pours at some time of a step from `from` to `to`.
-    bool works(real from, real to) const { return from < end && to > start; }
-};
-
 /// What a solid does to the liquid's velocity on a face inside it.
 template <int D>
 struct SolidFace {
@@ -92,6 +82,7 @@ public:
 private:
     // Start (water_start.cpp)
     void read_emitters(const scene::Scene& scene);
+    void refuse_buried_emitters(const scene::Scene& scene) const;
     void fill_with_liquid(const scene::Scene& scene);
     void seed_markers();
 
@@ -103,14 +94,16 @@ private:
     bool fill_cell(const Index<D>& I, int wanted);
     void pour(const Emitter<D>& emitter, real dt);
     bool is_free(const Vec<D>& x) const;
-    void impose_emitters(real dt);
+    void impose_emitters(real dt, real Emitter<D>::Face::*speed);
+    void carry_emitters_velocity(real dt);
+    const Grid<std::uint8_t, D>& not_solved_for(real dt);
     void curvature();
-    void correct_surface();
+    void correct_surface(real dt);
     void momentum_to_faces(real dt);
     void forces(real dt);
     poisson::Report project(real dt);
-    void extend_velocity();
-    void momentum_to_markers();
+    void extend_velocity(real dt);
+    void momentum_to_markers(real dt);
 
     void advect_faces(real dt);
     void control_volume();
@@ -134,6 +127,7 @@ private:
     Vec<D> gravity_{};
     std::vector<Emitter<D>> emitters_;
     Grid<std::uint8_t, D> closed_, near_solid_;
+    Grid<std::uint8_t, D> not_solved_for_;  // closed, or an emitter's; allocated only if the scene has emitters
     FaceLists<D> in_solids_;
     std::array<std::vector<SolidFace<D>>, D> solid_faces_;  // in the order of in_solids_
 

@@ -52,16 +52,16 @@ bool Water<D>::is_free(const Vec<D>& x) const {
 }
 
 /// A jittered lattice of half cells moves with the emitter's velocity; its points become markers as they enter the emitter, all of them
-/// when it starts. So what is poured is area × speed × time, neither more where markers crowd nor less where they are slow. Markers have
-/// already moved: the lattice is where it is at the end of the step, and in the first one those count that have come out again.
+/// that stand in the air when it starts. So what is poured is area × speed × time, neither more where markers crowd nor less where they are
+/// slow. Markers have already moved: the lattice is where it is at the end of the step, and in the first one those count that have come out
+/// again.
 template <int D>
 void Water<D>::pour(const Emitter<D>& emitter, real dt) {
     const real from = std::max(state_.time, emitter.start), to = std::min(state_.time + dt, emitter.end);
     const real running = to - emitter.start;
     const bool starts = state_.time <= emitter.start;  // this step is the first in which it works
-    for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
-        if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
-            surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
+    // A point stands up to a half cell above the half cell that it is counted by: below the lowest one at a wall there is one more.
+    for_each_serial(emitter.lo - Index<D>::constant(1), emitter.hi, [&](const Index<D>& I) {
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             Vec<D> x;
             std::array<std::int64_t, D> k;
@@ -78,8 +78,13 @@ void Water<D>::pour(const Emitter<D>& emitter, real dt) {
             }
             const Vec<D> earlier = x - (to - from) * emitter.velocity;
             const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
-            if ((starts ? now || before : now && !before) && is_free(x)) markers_.add(x, emitter.velocity);
+            const bool enters = now && !before, fills = starts && before && !(surface_.phi(frame_.cell_of(earlier)) < 0);
+            if ((enters || fills) && is_free(x)) markers_.add(x, emitter.velocity);
         }
+    });
+    for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
+        if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
+            surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
     });
 }
 
@@ -97,18 +102,44 @@ void Water<D>::pour_and_drain(real dt) {
     markers_.sort(frame_);
 }
 
-/// Faces inside an emitter move with it.
+/// Faces of an emitter's cells have its velocity: that of the liquid inside, or what the pressure sees of it (emitters.hpp).
 template <int D>
-void Water<D>::impose_emitters(real dt) {
+void Water<D>::impose_emitters(real dt, real Emitter<D>::Face::*speed) {
     for (const auto& emitter : emitters_) {
         if (!emitter.works(state_.time, state_.time + dt)) continue;
         for (int a = 0; a < D; ++a)
-            for_each_cell(state_.u[a].extent(), [&](const Index<D>& I) {
-                if (!emitter.shape->contains(state_.u.face_centre(a, I))) return;
-                state_.u[a](I) = emitter.velocity[a];
-                known_[static_cast<std::size_t>(a)](I) = 1;
-            });
+            for (const auto& face : emitter.faces[static_cast<std::size_t>(a)]) {
+                state_.u[a][face.at] = face.*speed;
+                known_[static_cast<std::size_t>(a)][face.at] = 1;
+            }
+        sync_periodic(state_.u, state_.sides);
     }
+}
+
+/// So have the markers inside. FLIP gives them differences alone: what has been prescribed again and again would add up.
+template <int D>
+void Water<D>::carry_emitters_velocity(real dt) {
+    for (const auto& emitter : emitters_) {
+        if (!emitter.works(state_.time, state_.time + dt)) continue;
+        for (const std::size_t cell : emitter.cells)
+            for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p)
+                if (emitter.shape->contains(markers_.position(p)))
+                    for (int a = 0; a < D; ++a) markers_.v[static_cast<std::size_t>(a)][p] = emitter.velocity[a];
+    }
+}
+
+/// Cells without an unknown pressure: inside solids, and those of emitters that work in this step.
+template <int D>
+const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real dt) {
+    if (emitters_.empty()) return closed_;
+    if (closed_.empty())
+        not_solved_for_.fill(0);
+    else
+        not_solved_for_ = closed_;
+    for (const auto& emitter : emitters_)
+        if (emitter.works(state_.time, state_.time + dt))
+            for (const std::size_t cell : emitter.cells) not_solved_for_[cell] = 1;
+    return not_solved_for_;
 }
 
 /// Every few steps, deep in the liquid: cells with fewer than half of the markers get new ones in their empty half cells, cells with more
@@ -138,9 +169,11 @@ void Water<D>::redistribute_markers() {
     markers_.sort(frame_);
 }
 
-#define WEIR_INSTANTIATE(D)                        \
-    template void Water<D>::pour_and_drain(real);  \
-    template void Water<D>::impose_emitters(real); \
+#define WEIR_INSTANTIATE(D)                                                  \
+    template void Water<D>::pour_and_drain(real);                            \
+    template void Water<D>::impose_emitters(real, real Emitter<D>::Face::*); \
+    template void Water<D>::carry_emitters_velocity(real);                   \
+    template const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real);    \
     template void Water<D>::redistribute_markers();
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -132,11 +132,12 @@ Water<D>::Water(const scene::Scene& scene)
     if (solids_.any()) {
         closed_ = near_solid_ = Grid<std::uint8_t, D>(frame_.cells);
         place_solids(0);
+        refuse_buried_emitters(scene);
     }
     fill_with_liquid(scene);
     set_initial_velocity(state_, scene);
     set_fixed_faces();
-    extend_velocity();
+    extend_velocity(0);
     seed_markers();
 }
 
@@ -152,6 +153,7 @@ void Water<D>::read_emitters(const scene::Scene& scene) {
             emitter.end = table.number_or("end", infinity);
             emitters_.push_back(std::move(emitter));
         }
+    const std::size_t scene_emitters = emitters_.size();
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1}) {
             const auto& side = state_.sides.side(a, end);
@@ -164,13 +166,22 @@ void Water<D>::read_emitters(const scene::Scene& scene) {
             emitter.velocity = side.velocity;
             emitters_.push_back(std::move(emitter));
         }
-    for (auto& emitter : emitters_) {
-        emitter.lo = frame_.cells;
-        for (std::size_t i = 0; i < product(frame_.cells); ++i) {
-            const Index<D> I = frame_.index_of(i);
-            if (emitter.shape->distance(frame_.centre(I)) > 2 * norm(frame_.h)) continue;
-            for (int d = 0; d < D; ++d) emitter.lo[d] = std::min(emitter.lo[d], I[d]), emitter.hi[d] = std::max(emitter.hi[d], I[d] + 1);
-        }
+    for (std::size_t i = 0; i < emitters_.size(); ++i) {
+        emitters_[i].place(frame_);
+        if (emitters_[i].cells.empty() && i < scene_emitters)
+            scene.refuse("emitters[" + std::to_string(i) + "]", "the emitter lies outside the domain: nothing can leave it");
+    }
+    if (!emitters_.empty()) not_solved_for_ = Grid<std::uint8_t, D>(frame_.cells);
+}
+
+/// An emitter that solids cover wholly gives nothing.
+template <int D>
+void Water<D>::refuse_buried_emitters(const scene::Scene& scene) const {
+    const std::size_t named = scene.has("emitters") ? scene.root().tables("emitters").size() : 0;
+    for (std::size_t i = 0; i < named && !closed_.empty(); ++i) {
+        const auto& cells = emitters_[i].cells;
+        if (std::all_of(cells.begin(), cells.end(), [&](std::size_t cell) { return closed_[cell] != 0; }))
+            scene.refuse("emitters[" + std::to_string(i) + "]", "the emitter lies inside solids: nothing can leave it");
     }
 }
 
