@@ -46,6 +46,36 @@ void Markers<D>::add(const Vec<D>& at, const Vec<D>& velocity) {
         for (auto& array : c) array.push_back(0);
 }
 
+namespace {
+
+/// f(first, last) on blocks of [0, count).
+template <class F>
+void for_each_block(int count, F&& f) {
+    constexpr int block = 4096;
+    parallel_for(0, (count + block - 1) / block, [&](int b) { f(b * block, std::min((b + 1) * block, count)); });
+}
+
+}  // namespace
+
+/// As Frame::cell_of, for many.
+template <int D>
+void Markers<D>::find_cells(const Frame<D>& frame, int first, int last) {
+    std::array<const real*, D> at;
+    for (std::size_t d = 0; d < D; ++d) at[d] = x[d].data();
+    int* cell = cell_.data();
+    const Frame<D> here = frame;
+#pragma omp simd
+    for (int p = first; p < last; ++p) {
+        int linear = 0;
+        for (int d = D - 1; d >= 0; --d) {
+            const real s = (at[static_cast<std::size_t>(d)][p] - here.origin[d]) * here.inv_h[d];
+            const int i = static_cast<int>(std::floor(s)), last_cell = here.cells[d] - 1;
+            linear = linear * here.cells[d] + std::min(std::max(i, 0), last_cell);
+        }
+        cell[p] = linear;
+    }
+}
+
 template <int D>
 void Markers<D>::sort(const Frame<D>& frame) {
     const int n = static_cast<int>(count());
@@ -54,12 +84,7 @@ void Markers<D>::sort(const Frame<D>& frame) {
     from_.resize(static_cast<std::size_t>(n));
     scratch_.resize(static_cast<std::size_t>(n));
     cell_start_.assign(cells + 1, 0);
-    parallel_for(0, n, [&](int p) {
-        const Index<D> I = frame.cell_of(position(static_cast<std::size_t>(p)));
-        int at = I[D - 1];
-        for (int d = D - 2; d >= 0; --d) at = at * frame.cells[d] + I[d];
-        cell_[static_cast<std::size_t>(p)] = at;
-    });
+    for_each_block(n, [&](int first, int last) { find_cells(frame, first, last); });
     for (const int cell : cell_) ++cell_start_[static_cast<std::size_t>(cell) + 1];
     for (std::size_t i = 0; i < cells; ++i) cell_start_[i + 1] += cell_start_[i];
     for (int p = n - 1; p >= 0; --p)  // backwards, counting ends down: stable, and cell_start_ shifts into place
@@ -67,8 +92,14 @@ void Markers<D>::sort(const Frame<D>& frame) {
     for (std::size_t i = 0; i < cells; ++i) cell_start_[i] = cell_start_[i + 1];
     cell_start_[cells] = n;
     for_each_array([&](std::vector<real>& array) {
-        parallel_for(0, n, [&](int p) {
-            scratch_[static_cast<std::size_t>(p)] = array[static_cast<std::size_t>(from_[static_cast<std::size_t>(p)])];
+        for_each_block(n, [&](int first, int last) {
+            const int* from = from_.data();
+            const real* old = array.data();
+            real* sorted = scratch_.data();
+            for (int p = first; p < last; p += 8) {
+                __builtin_prefetch(old + std::min(p + 8192, n), 0, 2);
+                for (int q = p; q < std::min(p + 8, last); ++q) sorted[q] = old[from[q]];
+            }
         });
         array.swap(scratch_);
     });

@@ -69,6 +69,8 @@ public:
     std::size_t bytes() const;
 
 private:
+    void find_cells(const Frame<D>& frame, int first, int last);
+
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, cell_start_, from_;
     std::vector<real> scratch_;
@@ -100,10 +102,15 @@ void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
 template <int D>
 template <class F>
 void Markers<D>::for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const {
-    Index<D> I = frame.index_of(from);
-    for (std::size_t cell = from; cell < to; ++cell) {
-        if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
-        for (int d = 0; d < D && ++I[d] == frame.cells[d] && d < D - 1; ++d) I[d] = 0;
+    const auto n = static_cast<std::size_t>(frame.cells[0]);
+    for (std::size_t cell = from; cell < to;) {
+        const std::size_t row = cell - cell % n, next = std::min(row + n, to);
+        if (cell_start_[cell] < cell_start_[next]) {
+            Index<D> I = frame.index_of(cell);
+            for (; cell < next; ++cell, ++I[0])
+                if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
+        }
+        cell = next;
     }
 }
 
