@@ -45,6 +45,8 @@ public:
     const std::vector<Index<D>>& band() const { return band_; }
     /// Closed cells beside open ones, three deep.
     const std::vector<Index<D>>& skin() const { return skin_; }
+    /// 1.. in the band, 0 outside it.
+    const Grid<std::uint8_t, D>& layer() const { return layer_; }
     std::size_t layer_begin(int layer) const { return layer_start_[static_cast<std::size_t>(layer - 1)]; }
     std::size_t layer_end(int layer) const { return layer_start_[static_cast<std::size_t>(layer)]; }
 

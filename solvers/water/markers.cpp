@@ -91,6 +91,7 @@ void Markers<D>::sort(const Frame<D>& frame) {
         from_[static_cast<std::size_t>(--cell_start_[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1])] = p;
     for (std::size_t i = 0; i < cells; ++i) cell_start_[i] = cell_start_[i + 1];
     cell_start_[cells] = n;
+    find_rows(frame);
     for_each_array([&](std::vector<real>& array) {
         for_each_block(n, [&](int first, int last) {
             const int* from = from_.data();
@@ -106,6 +107,20 @@ void Markers<D>::sort(const Frame<D>& frame) {
 }
 
 template <int D>
+void Markers<D>::find_rows(const Frame<D>& frame) {
+    const auto n = static_cast<std::size_t>(frame.cells[0]);
+    rows_.resize(product(frame.cells) / n);
+    parallel_for(0, static_cast<int>(rows_.size()), [&](int row) {
+        const auto first = cell_start_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * n);
+        const auto last = first + static_cast<std::ptrdiff_t>(n);
+        Extent& extent = rows_[static_cast<std::size_t>(row)] = {frame.cells[0], 0};
+        if (*first == *last) return;
+        extent.begin = static_cast<int>(std::upper_bound(first, last, *first) - first) - 1;
+        extent.end = static_cast<int>(std::lower_bound(first, last, *last) - first);
+    });
+}
+
+template <int D>
 void Markers<D>::reserve(std::size_t capacity) {
     for_each_array([&](std::vector<real>& array) { array.reserve(capacity); });
     scratch_.reserve(capacity);
@@ -115,7 +130,8 @@ void Markers<D>::reserve(std::size_t capacity) {
 
 template <int D>
 std::size_t Markers<D>::bytes() const {
-    std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + scratch_.capacity() * sizeof(real);
+    std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + rows_.capacity() * sizeof(Extent) +
+                        scratch_.capacity() * sizeof(real);
     for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
     return total;
 }

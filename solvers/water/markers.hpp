@@ -56,6 +56,8 @@ public:
     /// The same for the cells [from, to) in memory, one after the other.
     template <class F>
     void for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const;
+    /// The part of a row of cells along x that holds markers; `row`: the place of its first cell in memory, over the length of rows.
+    const Extent& in_row(std::size_t row) const { return rows_[row]; }
     int in_cell(std::size_t cell) const { return cell_start_[cell + 1] - cell_start_[cell]; }
 
     /// f(array) for every array of one value a marker.
@@ -70,9 +72,11 @@ public:
 
 private:
     void find_cells(const Frame<D>& frame, int first, int last);
+    void find_rows(const Frame<D>& frame);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, cell_start_, from_;
+    std::vector<Extent> rows_;
     std::vector<real> scratch_;
 };
 
@@ -104,10 +108,12 @@ template <class F>
 void Markers<D>::for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const {
     const auto n = static_cast<std::size_t>(frame.cells[0]);
     for (std::size_t cell = from; cell < to;) {
-        const std::size_t row = cell - cell % n, next = std::min(row + n, to);
-        if (cell_start_[cell] < cell_start_[next]) {
+        const std::size_t row = cell / n, first = row * n, next = std::min(first + n, to);
+        const std::size_t last = std::min(next, first + static_cast<std::size_t>(rows_[row].end));
+        cell = std::max(cell, first + static_cast<std::size_t>(rows_[row].begin));
+        if (cell < last) {
             Index<D> I = frame.index_of(cell);
-            for (; cell < next; ++cell, ++I[0])
+            for (; cell < last; ++cell, ++I[0])
                 if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
         }
         cell = next;

@@ -50,21 +50,6 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
     has_liquid_ = std::any_of(liquid_.begin(), liquid_.end(), [](const Extent& extent) { return extent.begin < extent.end; });
 }
 
-/// As for_each_face_run, but of each run only the part that has liquid somewhere on one side or the other.
-template <int D>
-template <class F, class G>
-void SurfacePressure<D>::for_faces_of_liquid(int a, F&& inner, G&& outer) const {
-    const auto n = static_cast<std::size_t>(frame_.cells[0]), stride = static_cast<std::size_t>(A_.cells.stride(a));
-    const auto near = [&](std::size_t face, std::size_t cell, int count) {
-        const Extent &above = liquid_[cell / n], &below = liquid_[(cell - stride) / n];
-        const int first = static_cast<int>(cell % n), shift = a == 0 ? 1 : 0;
-        const int begin = std::max(first, std::min(above.begin, below.begin)),
-                  end = std::min(first + count, std::max(above.end, below.end) + shift);
-        if (begin < end) inner(face + static_cast<std::size_t>(begin - first), cell + static_cast<std::size_t>(begin - first), end - begin);
-    };
-    for_each_face_run(frame_.cells, a, near, outer);
-}
-
 /// Face weights: the open fraction between liquid cells, over θ where the surface cuts the line between the centres.
 template <int D>
 void SurfacePressure<D>::set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a) {

@@ -193,30 +193,31 @@ void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
     }
 }
 
-/// f(place, count) on the lines of faces along `a` within reach of markers, g(place, count) on all others.
+/// f(place, count) on that part of each line of faces which is within reach of markers, g(place, count) on the rest.
 template <int D, class F, class G>
-void for_lines_near(const Markers<D>& markers, const Frame<D>& frame, const Index<D>& extent, F&& f, G&& g) {
-    const auto row_holds = [&](const Index<D>& I) {
-        Index<D> J = I;
-        J[0] = 0;
-        std::size_t cell = 0;
-        for (int d = D - 1; d >= 0; --d) cell = cell * static_cast<std::size_t>(frame.cells[d]) + static_cast<std::size_t>(J[d]);
-        return markers.begin(cell) < markers.end(cell + static_cast<std::size_t>(frame.cells[0]) - 1);
+void for_faces_near(const Markers<D>& markers, const Frame<D>& frame, const Index<D>& extent, F&& f, G&& g) {
+    const auto row = [&](const Index<D>& I) {
+        std::size_t at = 0;
+        for (int d = D - 1; d > 0; --d) at = at * static_cast<std::size_t>(frame.cells[d]) + static_cast<std::size_t>(I[d]);
+        return markers.in_row(at);
     };
     for_each_line(extent, [&](const Index<D>& I, std::size_t at) {
-        const auto count = static_cast<std::size_t>(extent[0]);
-        bool near = false;
+        Extent near{frame.cells[0], 0};
         for (const int j : {-1, 0, 1}) {
             if constexpr (D == 2) {
-                near = near || row_holds(frame.near(I, 1, j));
+                near.join(row(frame.near(I, 1, j)));
             } else {
-                for (const int k : {-1, 0, 1}) near = near || row_holds(frame.near(frame.near(I, 1, j), 2, k));
+                for (const int k : {-1, 0, 1}) near.join(row(frame.near(frame.near(I, 1, j), 2, k)));
             }
         }
-        if (near)
-            f(at, count);
-        else
-            g(at, count);
+        const auto count = static_cast<std::size_t>(extent[0]);
+        if (near.empty()) return g(at, count);
+        const bool joins = frame.periodic(0) && (near.begin == 0 || near.end == frame.cells[0]);
+        const auto begin = static_cast<std::size_t>(joins ? 0 : std::max(0, near.begin - 1));
+        const auto end = static_cast<std::size_t>(joins ? extent[0] : std::min(extent[0], near.end + 1));
+        g(at, begin);
+        f(at + begin, end - begin);
+        g(at + end, count - end);
     });
 }
 
@@ -227,7 +228,7 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
                       std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known) {
     const auto nothing = [](std::size_t, std::size_t) {};
     for (auto& sum : sums.sum)
-        for_lines_near(
+        for_faces_near(
             markers, frame, sum.extent(),
             [&](std::size_t at, std::size_t count) { std::fill(sum.data() + at, sum.data() + at + count, FaceSum{}); }, nothing);
     const int planes = frame.cells[D - 1], slabs = (planes + slab_planes - 1) / slab_planes;
@@ -247,12 +248,17 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
     for (int a = 0; a < D; ++a) {
         const auto& sum = sums.sum[static_cast<std::size_t>(a)];
         auto& seen = known[static_cast<std::size_t>(a)];
-        for_lines_near(
+        for_faces_near(
             markers, frame, sum.extent(),
             [&](std::size_t at, std::size_t count) {
-                for (std::size_t i = at; i < at + count; ++i) {
-                    seen[i] = sum[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
-                    if (seen[i]) u[a][i] = sum[i].momentum / sum[i].weight;
+                const FaceSum* from = sum.data() + at;
+                std::uint8_t* mark = seen.data() + at;
+                real* mean = u[a].data() + at;
+#pragma omp simd
+                for (std::size_t i = 0; i < count; ++i) {
+                    const bool any = from[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
+                    mark[i] = any;
+                    mean[i] = any ? from[i].momentum / from[i].weight : mean[i];
                 }
             },
             [&](std::size_t at, std::size_t count) { std::fill(seen.data() + at, seen.data() + at + count, std::uint8_t{0}); });
@@ -281,12 +287,24 @@ void pic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& 
 }
 
 template <int D>
+void copy_faces_near(const Markers<D>& markers, const Frame<D>& frame, const MacVelocity<D>& u, MacVelocity<D>& to) {
+    for (int a = 0; a < D; ++a)
+        for_faces_near(
+            markers, frame, u[a].extent(),
+            [&](std::size_t at, std::size_t count) { std::copy_n(u[a].data() + at, count, to[a].data() + at); },
+            [](std::size_t, std::size_t) {});
+}
+
+template <int D>
 void flip_to_markers(const MacVelocity<D>& u, MacVelocity<D>& before, real beta, const Frame<D>& frame, Markers<D>& markers) {
     for (int a = 0; a < D; ++a)  // β v + Σ w (u − β u_before): one interpolation instead of two
-        for_lines_near(
+        for_faces_near(
             markers, frame, u[a].extent(),
             [&](std::size_t at, std::size_t count) {
-                for (std::size_t i = at; i < at + count; ++i) before[a][i] = u[a][i] - beta * before[a][i];
+                const real* now = u[a].data() + at;
+                real* then = before[a].data() + at;
+#pragma omp simd
+                for (std::size_t i = 0; i < count; ++i) then[i] = now[i] - beta * then[i];
             },
             [](std::size_t, std::size_t) {});
     gather(before, frame, beta, markers);
@@ -324,6 +342,7 @@ template class FaceSums<3>;
 #define WEIR_INSTANTIATE(D)                                                                                    \
     template void markers_to_faces(const Markers<D>&, const Frame<D>&, FaceSums<D>&, MacVelocity<D>&,          \
                                    std::array<Grid<std::uint8_t, D>, D>&);                                     \
+    template void copy_faces_near(const Markers<D>&, const Frame<D>&, const MacVelocity<D>&, MacVelocity<D>&); \
     template void pic_to_markers(const MacVelocity<D>&, const Frame<D>&, Markers<D>&);                         \
     template void flip_to_markers(const MacVelocity<D>&, MacVelocity<D>&, real, const Frame<D>&, Markers<D>&); \
     template void apic_to_markers(const MacVelocity<D>&, const Frame<D>&, Markers<D>&);
