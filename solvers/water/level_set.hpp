@@ -76,7 +76,9 @@ private:
     void grow_band();
     void fill_layer(int layer);
     real upwind_distance(const Index<D>& I, int layer) const;
+    real departed(const MacVelocity<D>& u, const Index<D>& I, real dt) const;
     real cubic(const Vec<D>& x) const;
+    real cubic_near(const Index<D>& I, const Vec<D>& d) const;
 
     Frame<D> frame_;
     int layers_ = 4, reach_ = 1;
@@ -90,5 +92,9 @@ private:
 /// Volume of {x in the unit cube about 0 : value + g·x < 0}. Inclusion and exclusion of corners (Scardovelli & Zaleski 2000).
 template <int D>
 real fraction_below_plane(real value, const Vec<D>& g);
+/// The mean of that over the half cells along every axis, in each of which φ is a plane: φ's changes a cell towards the lower and the
+/// upper neighbour are slope[0] and slope[1].
+template <int D>
+real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope);
 
 }  // namespace weir::water

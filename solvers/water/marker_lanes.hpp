@@ -15,6 +15,7 @@ namespace weir::water {
 
 inline constexpr int marker_lanes = 8;
 using Lanes = double __attribute__((vector_size(sizeof(double) * marker_lanes)));
+using LaneBytes = std::int8_t __attribute__((vector_size(marker_lanes)));
 using LaneIndex = std::int64_t __attribute__((vector_size(sizeof(double) * marker_lanes)));
 
 /// One point of each lane.
