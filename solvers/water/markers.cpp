@@ -1,6 +1,7 @@
 #include "water/markers.hpp"
 
 #include "core/parallel.hpp"
+#include "water/marker_lanes.hpp"
 
 namespace weir::water {
 
@@ -57,22 +58,21 @@ void for_each_block(int count, F&& f) {
 
 }  // namespace
 
-/// As Frame::cell_of, for many.
+/// As Frame::cell_of, for many; what would be rounded down to less than 0 is 0 anyway, so that rounding towards 0 does.
 template <int D>
 void Markers<D>::find_cells(const Frame<D>& frame, int first, int last) {
-    std::array<const real*, D> at;
-    for (std::size_t d = 0; d < D; ++d) at[d] = x[d].data();
-    int* cell = cell_.data();
-    const Frame<D> here = frame;
-#pragma omp simd
-    for (int p = first; p < last; ++p) {
-        int linear = 0;
+    using Cells = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * marker_lanes)));
+    for (int p = first; p < last; p += marker_lanes) {
+        const int count = std::min(marker_lanes, last - p);
+        const LaneVec<D> at = load_positions(*this, static_cast<std::size_t>(p), count);
+        Cells cell{};
         for (int d = D - 1; d >= 0; --d) {
-            const real s = (at[static_cast<std::size_t>(d)][p] - here.origin[d]) * here.inv_h[d];
-            const int i = static_cast<int>(std::floor(s)), last_cell = here.cells[d] - 1;
-            linear = linear * here.cells[d] + std::min(std::max(i, 0), last_cell);
+            const Lanes s = (at[static_cast<std::size_t>(d)] - frame.origin[d]) * frame.inv_h[d];
+            const Cells i = __builtin_convertvector(s, Cells), lowest{}, highest = lowest + (frame.cells[d] - 1);
+            const Cells least = i < lowest ? lowest : i;
+            cell = cell * frame.cells[d] + (least > highest ? highest : least);
         }
-        cell[p] = linear;
+        std::memcpy(cell_.data() + p, &cell, static_cast<std::size_t>(count) * sizeof(std::int32_t));
     }
 }
 
