@@ -193,7 +193,7 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
         plain += plain_axis;
     }
     // Inside solids, and where φ is flat, ∇φ says nothing: the plain mean of the finished neighbours.
-    return weights * frame_.h_min() > 1e-9 ? sum / weights : plain / count;
+    return weights * h_min_ > 1e-9 ? sum / weights : plain / count;
 }
 
 template <int D>

@@ -24,6 +24,7 @@ public:
     Extrapolation(const Frame<D>& frame, real steepest)
         : frame_(frame),
           steepest_(steepest),
+          h_min_(frame.h_min()),
           band_rows_(product(frame.cells) / static_cast<std::size_t>(frame.cells[0])),
           joins_(static_cast<std::size_t>(frame.cells[0]) + 1) {}
     /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer. It starts at the faces
@@ -46,7 +47,7 @@ private:
     bool step(Index<D>& I, int a, int axis, int by) const;
 
     Frame<D> frame_;
-    real steepest_ = 0;
+    real steepest_ = 0, h_min_ = 0;
     std::vector<Index<D>> front_, next_;
     std::vector<real> value_;
     std::vector<Extent> band_rows_;    // of every row of cells: its part in the layers from which the first front starts

@@ -11,7 +11,13 @@ constexpr real sure_side = 0.1;
 
 template <int D>
 LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
-    : phi(frame.cells), frame_(frame), layers_(reach + 4), reach_(reach), layer_(frame.cells), inside_(frame.cells) {
+    : phi(frame.cells),
+      frame_(frame),
+      layers_(reach + 4),
+      reach_(reach),
+      diagonal_(norm(frame.h)),
+      layer_(frame.cells),
+      inside_(frame.cells) {
     phi.fill(cap());
     layer_start_.assign(static_cast<std::size_t>(layers_) + 1, 0);
 }
@@ -192,7 +198,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
     refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
     markers.for_each_occupied_cell(frame_, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
-        if (phi(I) < -norm(frame_.h)) return;
+        if (phi(I) < -diagonal_) return;
         CellNodes<D> nodes;
         nodes.look_at(phi, frame_, I);
         for (std::size_t p = begin; p < end; p += marker_lanes) {
@@ -203,23 +209,33 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
         }
     });
     std::size_t count = 0;
-    for (std::size_t p = 0; p < markers.count(); ++p) {
-        if (!escaped_[p]) continue;
+    for_each_escaped([&](std::size_t p) {
         if (!frame_.cubic() && !escaped_across(markers.position(p))) {
             escaped_[p] = 0;
-            continue;
+            return;
         }
         ++count;
         join_sphere(markers.position(p), radius);
-    }
+    });
     return count;
+}
+
+/// f(p) for one after the other.
+template <int D>
+template <class F>
+void LevelSet<D>::for_each_escaped(F&& f) const {
+    const std::uint8_t *first = escaped_.data(), *end = first + escaped_.size();
+    for (auto* at = first; at < end; ++at) {
+        at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
+        if (!at) return;
+        f(static_cast<std::size_t>(at - first));
+    }
 }
 
 template <int D>
 std::size_t LevelSet<D>::count_airborne(const Markers<D>& markers) const {
     std::size_t count = 0;
-    for (std::size_t p = 0; p < markers.count(); ++p)
-        count += escaped_[p] && sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0;
+    for_each_escaped([&](std::size_t p) { count += sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0; });
     return count;
 }
 
@@ -263,6 +279,7 @@ void LevelSet<D>::restore(const Checkpoint& from) {
     from.get("surface.layer", layer_.values());
     from.get("surface.band", band_);
     from.get("surface.layer_start", layer_start_);
+    find_inside();
 }
 
 template <int D>

@@ -64,9 +64,12 @@ private:
     /// In cells that are no cubes a marker has escaped when it is outside by a part of the cell's width in that direction.
     bool escaped_across(const Vec<D>& x) const;
     void join_sphere(const Vec<D>& x, real radius);
+    template <class F>
+    void for_each_escaped(F&& f) const;
     /// φ's change a cell towards the lower and the upper neighbour; beyond a wall, and
     /// where a neighbour's distance is not known, it goes on as on the other side.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
+    void find_inside();
     void find_surface();
     void mark_changes_of_sign(const Index<D>& first, std::size_t at);
     template <class F>
@@ -82,7 +85,8 @@ private:
 
     Frame<D> frame_;
     int layers_ = 4, reach_ = 1;
-    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as find_surface() saw it
+    real diagonal_ = 0;                              // of a cell [m]
+    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as find_inside() saw it
     std::vector<Index<D>> band_, skin_;
     std::vector<std::size_t> layer_start_;
     std::vector<real> value_;

@@ -17,9 +17,8 @@ void LevelSet<D>::redistance() {
     for (int layer = 2; layer <= layers_; ++layer) fill_layer(layer);
 }
 
-/// Layer 1: the cells with a neighbour on the other side of the surface.
 template <int D>
-void LevelSet<D>::find_surface() {
+void LevelSet<D>::find_inside() {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         const real* from = phi.data() + at;
@@ -32,6 +31,13 @@ void LevelSet<D>::find_surface() {
         }
         for (; i < n; ++i) to[i] = from[i] < 0;
     });
+}
+
+/// Layer 1: the cells with a neighbour on the other side of the surface.
+template <int D>
+void LevelSet<D>::find_surface() {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    find_inside();
     for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t at) { mark_changes_of_sign(first, at); });
     band_.clear();
     for (std::size_t line = 0; line < layer_.size(); line += n) {
@@ -166,7 +172,8 @@ real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
     for (int d = 0; d < D; ++d) {
         real least = infinity;
         const auto see = [&](std::size_t at) {
-            if (layer_[at] != 0 && layer_[at] <= layer && (phi[at] < 0) == inside) least = std::min(least, std::abs(phi[at]));
+            const bool counts = (layer_[at] != 0) & (layer_[at] <= layer) & ((phi[at] < 0) == inside);
+            least = std::min(least, counts ? std::abs(phi[at]) : infinity);
         };
         if (is_inner(frame_, I, d)) {
             const auto stride = static_cast<std::size_t>(phi.stride(d));
@@ -296,7 +303,7 @@ std::array<Vec<D>, 2> LevelSet<D>::slopes(const Index<D>& I) const {
 template <int D>
 real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     const real here = phi(I) - shift;
-    if (std::abs(here) > norm(frame_.h)) return here < 0 ? 1 : 0;
+    if (std::abs(here) > diagonal_) return here < 0 ? 1 : 0;
     const auto slope = slopes(I);
     real most = 0;  // twice what φ changes by from the centre to any corner, at most
     for (int d = 0; d < D; ++d) most += std::max(std::abs(slope[0][d]), std::abs(slope[1][d]));
@@ -323,9 +330,14 @@ real LevelSet<D>::volume() const {
     const int planes = frame_.cells[D - 1];
     const std::size_t plane = phi.size() / static_cast<std::size_t>(planes);
     const real full = ordered_sum(planes, [&](int k) {
+        const std::size_t first = static_cast<std::size_t>(k) * plane;
+        const std::uint8_t *inside = inside_.data() + first, *layer = layer_.data() + first;
+        const std::uint8_t* closed = closed_.empty() ? nullptr : closed_.data() + first;
         int count = 0;
-        for (std::size_t i = static_cast<std::size_t>(k) * plane; i < static_cast<std::size_t>(k + 1) * plane; ++i)
-            count += phi[i] < 0 && layer_[i] == 0 && (closed_.empty() || closed_[i] == 0);
+        if (closed)
+            for (std::size_t i = 0; i < plane; ++i) count += inside[i] & (layer[i] == 0) & (closed[i] == 0);
+        else
+            for (std::size_t i = 0; i < plane; ++i) count += inside[i] & (layer[i] == 0);
         return real(count);
     });
     return frame_.cell_volume() * (full + sum_over_band(band_.size(), [&](const Index<D>& I) { return fraction(I); }));
@@ -344,6 +356,8 @@ template real fraction_below_plane(real, const Vec<2>&);
 template real fraction_below_plane(real, const Vec<3>&);
 template real fraction_of_halves(real, const std::array<Vec<2>, 2>&);
 template real fraction_of_halves(real, const std::array<Vec<3>, 2>&);
+template void LevelSet<2>::find_inside();
+template void LevelSet<3>::find_inside();
 template void LevelSet<2>::redistance();
 template void LevelSet<3>::redistance();
 template real LevelSet<2>::fraction(const Index<2>&, real) const;

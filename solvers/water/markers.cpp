@@ -83,14 +83,13 @@ void Markers<D>::sort(const Frame<D>& frame) {
     cell_.resize(static_cast<std::size_t>(n));
     from_.resize(static_cast<std::size_t>(n));
     scratch_.resize(static_cast<std::size_t>(n));
-    cell_start_.assign(cells + 1, 0);
+    cell_start_.assign(cells + 2, 0);
     for_each_block(n, [&](int first, int last) { find_cells(frame, first, last); });
-    for (const int cell : cell_) ++cell_start_[static_cast<std::size_t>(cell) + 1];
-    for (std::size_t i = 0; i < cells; ++i) cell_start_[i + 1] += cell_start_[i];
-    for (int p = n - 1; p >= 0; --p)  // backwards, counting ends down: stable, and cell_start_ shifts into place
-        from_[static_cast<std::size_t>(--cell_start_[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1])] = p;
-    for (std::size_t i = 0; i < cells; ++i) cell_start_[i] = cell_start_[i + 1];
-    cell_start_[cells] = n;
+    for (const int cell : cell_) ++cell_start_[static_cast<std::size_t>(cell) + 2];
+    for (std::size_t i = 2; i <= cells; ++i) cell_start_[i] += cell_start_[i - 1];
+    for (int p = 0; p < n; ++p)  // the next free place of a cell is the start of the one behind it, until that is its own
+        from_[static_cast<std::size_t>(cell_start_[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1]++)] = p;
+    cell_start_.pop_back();
     find_rows(frame);
     for_each_array([&](std::vector<real>& array) {
         for_each_block(n, [&](int first, int last) {
