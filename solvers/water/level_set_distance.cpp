@@ -124,8 +124,13 @@ void LevelSet<D>::grow_band() {
     }
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         const real far = cap();
-        for (std::size_t i = at; i < at + static_cast<std::size_t>(frame_.cells[0]); ++i)
-            phi[i] = layer_[i] ? phi[i] : phi[i] < 0 ? -far : far;
+        real* line = phi.data() + at;
+        const std::uint8_t* layer = layer_.data() + at;
+#pragma omp simd
+        for (int i = 0; i < frame_.cells[0]; ++i) {
+            const real outside = line[i] < 0 ? -far : far;
+            line[i] = layer[i] != 0 ? line[i] : outside;
+        }
     });
 }
 

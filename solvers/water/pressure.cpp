@@ -1,5 +1,7 @@
 #include "water/pressure.hpp"
 
+#include "water/marker_lanes.hpp"
+
 #include <algorithm>
 
 namespace weir::water {
@@ -41,7 +43,14 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         const real* phi = surface.phi.data() + at;
         Cell* cell = A_.cells.data() + at;
-        for (int i = 0; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
+        int first = 0;
+        for (; first + marker_lanes <= n; first += marker_lanes) {
+            const auto below = __builtin_convertvector(load_lanes(phi + first, marker_lanes) < Lanes{} + thin, LaneBytes);
+            const LaneBytes kind =
+                below ? LaneBytes{} + static_cast<std::int8_t>(Cell::fluid) : LaneBytes{} + static_cast<std::int8_t>(Cell::air);
+            std::memcpy(cell + first, &kind, sizeof kind);
+        }
+        for (int i = first; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
         for (int i = 0; !closed.empty() && i < n; ++i) cell[i] = closed[at + static_cast<std::size_t>(i)] ? Cell::solid : cell[i];
         Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
         while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;

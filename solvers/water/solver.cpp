@@ -136,7 +136,9 @@ void Water<D>::mark_liquid_faces() {
         const auto stride = state_.cells.stride(a);
         const auto between_cells = [&](std::size_t face, std::size_t cell, int count) {
             const Cell *above = state_.cells.data() + cell, *below = above - stride;
-            for (int i = 0; i < count; ++i) known[face + static_cast<std::size_t>(i)] = above[i] == Cell::fluid || below[i] == Cell::fluid;
+            std::uint8_t* mark = known + face;
+#pragma omp simd
+            for (int i = 0; i < count; ++i) mark[i] = (above[i] == Cell::fluid) | (below[i] == Cell::fluid);
         };
         const auto on_side = [&](const Index<D>& I, std::size_t face) {
             const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
