@@ -177,7 +177,7 @@ real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
     for (int d = 0; d < D; ++d) {
         real least = infinity;
         const auto see = [&](std::size_t at) {
-            const bool counts = (layer_[at] != 0) & (layer_[at] <= layer) & ((phi[at] < 0) == inside);
+            const bool counts = layer_[at] != 0 && layer_[at] <= layer && (phi[at] < 0) == inside;
             least = std::min(least, counts ? std::abs(phi[at]) : infinity);
         };
         if (is_inner(frame_, I, d)) {
