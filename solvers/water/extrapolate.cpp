@@ -3,6 +3,8 @@
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 
+#include <cstring>
+
 namespace weir::water {
 
 namespace {
@@ -22,7 +24,73 @@ bool Extrapolation<D>::step(Index<D>& I, int a, int axis, int by) const {
     return true;
 }
 
-/// A face that is unknown and has a known neighbour is of the first layer.
+template <int D>
+void Extrapolation<D>::find_band_rows(const LevelSet<D>& surface, int layers) {
+    std::fill(band_rows_.begin(), band_rows_.end(), Extent{frame_.cells[0], 0});
+    for (std::size_t i = 0; i < surface.layer_end(layers); ++i) {
+        Index<D> I = surface.band()[i];
+        const int x = I[0];
+        I[0] = 0;
+        band_rows_[surface.phi.linear(I) / static_cast<std::size_t>(frame_.cells[0])].join({x, x + 1});
+    }
+}
+
+/// A face that is unknown and has a known neighbour is of the first layer: those of the band's first `layers`, row by row.
+template <int D>
+void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers) {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    const std::ptrdiff_t stride = surface.phi.stride(a);
+    const auto start_row = [&](Index<D> I) {
+        const bool has_above = a == 0 || I[a] < frame_.cells[a], has_below = a == 0 || I[a] > 0;
+        const std::ptrdiff_t cells = static_cast<std::ptrdiff_t>(surface.phi.linear(I));  // of the row above; it need not be there
+        Extent extent{frame_.cells[0], 0};
+        if (has_above) extent.join(band_rows_[static_cast<std::size_t>(cells) / n]);
+        if (has_below && a > 0) extent.join(band_rows_[static_cast<std::size_t>(cells - stride) / n]);
+        if (extent.empty()) return;
+        if (a == 0) ++extent.end;
+        const std::uint8_t* layer = surface.layer().data() + cells;
+        std::uint8_t* face = mark.data() + mark.linear(I);
+        std::uint8_t* joins = joins_.data();
+        const auto near = [&](const std::uint8_t* of, int i) { return of[i] >= 1 && of[i] <= layers; };
+        std::fill(joins + extent.begin, joins + extent.end, std::uint8_t{0});
+        const auto see = [&](const std::uint8_t* other, int from, int to) {
+            for (int i = from; i < to; ++i) joins[i] = static_cast<std::uint8_t>(joins[i] | (other[i] == 1));
+        };
+        const int last = mark.extent()[0] - 1;
+        see(face - 1, std::max(extent.begin, 1), extent.end);
+        see(face + 1, extent.begin, std::min(extent.end, last));
+        for (const int end : {0, last}) {  // around a periodic axis
+            if (!frame_.periodic(0) || end < extent.begin || end >= extent.end) continue;
+            for (const int by : {-1, 1}) {
+                Index<D> J = I;
+                J[0] = end;
+                if (step(J, a, 0, by)) joins[end] = static_cast<std::uint8_t>(joins[end] | (face[J[0]] == 1));
+            }
+        }
+        for (int d = 1; d < D; ++d)
+            for (const int by : {-1, 1})
+                if (Index<D> J = I; step(J, a, d, by)) see(mark.data() + mark.linear(J), extent.begin, extent.end);
+        for (int i = extent.begin; i < extent.end; ++i) {
+            const bool wanted = a == 0 ? (i <= last - 1 && near(layer, i)) || (i > 0 && near(layer - 1, i))
+                                       : (has_above && near(layer, i)) || (has_below && near(layer - stride, i));
+            joins[i] = static_cast<std::uint8_t>(joins[i] & (face[i] == 0) & wanted);
+        }
+        for (const std::uint8_t *at = joins + extent.begin, *end = joins + extent.end;
+             (at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)))) != nullptr; ++at) {
+            I[0] = static_cast<int>(at - joins);
+            face[I[0]] = queued;
+            front_.push_back(I);
+        }
+    };
+    Index<D> I{};
+    const Index<D>& extent = mark.extent();
+    for (int k = 0; k < (D == 2 ? 1 : extent[D - 1]); ++k)
+        for (int j = 0; j < extent[1]; ++j) {
+            I[D - 1] = k, I[1] = j;
+            start_row(I);
+        }
+}
+
 template <int D>
 void Extrapolation<D>::join_front(Grid<std::uint8_t, D>& mark, int a, const Index<D>& face) {
     auto& m = mark(face);
@@ -37,6 +105,30 @@ void Extrapolation<D>::join_front(Grid<std::uint8_t, D>& mark, int a, const Inde
         }
 }
 
+/// The next front: all faces beside this one that have not been seen.
+template <int D>
+void Extrapolation<D>::grow_front(Grid<std::uint8_t, D>& mark, int a) {
+    next_.clear();
+    for (const Index<D>& I : front_) {
+        std::uint8_t* own = &mark(I);
+        for (int axis = 0; axis < D; ++axis)
+            for (const int by : {-1, 1}) {
+                Index<D> J = I;
+                J[axis] += by;
+                std::uint8_t* other = own + by * mark.stride(axis);
+                if (J[axis] <= 0 || J[axis] >= frame_.cells[axis]) {
+                    J = I;
+                    if (!step(J, a, axis, by)) continue;
+                    other = &mark(J);
+                }
+                if (*other != 0) continue;
+                *other = queued;
+                next_.push_back(J);
+            }
+    }
+    front_.swap(next_);
+}
+
 /// What u changed by from the face behind J to J. The next face goes on like this (Aslam 2004: linear), as far as the second layer, which
 /// is as far as cells beside the surface look. It goes on only where the flow is smooth: by the smaller of the last two changes (minmod),
 /// and by at most 0.3 |u|. And it claims that liquid which comes there has accelerated by u du/dx: in a jet, whose tip only flies, that
@@ -45,32 +137,55 @@ void Extrapolation<D>::join_front(Grid<std::uint8_t, D>& mark, int a, const Inde
 template <int D>
 real Extrapolation<D>::slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by,
                              int layer) const {
-    const real here = u(J), speed = std::abs(here), most = std::min(0.3 * speed, steepest_ * frame_.h[axis] / std::max(speed, 1e-300));
+    const real here = u(J);
     const auto finished_behind = [&] { return step(J, a, axis, -by) && mark(J) != 0 && mark(J) <= layer; };
     if (layer > 2 || !finished_behind()) return 0;
     const real behind = u(J);
     if (!finished_behind()) return 0;
-    const real last = here - behind, before = behind - u(J);
+    return smooth_change(here, behind, u(J), axis);
+}
+
+template <int D>
+real Extrapolation<D>::smooth_change(real here, real behind, real further, int axis) const {
+    const real last = here - behind, before = behind - further;
     if (last * before <= 0) return 0;
+    const real speed = std::abs(here), most = std::min(0.3 * speed, steepest_ * frame_.h[axis] / std::max(speed, 1e-300));
     return std::clamp(std::abs(last) < std::abs(before) ? last : before, -most, most);
 }
 
+/// Along an axis where three faces on either side are inside the domain, neighbours are where memory says; else they are asked for.
 template <int D>
 real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
                              int layer) const {
     const auto phi_at = [&](const Index<D>& face) { return phi(frame_.near(face, a, -1)) + phi(frame_.near(face, a, 0)); };
-    const real here = phi_at(I);
+    const std::size_t own = mark.linear(I);
+    const real *below = &phi(frame_.near(I, a, -1)), *above = &phi(frame_.near(I, a, 0)), here = *below + *above;
     real weights = 0, sum = 0, plain = 0;
     int count = 0;
     for (int axis = 0; axis < D; ++axis) {
         real plain_axis = 0, weights_axis = 0, sum_axis = 0;  // added axis by axis, the two sides as a pair: symmetric under mirrors
+        const bool inner = I[axis] >= 3 && I[axis] + 3 < mark.extent()[axis];
         for (const int by : {-1, 1}) {
-            Index<D> J = I;
-            if (!step(J, a, axis, by) || mark(J) == 0 || mark(J) > layer) continue;
-            const real w = std::max(0.0, here - phi_at(J)) * frame_.inv_h[axis] * frame_.inv_h[axis];
+            real there, speed, change = 0;
+            if (inner) {
+                const std::ptrdiff_t next = by * mark.stride(axis), cells = by * phi.stride(axis);
+                const std::uint8_t* m = mark.data() + own + next;
+                const auto finished = [&](std::ptrdiff_t at) { return m[at] != 0 && m[at] <= layer; };
+                if (!finished(0)) continue;
+                const real* v = u.data() + own + next;
+                there = below[cells] + above[cells], speed = *v;
+                if (layer <= 2 && here > there && finished(next) && finished(2 * next))
+                    change = smooth_change(v[0], v[next], v[2 * next], axis);
+            } else {
+                Index<D> J = I;
+                if (!step(J, a, axis, by) || mark(J) == 0 || mark(J) > layer) continue;
+                there = phi_at(J), speed = u(J);
+                change = slope(u, mark, J, a, axis, -by, layer);
+            }
+            const real w = std::max(0.0, here - there) * frame_.inv_h[axis] * frame_.inv_h[axis];
             weights_axis += w;
-            sum_axis += w * (u(J) + slope(u, mark, J, a, axis, -by, layer));
-            plain_axis += u(J);
+            sum_axis += w * (speed + change);
+            plain_axis += speed;
             ++count;
         }
         weights += weights_axis;
@@ -78,22 +193,18 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
         plain += plain_axis;
     }
     // Inside solids, and where φ is flat, ∇φ says nothing: the plain mean of the finished neighbours.
-    return weights * frame_.h_min() > 1e-9 ? sum / weights : plain / count;
+    return weights * h_min_ > 1e-9 ? sum / weights : plain / count;
 }
 
 template <int D>
 void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const LevelSet<D>& surface, const FaceLists<D>& in_solids,
                                   int layers) {
-    const std::size_t near = surface.layer_end(std::min(3, surface.layers()));
+    const int near = std::min(3, surface.layers());
+    find_band_rows(surface, near);
     for (int a = 0; a < D; ++a) {
         auto& mark = marks[static_cast<std::size_t>(a)];
         front_.clear();
-        for (std::size_t i = 0; i < near; ++i)
-            for (const int side : {0, 1}) {
-                Index<D> face = surface.band()[i];
-                face[a] += side;
-                join_front(mark, a, face);
-            }
+        start_front(mark, a, surface, near);
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
         for (int layer = 1; layer <= layers && !front_.empty(); ++layer) {
             const int count = static_cast<int>(front_.size());
@@ -106,17 +217,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
                 u[a](front_[i]) = value_[i];
                 mark(front_[i]) = static_cast<std::uint8_t>(layer + 1);
             }
-            next_.clear();
-            if (layer < layers)
-                for (const Index<D>& I : front_)
-                    for (int axis = 0; axis < D; ++axis)
-                        for (const int by : {-1, 1}) {
-                            Index<D> J = I;
-                            if (!step(J, a, axis, by) || mark(J) != 0) continue;
-                            mark(J) = queued;
-                            next_.push_back(J);
-                        }
-            front_.swap(next_);
+            if (layer < layers) grow_front(mark, a);
         }
     }
 }

@@ -21,23 +21,37 @@ class Extrapolation {
 public:
     Extrapolation() = default;
     /// `steepest`: what linear continuation may claim of acceleration along the flow [m/s²], see slope().
-    Extrapolation(const Frame<D>& frame, real steepest) : frame_(frame), steepest_(steepest) {}
+    Extrapolation(const Frame<D>& frame, real steepest)
+        : frame_(frame),
+          steepest_(steepest),
+          h_min_(frame.h_min()),
+          band_rows_(product(frame.cells) / static_cast<std::size_t>(frame.cells[0])),
+          joins_(static_cast<std::size_t>(frame.cells[0]) + 1) {}
     /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer. It starts at the faces
     /// of cells near the surface and at `in_solids`; anywhere else no one asks.
     void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, const FaceLists<D>& in_solids, int layers);
-    std::size_t bytes() const { return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real); }
+    std::size_t bytes() const {
+        return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) +
+               band_rows_.capacity() * sizeof(Extent) + joins_.capacity();
+    }
 
 private:
+    void find_band_rows(const LevelSet<D>& surface, int layers);
+    void start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers);
     void join_front(Grid<std::uint8_t, D>& mark, int a, const Index<D>& face);
+    void grow_front(Grid<std::uint8_t, D>& mark, int a);
     real value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
                int layer) const;
     real slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by, int layer) const;
+    real smooth_change(real here, real behind, real further, int axis) const;
     bool step(Index<D>& I, int a, int axis, int by) const;
 
     Frame<D> frame_;
-    real steepest_ = 0;
+    real steepest_ = 0, h_min_ = 0;
     std::vector<Index<D>> front_, next_;
     std::vector<real> value_;
+    std::vector<Extent> band_rows_;    // of every row of cells: its part in the layers from which the first front starts
+    std::vector<std::uint8_t> joins_;  // of one row of faces
 };
 
 }  // namespace weir::water

@@ -106,6 +106,13 @@ struct Frame {
     }
 };
 
+/// Entries [begin, end) of a line; begin lies behind end where there are none.
+struct Extent {
+    int begin, end;
+    bool empty() const { return begin >= end; }
+    void join(const Extent& other) { begin = std::min(begin, other.begin), end = std::max(end, other.end); }
+};
+
 /// f(I, at) for the first entry I of every line along x of a box, and its place in memory; threaded over the slowest axis.
 template <int D, class F>
 void for_each_line(const Index<D>& extent, F&& f) {

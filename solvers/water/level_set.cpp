@@ -11,7 +11,13 @@ constexpr real sure_side = 0.1;
 
 template <int D>
 LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
-    : phi(frame.cells), frame_(frame), layers_(reach + 4), reach_(reach), layer_(frame.cells), inside_(frame.cells) {
+    : phi(frame.cells),
+      frame_(frame),
+      layers_(reach + 4),
+      reach_(reach),
+      diagonal_(norm(frame.h)),
+      layer_(frame.cells),
+      inside_(frame.cells) {
     phi.fill(cap());
     layer_start_.assign(static_cast<std::size_t>(layers_) + 1, 0);
 }
@@ -67,13 +73,93 @@ void LevelSet<D>::advect(const MacVelocity<D>& u, real dt) {
         const Index<D>& I = band_[static_cast<std::size_t>(i)];
         real& to = value_[static_cast<std::size_t>(i)];
         to = phi(I);
-        if (std::abs(to) < near) to = cubic(trace(u, frame_, frame_.centre(I), -dt, Trace::rk2));
+        if (std::abs(to) < near) to = departed(u, I, dt);
     });
     parallel_for(0, static_cast<int>(band_.size()),
                  [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }
 
-/// Catmull–Rom along each axis in turn; exact at samples.
+namespace {
+
+/// Weights of four equidistant samples at part f of the way between the middle two (Catmull & Rom 1974); exact at samples.
+std::array<real, 4> catmull_rom(real f) {
+    return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
+}
+
+/// Linear interpolation of component a at d [cells] from the centre of cell I, at most half a cell away; both sides of I are inside.
+template <int D>
+real face_near(const Grid<real, D>& u, int a, const Index<D>& I, const Vec<D>& d) {
+    std::array<std::ptrdiff_t, 3> stride{};
+    std::array<real, 3> f{};
+    const real* at = &u(I);
+    for (int axis = 0; axis < D; ++axis) {
+        const auto s = static_cast<std::size_t>(axis);
+        stride[s] = u.stride(axis);
+        f[s] = axis == a ? 0.5 + d[axis] : d[axis] < 0 ? 1 + d[axis] : d[axis];
+        if (axis != a && d[axis] < 0) at -= stride[s];
+    }
+    const auto row = [&](const real* q) { return q[0] + f[0] * (q[1] - q[0]); };
+    const auto plane = [&](const real* q) {
+        const real lower = row(q);
+        return lower + f[1] * (row(q + stride[1]) - lower);
+    };
+    if constexpr (D == 2) return plane(at);
+    const real below = plane(at);
+    return below + f[2] * (plane(at + stride[2]) - below);
+}
+
+}  // namespace
+
+/// φ where cell I's centre was dt ago. Inside the domain the trace starts at the mean of the cell's faces and stays near them: no place in
+/// the grid is searched for.
+template <int D>
+real LevelSet<D>::departed(const MacVelocity<D>& u, const Index<D>& I, real dt) const {
+    bool inner = true;
+    for (int d = 0; d < D; ++d) inner = inner && I[d] >= 2 && I[d] + 2 < frame_.cells[d];
+    Vec<D> half, moved;
+    for (int a = 0; a < D && inner; ++a) {
+        const real* face = &u[a](I);
+        half[a] = -0.5 * dt * frame_.inv_h[a] * (0.5 * (face[0] + face[u[a].stride(a)]));
+        inner = std::abs(half[a]) <= 0.5;
+    }
+    for (int a = 0; a < D && inner; ++a) {
+        moved[a] = -dt * frame_.inv_h[a] * face_near(u[a], a, I, half);
+        inner = std::abs(moved[a]) <= 1;
+    }
+    return inner ? cubic_near(I, moved) : cubic(trace(u, frame_, frame_.centre(I), -dt, Trace::rk2));
+}
+
+/// φ at d [cells] from the centre of cell I, at most one cell away; two cells on either side of I are inside. As cubic(), but four samples
+/// along x are one vector.
+template <int D>
+real LevelSet<D>::cubic_near(const Index<D>& I, const Vec<D>& d) const {
+    using Quad = double __attribute__((vector_size(32)));
+    std::array<std::array<real, 4>, D> w;
+    const real* at = &phi(I);
+    for (int axis = 0; axis < D; ++axis) {
+        w[static_cast<std::size_t>(axis)] = catmull_rom(d[axis] < 0 ? 1 + d[axis] : d[axis]);
+        at -= (d[axis] < 0 ? 2 : 1) * phi.stride(axis);
+    }
+    const auto plane = [&](const real* q) {
+        Quad sum{};
+        for (std::size_t j = 0; j < 4; ++j, q += phi.stride(1)) {
+            Quad row;
+            std::memcpy(&row, q, sizeof row);
+            sum += w[1][j] * row;
+        }
+        return sum;
+    };
+    Quad sum;
+    if constexpr (D == 2) {
+        sum = plane(at);
+    } else {
+        sum = Quad{};
+        for (std::size_t k = 0; k < 4; ++k, at += phi.stride(2)) sum += w[2][k] * plane(at);
+    }
+    return ((w[0][0] * sum[0] + w[0][1] * sum[1]) + w[0][2] * sum[2]) + w[0][3] * sum[3];
+}
+
+/// Catmull–Rom along each axis in turn, anywhere.
 template <int D>
 real LevelSet<D>::cubic(const Vec<D>& x) const {
     std::array<std::array<std::ptrdiff_t, 4>, D> at;
@@ -86,7 +172,7 @@ real LevelSet<D>::cubic(const Vec<D>& x) const {
             I[d] = static_cast<int>(floor);
             at[axis][static_cast<std::size_t>(k)] = phi.stride(d) * frame_.near(I, d, k - 1)[d];
         }
-        w[axis] = {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
+        w[axis] = catmull_rom(f);
     }
     const auto plane = [&](const real* base) {
         real sum = 0;
@@ -112,7 +198,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
     refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
     markers.for_each_occupied_cell(frame_, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
-        if (phi(I) < -norm(frame_.h)) return;
+        if (phi(I) < -diagonal_) return;
         CellNodes<D> nodes;
         nodes.look_at(phi, frame_, I);
         for (std::size_t p = begin; p < end; p += marker_lanes) {
@@ -123,23 +209,33 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
         }
     });
     std::size_t count = 0;
-    for (std::size_t p = 0; p < markers.count(); ++p) {
-        if (!escaped_[p]) continue;
+    for_each_escaped([&](std::size_t p) {
         if (!frame_.cubic() && !escaped_across(markers.position(p))) {
             escaped_[p] = 0;
-            continue;
+            return;
         }
         ++count;
         join_sphere(markers.position(p), radius);
-    }
+    });
     return count;
+}
+
+/// f(p) for one after the other.
+template <int D>
+template <class F>
+void LevelSet<D>::for_each_escaped(F&& f) const {
+    const std::uint8_t *first = escaped_.data(), *end = first + escaped_.size();
+    for (auto* at = first; at < end; ++at) {
+        at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
+        if (!at) return;
+        f(static_cast<std::size_t>(at - first));
+    }
 }
 
 template <int D>
 std::size_t LevelSet<D>::count_airborne(const Markers<D>& markers) const {
     std::size_t count = 0;
-    for (std::size_t p = 0; p < markers.count(); ++p)
-        count += escaped_[p] && sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0;
+    for_each_escaped([&](std::size_t p) { count += sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0; });
     return count;
 }
 
@@ -183,6 +279,7 @@ void LevelSet<D>::restore(const Checkpoint& from) {
     from.get("surface.layer", layer_.values());
     from.get("surface.band", band_);
     from.get("surface.layer_start", layer_start_);
+    find_inside();
 }
 
 template <int D>

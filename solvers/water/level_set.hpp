@@ -45,6 +45,8 @@ public:
     const std::vector<Index<D>>& band() const { return band_; }
     /// Closed cells beside open ones, three deep.
     const std::vector<Index<D>>& skin() const { return skin_; }
+    /// 1.. in the band, 0 outside it.
+    const Grid<std::uint8_t, D>& layer() const { return layer_; }
     std::size_t layer_begin(int layer) const { return layer_start_[static_cast<std::size_t>(layer - 1)]; }
     std::size_t layer_end(int layer) const { return layer_start_[static_cast<std::size_t>(layer)]; }
 
@@ -62,9 +64,12 @@ private:
     /// In cells that are no cubes a marker has escaped when it is outside by a part of the cell's width in that direction.
     bool escaped_across(const Vec<D>& x) const;
     void join_sphere(const Vec<D>& x, real radius);
+    template <class F>
+    void for_each_escaped(F&& f) const;
     /// φ's change a cell towards the lower and the upper neighbour; beyond a wall, and
     /// where a neighbour's distance is not known, it goes on as on the other side.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
+    void find_inside();
     void find_surface();
     void mark_changes_of_sign(const Index<D>& first, std::size_t at);
     template <class F>
@@ -74,11 +79,14 @@ private:
     void grow_band();
     void fill_layer(int layer);
     real upwind_distance(const Index<D>& I, int layer) const;
+    real departed(const MacVelocity<D>& u, const Index<D>& I, real dt) const;
     real cubic(const Vec<D>& x) const;
+    real cubic_near(const Index<D>& I, const Vec<D>& d) const;
 
     Frame<D> frame_;
     int layers_ = 4, reach_ = 1;
-    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as find_surface() saw it
+    real diagonal_ = 0;                              // of a cell [m]
+    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as find_inside() saw it
     std::vector<Index<D>> band_, skin_;
     std::vector<std::size_t> layer_start_;
     std::vector<real> value_;
@@ -88,5 +96,9 @@ private:
 /// Volume of {x in the unit cube about 0 : value + g·x < 0}. Inclusion and exclusion of corners (Scardovelli & Zaleski 2000).
 template <int D>
 real fraction_below_plane(real value, const Vec<D>& g);
+/// The mean of that over the half cells along every axis, in each of which φ is a plane: φ's changes a cell towards the lower and the
+/// upper neighbour are slope[0] and slope[1].
+template <int D>
+real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope);
 
 }  // namespace weir::water

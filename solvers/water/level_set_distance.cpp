@@ -2,6 +2,7 @@
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 #include "water/level_set.hpp"
+#include "water/marker_lanes.hpp"
 
 #include <cstring>
 
@@ -16,13 +17,27 @@ void LevelSet<D>::redistance() {
     for (int layer = 2; layer <= layers_; ++layer) fill_layer(layer);
 }
 
+template <int D>
+void LevelSet<D>::find_inside() {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
+        const real* from = phi.data() + at;
+        std::uint8_t* to = inside_.data() + at;
+        std::size_t i = 0;
+        for (; i + marker_lanes <= n; i += marker_lanes) {
+            const auto below = __builtin_convertvector(load_lanes(from + i, marker_lanes) < Lanes{}, LaneBytes);
+            const LaneBytes flag = below & 1;
+            std::memcpy(to + i, &flag, sizeof flag);
+        }
+        for (; i < n; ++i) to[i] = from[i] < 0;
+    });
+}
+
 /// Layer 1: the cells with a neighbour on the other side of the surface.
 template <int D>
 void LevelSet<D>::find_surface() {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
-    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
-        for (std::size_t i = at; i < at + n; ++i) inside_[i] = phi[i] < 0;
-    });
+    find_inside();
     for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t at) { mark_changes_of_sign(first, at); });
     band_.clear();
     for (std::size_t line = 0; line < layer_.size(); line += n) {
@@ -109,8 +124,13 @@ void LevelSet<D>::grow_band() {
     }
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         const real far = cap();
-        for (std::size_t i = at; i < at + static_cast<std::size_t>(frame_.cells[0]); ++i)
-            phi[i] = layer_[i] ? phi[i] : phi[i] < 0 ? -far : far;
+        real* line = phi.data() + at;
+        const std::uint8_t* layer = layer_.data() + at;
+#pragma omp simd
+        for (int i = 0; i < frame_.cells[0]; ++i) {
+            const real outside = line[i] < 0 ? -far : far;
+            line[i] = layer[i] != 0 ? line[i] : outside;
+        }
     });
 }
 
@@ -151,18 +171,29 @@ void LevelSet<D>::fill_layer(int layer) {
 /// Solves Σ_d max(0, (φ − φ_d)/h_d)² = 1 with φ_d the nearer neighbour of the same side along d, in layers up to `layer`.
 template <int D>
 real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
-    const bool inside = phi(I) < 0;
+    const std::size_t own = phi.linear(I);
+    const bool inside = phi[own] < 0;
     std::array<std::pair<real, real>, D> nearest;  // (distance, h)
     for (int d = 0; d < D; ++d) {
         real least = infinity;
-        for (const int by : {-1, 1}) {
-            Index<D> J = I;
-            if (!frame_.step(J, d, by) || layer_(J) == 0 || layer_(J) > layer || (phi(J) < 0) != inside) continue;
-            least = std::min(least, std::abs(phi(J)));
+        const auto see = [&](std::size_t at) {
+            const bool counts = layer_[at] != 0 && layer_[at] <= layer && (phi[at] < 0) == inside;
+            least = std::min(least, counts ? std::abs(phi[at]) : infinity);
+        };
+        if (is_inner(frame_, I, d)) {
+            const auto stride = static_cast<std::size_t>(phi.stride(d));
+            see(own - stride), see(own + stride);
+        } else {
+            for (const int by : {-1, 1})
+                if (Index<D> J = I; frame_.step(J, d, by)) see(phi.linear(J));
         }
         nearest[static_cast<std::size_t>(d)] = {least, frame_.h[d]};
     }
-    std::sort(nearest.begin(), nearest.end());
+    if (nearest[1] < nearest[0]) std::swap(nearest[0], nearest[1]);
+    if constexpr (D == 3) {
+        if (nearest[2] < nearest[1]) std::swap(nearest[1], nearest[2]);
+        if (nearest[1] < nearest[0]) std::swap(nearest[0], nearest[1]);
+    }
     real a = 0, b = 0, c = -1, distance = infinity;  // a φ² − 2 b φ + c = 0
     for (const auto& [value, h] : nearest) {
         if (value >= distance) break;
@@ -203,15 +234,72 @@ real fraction_below_plane(real value, const Vec<D>& g) {
     return std::clamp(volume / norm, 0.0, 1.0);
 }
 
+/// All half cells at once, one a lane, where every axis counts in all of them; the same operations as in fraction_below_plane.
+template <int D>
+real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope) {
+    constexpr int halves = 1 << D;
+    const Lanes zero{}, one = zero + 1;
+    Lanes value = zero + phi, steep = zero, alpha, norm = one;
+    std::array<Lanes, D> g, m;
+    for (int d = 0; d < D; ++d) {
+        const auto at = static_cast<std::size_t>(d);
+        for (int half = 0; half < marker_lanes; ++half) g[at][half] = 0.5 * slope[half >> d & 1 ? 1 : 0][d];
+        m[at] = g[at] < zero ? -g[at] : g[at];
+        for (int half = 0; half < marker_lanes; ++half) value[half] += half >> d & 1 ? 0.5 * g[at][half] : -0.5 * g[at][half];
+        steep += m[at];
+    }
+    bool all_axes = true;
+    alpha = -value;
+    for (std::size_t d = 0; d < D; ++d) {
+        const auto flat = m[d] <= 1e-4 * steep;
+        for (int half = 0; half < halves; ++half) all_axes = all_axes && !flat[half];
+        alpha += 0.5 * m[d];
+        norm *= m[d] * static_cast<real>(d + 1);
+    }
+    if (!all_axes) {
+        real sum = 0;
+        for (int half = 0; half < halves; ++half) {
+            Vec<D> gradient;
+            for (int d = 0; d < D; ++d) gradient[d] = g[static_cast<std::size_t>(d)][half];
+            sum += fraction_below_plane(value[half], gradient);
+        }
+        return sum / halves;
+    }
+    Lanes volume = zero;
+    for (int corner = 0; corner < halves; ++corner) {
+        Lanes reach = alpha;
+        for (std::size_t d = 0; d < D; ++d)
+            if (corner >> d & 1) reach -= m[d];
+        Lanes power = one;
+        for (int d = 0; d < D; ++d) power *= reach;
+        power = reach <= zero ? zero : power;
+        volume += __builtin_popcount(static_cast<unsigned>(corner)) % 2 == 1 ? -power : power;
+    }
+    Lanes part = volume / norm;
+    part = part < zero ? zero : part > one ? one : part;
+    const Lanes size = value < zero ? -value : value, full = value < zero ? one : zero;
+    part = size >= 0.5 * steep ? full : part;
+    real sum = 0;
+    for (int half = 0; half < halves; ++half) sum += part[half];
+    return sum / halves;
+}
+
 template <int D>
 std::array<Vec<D>, 2> LevelSet<D>::slopes(const Index<D>& I) const {
     std::array<Vec<D>, 2> slope;
+    const real far = cap(), *here = &phi(I);
     for (int d = 0; d < D; ++d) {
-        Index<D> lower = I, upper = I;
-        const bool has_lower = frame_.step(lower, d, -1) && std::abs(phi(lower)) < cap();
-        const bool has_upper = frame_.step(upper, d, 1) && std::abs(phi(upper)) < cap();
-        slope[0][d] = has_lower ? phi(I) - phi(lower) : 0;
-        slope[1][d] = has_upper ? phi(upper) - phi(I) : slope[0][d];
+        bool has_lower = true, has_upper = true;
+        const real *lower = here - phi.stride(d), *upper = here + phi.stride(d);
+        if (!is_inner(frame_, I, d)) {
+            Index<D> below = I, above = I;
+            has_lower = frame_.step(below, d, -1), has_upper = frame_.step(above, d, 1);
+            lower = &phi(below), upper = &phi(above);
+        }
+        has_lower = has_lower && std::abs(*lower) < far;
+        has_upper = has_upper && std::abs(*upper) < far;
+        slope[0][d] = has_lower ? *here - *lower : 0;
+        slope[1][d] = has_upper ? *upper - *here : slope[0][d];
         if (!has_lower) slope[0][d] = slope[1][d];
     }
     return slope;
@@ -220,20 +308,12 @@ std::array<Vec<D>, 2> LevelSet<D>::slopes(const Index<D>& I) const {
 template <int D>
 real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     const real here = phi(I) - shift;
-    if (std::abs(here) > norm(frame_.h)) return here < 0 ? 1 : 0;
+    if (std::abs(here) > diagonal_) return here < 0 ? 1 : 0;
     const auto slope = slopes(I);
-    real sum = 0;
-    for (int half = 0; half < (1 << D); ++half) {
-        Vec<D> g;
-        real value = here;
-        for (int d = 0; d < D; ++d) {
-            const bool up = half >> d & 1;
-            g[d] = 0.5 * slope[up ? 1 : 0][d];
-            value += up ? 0.5 * g[d] : -0.5 * g[d];
-        }
-        sum += fraction_below_plane(value, g);
-    }
-    return sum / (1 << D);
+    real most = 0;  // twice what φ changes by from the centre to any corner, at most
+    for (int d = 0; d < D; ++d) most += std::max(std::abs(slope[0][d]), std::abs(slope[1][d]));
+    if (std::abs(here) > 0.51 * most) return here < 0 ? 1 : 0;  // as every half cell would say
+    return fraction_of_halves<D>(here, slope);
 }
 
 /// Sum of f(I) over the open cells of the band up to place `end`; block by block of equal length, so that its order is fixed.
@@ -255,9 +335,14 @@ real LevelSet<D>::volume() const {
     const int planes = frame_.cells[D - 1];
     const std::size_t plane = phi.size() / static_cast<std::size_t>(planes);
     const real full = ordered_sum(planes, [&](int k) {
+        const std::size_t first = static_cast<std::size_t>(k) * plane;
+        const std::uint8_t *inside = inside_.data() + first, *layer = layer_.data() + first;
+        const std::uint8_t* closed = closed_.empty() ? nullptr : closed_.data() + first;
         int count = 0;
-        for (std::size_t i = static_cast<std::size_t>(k) * plane; i < static_cast<std::size_t>(k + 1) * plane; ++i)
-            count += phi[i] < 0 && layer_[i] == 0 && (closed_.empty() || closed_[i] == 0);
+        if (closed)
+            for (std::size_t i = 0; i < plane; ++i) count += inside[i] & (layer[i] == 0) & (closed[i] == 0);
+        else
+            for (std::size_t i = 0; i < plane; ++i) count += inside[i] & (layer[i] == 0);
         return real(count);
     });
     return frame_.cell_volume() * (full + sum_over_band(band_.size(), [&](const Index<D>& I) { return fraction(I); }));
@@ -274,6 +359,10 @@ real LevelSet<D>::area() const {
 
 template real fraction_below_plane(real, const Vec<2>&);
 template real fraction_below_plane(real, const Vec<3>&);
+template real fraction_of_halves(real, const std::array<Vec<2>, 2>&);
+template real fraction_of_halves(real, const std::array<Vec<3>, 2>&);
+template void LevelSet<2>::find_inside();
+template void LevelSet<3>::find_inside();
 template void LevelSet<2>::redistance();
 template void LevelSet<3>::redistance();
 template real LevelSet<2>::fraction(const Index<2>&, real) const;

@@ -7,10 +7,16 @@
 #include <cstring>
 #include <utility>
 
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 namespace weir::water {
 
 inline constexpr int marker_lanes = 8;
 using Lanes = double __attribute__((vector_size(sizeof(double) * marker_lanes)));
+using LaneBytes = std::int8_t __attribute__((vector_size(marker_lanes)));
+using LaneIndex = std::int64_t __attribute__((vector_size(sizeof(double) * marker_lanes)));
 
 /// One point of each lane.
 template <int D>
@@ -18,20 +24,41 @@ struct LaneVec : std::array<Lanes, D> {};
 
 #define WEIR_LANES inline __attribute__((always_inline))
 
-/// `count` values from `from` on; the lanes behind them repeat the last one.
+/// `count` values from `from` on; the lanes behind them repeat the last one. Only those `count` are touched in memory: the next marker
+/// may be another thread's.
 WEIR_LANES Lanes load_lanes(const real* from, int count) {
+#ifdef __AVX512F__
+    const auto own = static_cast<__mmask8>((1u << count) - 1);
+    const LaneIndex lane{0, 1, 2, 3, 4, 5, 6, 7}, last = LaneIndex{} + (count - 1), from_lane = lane < last ? lane : last;
+    return _mm512_maskz_permutexvar_pd(0xff, reinterpret_cast<__m512i>(from_lane), _mm512_maskz_loadu_pd(own, from));
+#else
     Lanes v;
     if (count == marker_lanes)
         std::memcpy(&v, from, sizeof v);
     else
         for (int l = 0; l < marker_lanes; ++l) v[l] = from[l < count ? l : count - 1];
     return v;
+#endif
 }
 WEIR_LANES void store_lanes(real* to, const Lanes& v, int count) {
+#ifdef __AVX512F__
+    _mm512_mask_storeu_pd(to, static_cast<__mmask8>((1u << count) - 1), v);
+#else
     if (count == marker_lanes)
         std::memcpy(to, &v, sizeof v);
     else
         for (int l = 0; l < count; ++l) to[l] = v[l];
+#endif
+}
+/// Whether |v| is at most `limit` in every lane; a lane that is not a number is not.
+WEIR_LANES bool all_within(const Lanes& v, real limit) {
+#ifdef __AVX512F__
+    return _mm512_cmp_pd_mask(_mm512_abs_pd(v), _mm512_set1_pd(limit), _CMP_LE_OQ) == 0xff;
+#else
+    bool within = true;
+    for (int l = 0; l < marker_lanes; ++l) within = within && std::abs(v[l]) <= limit;
+    return within;
+#endif
 }
 
 /// Distance of points from the centre of cell I [cells].

@@ -25,6 +25,15 @@ struct Walls {
             if (!sides.open(d, 1) && !frame.periodic(d)) hi[d] = first + frame.h[d] * frame.cells[d] - margin;
         }
     }
+    WEIR_LANES LaneVec<D> keep_inside(const LaneVec<D>& x) const {
+        LaneVec<D> inside;
+        for (int d = 0; d < D; ++d) {
+            const auto at = static_cast<std::size_t>(d);
+            inside[at] = x[at] < lo[d] ? Lanes{} + lo[d] : x[at];
+            inside[at] = inside[at] > hi[d] ? Lanes{} + hi[d] : inside[at];
+        }
+        return inside;
+    }
     Vec<D> keep_inside(const Frame<D>& frame, Vec<D> x) const {
         for (int d = 0; d < D; ++d) x[d] = std::clamp(x[d], lo[d], hi[d]);
         return wraps ? frame.wrap(x) : x;
@@ -36,15 +45,14 @@ template <int D>
 WEIR_LANES bool trace_midpoint(const CellFaces<D>& faces, const Frame<D>& frame, const Index<D>& I, real dt, LaneVec<D>& x) {
     auto d = from_centre(frame, I, x);
     const auto k1 = faces.template velocity<false>(d);
-    auto too_far = k1[0] != k1[0];  // no lane, or a lane that is not a number
+    bool near = true;
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         const Lanes half = k1[at] * (0.5 * dt * frame.inv_h[a]);
-        too_far |= (half > 0.5) | (half < -0.5);
+        near = near & all_within(half, 0.5);
         d[at] += half;
     }
-    for (int l = 0; l < marker_lanes; ++l)
-        if (too_far[l]) return false;
+    if (!near) return false;
     const auto k2 = faces.template velocity<true>(d);
     for (std::size_t a = 0; a < D; ++a) x[a] += dt * k2[a];
     return true;
@@ -69,11 +77,14 @@ void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& 
             const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
             auto x = load_positions(markers, p, count);
             const bool together = order == Trace::rk2 && trace_midpoint(faces, frame, I, dt, x);
-            for (int l = 0; l < count; ++l) {
-                const std::size_t marker = p + static_cast<std::size_t>(l);
-                Vec<D> reached;
-                for (std::size_t a = 0; a < D; ++a) reached[a] = x[a][l];
-                place(marker, together ? reached : trace(u, frame, markers.position(marker), dt, order));
+            if (together) {
+                x = walls.keep_inside(x);
+                for (std::size_t a = 0; a < D; ++a) store_lanes(markers.x[a].data() + p, x[a], count);
+                if (!walls.wraps && near_solid.empty()) continue;
+            }
+            for (std::size_t marker = p; marker < p + static_cast<std::size_t>(count); ++marker) {
+                const Vec<D> reached = markers.position(marker);
+                place(marker, together ? reached : trace(u, frame, reached, dt, order));
             }
         }
     });

@@ -1,6 +1,7 @@
 #include "water/markers.hpp"
 
 #include "core/parallel.hpp"
+#include "water/marker_lanes.hpp"
 
 namespace weir::water {
 
@@ -46,6 +47,35 @@ void Markers<D>::add(const Vec<D>& at, const Vec<D>& velocity) {
         for (auto& array : c) array.push_back(0);
 }
 
+namespace {
+
+/// f(first, last) on blocks of [0, count).
+template <class F>
+void for_each_block(int count, F&& f) {
+    constexpr int block = 4096;
+    parallel_for(0, (count + block - 1) / block, [&](int b) { f(b * block, std::min((b + 1) * block, count)); });
+}
+
+}  // namespace
+
+/// As Frame::cell_of, for many; what would be rounded down to less than 0 is 0 anyway, so that rounding towards 0 does.
+template <int D>
+void Markers<D>::find_cells(const Frame<D>& frame, int first, int last) {
+    using Cells = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * marker_lanes)));
+    for (int p = first; p < last; p += marker_lanes) {
+        const int count = std::min(marker_lanes, last - p);
+        const LaneVec<D> at = load_positions(*this, static_cast<std::size_t>(p), count);
+        Cells cell{};
+        for (int d = D - 1; d >= 0; --d) {
+            const Lanes s = (at[static_cast<std::size_t>(d)] - frame.origin[d]) * frame.inv_h[d];
+            const Cells i = __builtin_convertvector(s, Cells), lowest{}, highest = lowest + (frame.cells[d] - 1);
+            const Cells least = i < lowest ? lowest : i;
+            cell = cell * frame.cells[d] + (least > highest ? highest : least);
+        }
+        std::memcpy(cell_.data() + p, &cell, static_cast<std::size_t>(count) * sizeof(std::int32_t));
+    }
+}
+
 template <int D>
 void Markers<D>::sort(const Frame<D>& frame) {
     const int n = static_cast<int>(count());
@@ -53,24 +83,39 @@ void Markers<D>::sort(const Frame<D>& frame) {
     cell_.resize(static_cast<std::size_t>(n));
     from_.resize(static_cast<std::size_t>(n));
     scratch_.resize(static_cast<std::size_t>(n));
-    cell_start_.assign(cells + 1, 0);
-    parallel_for(0, n, [&](int p) {
-        const Index<D> I = frame.cell_of(position(static_cast<std::size_t>(p)));
-        int at = I[D - 1];
-        for (int d = D - 2; d >= 0; --d) at = at * frame.cells[d] + I[d];
-        cell_[static_cast<std::size_t>(p)] = at;
-    });
-    for (const int cell : cell_) ++cell_start_[static_cast<std::size_t>(cell) + 1];
-    for (std::size_t i = 0; i < cells; ++i) cell_start_[i + 1] += cell_start_[i];
-    for (int p = n - 1; p >= 0; --p)  // backwards, counting ends down: stable, and cell_start_ shifts into place
-        from_[static_cast<std::size_t>(--cell_start_[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1])] = p;
-    for (std::size_t i = 0; i < cells; ++i) cell_start_[i] = cell_start_[i + 1];
-    cell_start_[cells] = n;
+    cell_start_.assign(cells + 2, 0);
+    for_each_block(n, [&](int first, int last) { find_cells(frame, first, last); });
+    for (const int cell : cell_) ++cell_start_[static_cast<std::size_t>(cell) + 2];
+    for (std::size_t i = 2; i <= cells; ++i) cell_start_[i] += cell_start_[i - 1];
+    for (int p = 0; p < n; ++p)  // the next free place of a cell is the start of the one behind it, until that is its own
+        from_[static_cast<std::size_t>(cell_start_[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1]++)] = p;
+    cell_start_.pop_back();
+    find_rows(frame);
     for_each_array([&](std::vector<real>& array) {
-        parallel_for(0, n, [&](int p) {
-            scratch_[static_cast<std::size_t>(p)] = array[static_cast<std::size_t>(from_[static_cast<std::size_t>(p)])];
+        for_each_block(n, [&](int first, int last) {
+            const int* from = from_.data();
+            const real* old = array.data();
+            real* sorted = scratch_.data();
+            for (int p = first; p < last; p += 8) {
+                __builtin_prefetch(old + std::min(p + 8192, n), 0, 2);
+                for (int q = p; q < std::min(p + 8, last); ++q) sorted[q] = old[from[q]];
+            }
         });
         array.swap(scratch_);
+    });
+}
+
+template <int D>
+void Markers<D>::find_rows(const Frame<D>& frame) {
+    const auto n = static_cast<std::size_t>(frame.cells[0]);
+    rows_.resize(product(frame.cells) / n);
+    parallel_for(0, static_cast<int>(rows_.size()), [&](int row) {
+        const auto first = cell_start_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * n);
+        const auto last = first + static_cast<std::ptrdiff_t>(n);
+        Extent& extent = rows_[static_cast<std::size_t>(row)] = {frame.cells[0], 0};
+        if (*first == *last) return;
+        extent.begin = static_cast<int>(std::upper_bound(first, last, *first) - first) - 1;
+        extent.end = static_cast<int>(std::lower_bound(first, last, *last) - first);
     });
 }
 
@@ -84,7 +129,8 @@ void Markers<D>::reserve(std::size_t capacity) {
 
 template <int D>
 std::size_t Markers<D>::bytes() const {
-    std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + scratch_.capacity() * sizeof(real);
+    std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + rows_.capacity() * sizeof(Extent) +
+                        scratch_.capacity() * sizeof(real);
     for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
     return total;
 }

@@ -56,6 +56,8 @@ public:
     /// The same for the cells [from, to) in memory, one after the other.
     template <class F>
     void for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const;
+    /// The part of a row of cells along x that holds markers; `row`: the place of its first cell in memory, over the length of rows.
+    const Extent& in_row(std::size_t row) const { return rows_[row]; }
     int in_cell(std::size_t cell) const { return cell_start_[cell + 1] - cell_start_[cell]; }
 
     /// f(array) for every array of one value a marker.
@@ -69,8 +71,12 @@ public:
     std::size_t bytes() const;
 
 private:
+    void find_cells(const Frame<D>& frame, int first, int last);
+    void find_rows(const Frame<D>& frame);
+
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, cell_start_, from_;
+    std::vector<Extent> rows_;
     std::vector<real> scratch_;
 };
 
@@ -100,10 +106,17 @@ void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
 template <int D>
 template <class F>
 void Markers<D>::for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const {
-    Index<D> I = frame.index_of(from);
-    for (std::size_t cell = from; cell < to; ++cell) {
-        if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
-        for (int d = 0; d < D && ++I[d] == frame.cells[d] && d < D - 1; ++d) I[d] = 0;
+    const auto n = static_cast<std::size_t>(frame.cells[0]);
+    for (std::size_t cell = from; cell < to;) {
+        const std::size_t row = cell / n, first = row * n, next = std::min(first + n, to);
+        const std::size_t last = std::min(next, first + static_cast<std::size_t>(rows_[row].end));
+        cell = std::max(cell, first + static_cast<std::size_t>(rows_[row].begin));
+        if (cell < last) {
+            Index<D> I = frame.index_of(cell);
+            for (; cell < last; ++cell, ++I[0])
+                if (begin(cell) < end(cell)) f(I, begin(cell), end(cell));
+        }
+        cell = next;
     }
 }
 

@@ -1,5 +1,7 @@
 #include "water/pressure.hpp"
 
+#include "water/marker_lanes.hpp"
+
 #include <algorithm>
 
 namespace weir::water {
@@ -41,28 +43,20 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         const real* phi = surface.phi.data() + at;
         Cell* cell = A_.cells.data() + at;
-        for (int i = 0; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
+        int first = 0;
+        for (; first + marker_lanes <= n; first += marker_lanes) {
+            const auto below = __builtin_convertvector(load_lanes(phi + first, marker_lanes) < Lanes{} + thin, LaneBytes);
+            const LaneBytes kind =
+                below ? LaneBytes{} + static_cast<std::int8_t>(Cell::fluid) : LaneBytes{} + static_cast<std::int8_t>(Cell::air);
+            std::memcpy(cell + first, &kind, sizeof kind);
+        }
+        for (int i = first; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
         for (int i = 0; !closed.empty() && i < n; ++i) cell[i] = closed[at + static_cast<std::size_t>(i)] ? Cell::solid : cell[i];
         Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
         while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
         liquid_[at / static_cast<std::size_t>(n)] = extent;
     });
     has_liquid_ = std::any_of(liquid_.begin(), liquid_.end(), [](const Extent& extent) { return extent.begin < extent.end; });
-}
-
-/// As for_each_face_run, but of each run only the part that has liquid somewhere on one side or the other.
-template <int D>
-template <class F, class G>
-void SurfacePressure<D>::for_faces_of_liquid(int a, F&& inner, G&& outer) const {
-    const auto n = static_cast<std::size_t>(frame_.cells[0]), stride = static_cast<std::size_t>(A_.cells.stride(a));
-    const auto near = [&](std::size_t face, std::size_t cell, int count) {
-        const Extent &above = liquid_[cell / n], &below = liquid_[(cell - stride) / n];
-        const int first = static_cast<int>(cell % n), shift = a == 0 ? 1 : 0;
-        const int begin = std::max(first, std::min(above.begin, below.begin)),
-                  end = std::min(first + count, std::max(above.end, below.end) + shift);
-        if (begin < end) inner(face + static_cast<std::size_t>(begin - first), cell + static_cast<std::size_t>(begin - first), end - begin);
-    };
-    for_each_face_run(frame_.cells, a, near, outer);
 }
 
 /// Face weights: the open fraction between liquid cells, over θ where the surface cuts the line between the centres.

@@ -27,13 +27,14 @@ public:
     const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
     /// Largest |∇·u| over liquid cells [1/s], open fractions counted.
     real max_divergence(const MacState<D>& state) const;
+    /// The part of a line of faces along a, which begins at I and lies on no side across it, that has liquid on one side or the other.
+    Extent faces_of_liquid(int a, const Index<D>& I) const;
+    /// As for_each_face_run, but of each run only that part.
+    template <class F, class G>
+    void for_faces_of_liquid(int a, F&& inner, G&& outer) const;
     std::size_t bytes() const;
 
 private:
-    /// Cells [begin, end) of a line; begin lies behind end where there are none.
-    struct Extent {
-        int begin, end;
-    };
     void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
     real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;
@@ -45,8 +46,6 @@ private:
     void subtract_gradient(MacState<D>& state, real dt) const;
     void subtract_surface_gradient(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                    const Grid<real, D>& curvature) const;
-    template <class F, class G>
-    void for_faces_of_liquid(int a, F&& inner, G&& outer) const;
 
     Frame<D> frame_;
     poisson::Operator<D> A_;      // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere
@@ -58,5 +57,32 @@ private:
     real h2_ = 0;           // h of axis 0, squared: what the matrix is scaled by
     real largest_cut_ = 0;  // of 1/θ, along the longest edge of a cell
 };
+
+template <int D>
+Extent SurfacePressure<D>::faces_of_liquid(int a, const Index<D>& I) const {
+    Index<D> row = I;
+    row[0] = 0;
+    const std::size_t above = A_.cells.linear(row) / static_cast<std::size_t>(frame_.cells[0]);
+    Extent extent = liquid_[above];
+    if (a == 0)
+        ++extent.end;
+    else
+        extent.join(liquid_[above - static_cast<std::size_t>(A_.cells.stride(a)) / static_cast<std::size_t>(frame_.cells[0])]);
+    return extent;
+}
+
+template <int D>
+template <class F, class G>
+void SurfacePressure<D>::for_faces_of_liquid(int a, F&& inner, G&& outer) const {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]), stride = static_cast<std::size_t>(A_.cells.stride(a));
+    const auto near = [&](std::size_t face, std::size_t cell, int count) {
+        Extent extent = liquid_[cell / n];
+        extent.join(liquid_[(cell - stride) / n]);
+        const int first = static_cast<int>(cell % n), shift = a == 0 ? 1 : 0;
+        const int begin = std::max(first, extent.begin), end = std::min(first + count, extent.end + shift);
+        if (begin < end) inner(face + static_cast<std::size_t>(begin - first), cell + static_cast<std::size_t>(begin - first), end - begin);
+    };
+    for_each_face_run(frame_.cells, a, near, outer);
+}
 
 }  // namespace weir::water

@@ -135,6 +135,7 @@ void Water<D>::restore(const Checkpoint& from) {
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = counts[1], reseeded_ = counts[2];
     markers_.sort(frame_);
+    pressure_.set_surface(surface_, closed_, state_);
     mark_liquid_faces();
     rate_ = from.has("water.rate") ? from.get_value<real>("water.rate") : max_speed_rate();
 }

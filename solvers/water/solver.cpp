@@ -64,7 +64,7 @@ void Water<D>::momentum_to_faces(real dt) {
     if (options_.transfer == Transfer::flip) {
         constrain_velocity_in_solids();
         sync_periodic(state_.u, state_.sides);
-        for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
+        copy_faces_near(markers_, frame_, state_.u, before_);
     }
 }
 
@@ -142,13 +142,16 @@ void Water<D>::mark_liquid_faces() {
         const auto stride = state_.cells.stride(a);
         const auto between_cells = [&](std::size_t face, std::size_t cell, int count) {
             const Cell *above = state_.cells.data() + cell, *below = above - stride;
-            for (int i = 0; i < count; ++i) known[face + static_cast<std::size_t>(i)] = above[i] == Cell::fluid || below[i] == Cell::fluid;
+            std::uint8_t* mark = known + face;
+#pragma omp simd
+            for (int i = 0; i < count; ++i) mark[i] = (above[i] == Cell::fluid) | (below[i] == Cell::fluid);
         };
         const auto on_side = [&](const Index<D>& I, std::size_t face) {
             const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
             known[face] = liquid || (!frame_.periodic(a) && !state_.sides.open(a, I[a] == 0 ? 0 : 1));
         };
-        for_each_face_run(frame_.cells, a, between_cells, on_side);
+        known_[static_cast<std::size_t>(a)].fill(0);
+        pressure_.for_faces_of_liquid(a, between_cells, on_side);
     }
     forget_faces_in_solids();
 }
@@ -214,6 +217,7 @@ void Water<D>::curvature() {
     });
 }
 
+/// Of the faces that the pressure decided, and of the sides that prescribe theirs.
 template <int D>
 real Water<D>::max_speed_rate() const {
     real rate = 0;
@@ -221,11 +225,34 @@ real Water<D>::max_speed_rate() const {
         const auto& known = known_[static_cast<std::size_t>(a)];
         const auto& u = state_.u[a];
         const Index<D>& n = known.extent();
-        const auto plane = known.size() / static_cast<std::size_t>(n[D - 1]);
         const real largest = ordered_max(n[D - 1], [&](int k) {
             real m = 0;
-            for (std::size_t i = static_cast<std::size_t>(k) * plane; i < static_cast<std::size_t>(k + 1) * plane; ++i)
-                if (const real v = std::abs(u[i]); known[i] == 1 && (v > m || std::isnan(v))) m = v;
+            const auto see = [&](std::size_t at, int count) {
+                const real* value = u.data() + at;
+                const std::uint8_t* mark = known.data() + at;
+                real most = 0, poison = 0;  // x - x is 0, or NaN where x is not finite
+#pragma omp simd reduction(max : most) reduction(+ : poison)
+                for (int i = 0; i < count; ++i) {
+                    const real speed = mark[i] == 1 ? std::abs(value[i]) : 0;
+                    most = std::max(most, speed);
+                    poison += speed - speed;
+                }
+                m = std::isnan(m) || std::isnan(poison) ? m + poison : std::max(m, most);
+            };
+            Index<D> I{};
+            I[D - 1] = k;
+            const int rows = D == 2 ? 1 : n[1];
+            for (int j = 0; j < rows; ++j) {
+                if (D == 3) I[1] = j;
+                const std::size_t row = u.linear(I);
+                if (a > 0 && (I[a] == 0 || I[a] == frame_.cells[a])) {
+                    see(row, n[0]);
+                    continue;
+                }
+                const Extent extent = pressure_.faces_of_liquid(a, I);
+                if (!extent.empty()) see(row + static_cast<std::size_t>(extent.begin), extent.end - extent.begin);
+                if (a == 0) see(row, 1), see(row + static_cast<std::size_t>(frame_.cells[0]), 1);
+            }
             return m;
         });
         if (std::isnan(largest)) return largest;

@@ -43,82 +43,136 @@ void scatter_affine(const Markers<D>& m, std::size_t p, const Frame<D>& frame, F
     }
 }
 
-/// What the markers of one cell give to the faces along A around it, row by row along x; (Σ w v, Σ w) of a face lie side by side as in
-/// FaceSum, so one vector holds the faces of a row, and the rows stay in registers until the cell is done.
-template <int D, int A>
+/// What the markers of one cell give to the faces around it, row by row along x. (Σ w v, Σ w) of a face lie side by side as in FaceSum, so
+/// one vector holds the faces of a row: two of them along x, three nodes across it. A marker adds to a row what its hat along x gives to
+/// each face, times its weight of the row; the rows stay in registers until all markers of the cell have been seen.
+template <int D>
 class CellSums {
 public:
-    WEIR_LANES void add(const Hats<D, false>& hats, const Lanes& x, const real* v, int count) {
-        alignas(Lanes) std::array<std::array<real, marker_lanes>, rows> weight;  // of a row, for each marker
-        for (int r = 0; r < rows; ++r) {
-            Lanes w = along<1>(hats, r % rows_along_y);
-            if constexpr (D == 3) w *= along<2>(hats, r / rows_along_y);
-            store_lanes(weight[static_cast<std::size_t>(r)].data(), w, marker_lanes);
+    static constexpr int most = 4 * marker_lanes;  // markers at once
+
+    WEIR_LANES CellSums(const Markers<D>& m, const Frame<D>& frame, const Index<D>& I, std::size_t p, int count) {
+        for (int first = 0; first < count; first += marker_lanes) {
+            const int here = std::min(marker_lanes, count - first);
+            find_weights(from_centre(frame, I, load_positions(m, p + static_cast<std::size_t>(first), here)), first);
         }
-        const Row momentum = pattern({1, 0, 1, 0, 1, 0, 1, 0}), one = pattern({0, 1, 0, 1, 0, 1, 0, 1});
-        for (int l = 0; l < count; ++l) {
-            const Row across = hat_of_faces(x[l]) * (v[l] * momentum + one);
-            for (int r = 0; r < rows; ++r) sum_[r] += across * weight[static_cast<std::size_t>(r)][static_cast<std::size_t>(l)];
-        }
+        std::array<const real*, D> v;
+        for (std::size_t a = 0; a < D; ++a) v[a] = m.v[a].data() + p;
+        add_all(v, count);
     }
-    WEIR_LANES void add_to(Grid<FaceSum, D>& sums, const Frame<D>& frame, const Index<D>& I) const {
-        const NodeOffsets<D> offset(sums, frame, I);
-        for (int r = 0; r < rows; ++r) {
-            alignas(Row) std::array<real, sizeof(Row) / sizeof(real)> row;
-            std::memcpy(row.data(), &sum_[r], sizeof(Row));
-            const int j = r % rows_along_y - (A == 1 ? 0 : 1), k = r / rows_along_y - (A == 2 ? 0 : 1);
-            FaceSum* first = sums.data() + offset(first_face, j, k);
-            for (int i = 0; i < faces_along_x; ++i) {
-                FaceSum& face = offset.straight() ? first[i] : sums.data()[offset(first_face + i, j, k)];
-                face.momentum += row[2 * static_cast<std::size_t>(i)];
-                face.weight += row[2 * static_cast<std::size_t>(i) + 1];
-            }
-        }
+    WEIR_LANES void add_to(FaceSums<D>& sums, const Frame<D>& frame, const Index<D>& I) const {
+        add_rows<0, x_rows>(x_, sums.sum[0], frame, I);
+        add_rows<1, y_rows>(y_, sums.sum[1], frame, I);
+        if constexpr (D == 3) add_rows<2, z_rows>(z_, sums.sum[2], frame, I);
     }
 
 private:
-    static constexpr int first_face = A == 0 ? 0 : -1, faces_along_x = A == 0 ? 2 : 3, rows_along_y = A == 1 ? 2 : 3;
-    static constexpr int rows = rows_along_y * (D == 2 ? 1 : A == 2 ? 2 : 3);
-    using Narrow = double __attribute__((vector_size(32)));
-    using Row = std::conditional_t<A == 0, Narrow, Lanes>;
+    // Rows of faces along x, y, z: (3, 2, 3) along y times (3, 3, 2) along z.
+    static constexpr std::size_t x_rows = D == 2 ? 3 : 9, y_rows = D == 2 ? 2 : 6, z_rows = D == 2 ? 1 : 6;
+    using Quad = double __attribute__((vector_size(32)));
+    using Pair = double __attribute__((vector_size(16)));
+    using Weights = std::array<real, most>;
 
-    template <int Axis>
-    WEIR_LANES static const Lanes& along(const Hats<D, false>& hats, int k) {
-        if constexpr (Axis == A)
-            return hats.face[Axis][static_cast<std::size_t>(k)];
-        else
-            return hats.centre[Axis][static_cast<std::size_t>(k)];
+    WEIR_LANES void find_weights(const LaneVec<D>& d, int first) {
+        const Hats<D, false> hats(d);
+        const auto keep = [&](Weights& to, const Lanes& w) { store_lanes(to.data() + first, w, marker_lanes); };
+        for (std::size_t i = 0; i < 2; ++i) keep(along_face_[i], hats.face[0][i]);
+        for (std::size_t i = 0; i < 3; ++i) keep(along_centre_[i], hats.centre[0][i]);
+        for (std::size_t j = 0; j < 3; ++j)
+            for (std::size_t k = 0; k < (D == 2 ? 1 : 3); ++k) {
+                if constexpr (D == 2) {
+                    keep(x_weight_[j], hats.centre[1][j]);
+                    if (j < 2) keep(y_weight_[j], hats.face[1][j]);
+                } else {
+                    keep(x_weight_[j + 3 * k], hats.centre[1][j] * hats.centre[2][k]);
+                    if (j < 2) keep(y_weight_[j + 2 * k], hats.face[1][j] * hats.centre[2][k]);
+                    if (k < 2) keep(z_weight_[j + 3 * k], hats.centre[1][j] * hats.face[2][k]);
+                }
+            }
     }
-    WEIR_LANES static Row hat_of_faces(real x) {
-        const Row zero{}, places = A == 0 ? pattern({-0.5, -0.5, 0.5, 0.5}) : pattern({-1, -1, 0, 0, 1, 1, 2, 2});
-        const Row apart = x - places, w = 1 - (apart < zero ? -apart : apart);
-        return w > zero ? w : zero;
+    /// All markers whose weights are known; v: their velocities.
+    WEIR_LANES void add_all(const std::array<const real*, D>& v, int count) {
+        Quad x[x_rows]{};
+        Lanes y[y_rows]{}, z[z_rows]{};
+        const auto one = [](real speed) {  // what goes with each weight along x: momentum, weight, momentum, ...
+            return __builtin_shufflevector(Lanes{} + speed, Lanes{} + 1, 0, 9, 2, 11, 4, 13, 6, 15);
+        };
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+            const Quad face = __builtin_shufflevector(Quad{} + along_face_[0][i], Quad{} + along_face_[1][i], 0, 1, 6, 7);
+            const Quad across_x = face * __builtin_shufflevector(Quad{} + v[0][i], Quad{} + 1, 0, 5, 2, 7);
+#pragma GCC unroll 9
+            for (std::size_t r = 0; r < x_rows; ++r) x[r] += across_x * x_weight_[r][i];
+            const Lanes left =
+                __builtin_shufflevector(Lanes{} + along_centre_[0][i], Lanes{} + along_centre_[1][i], 0, 1, 10, 11, 4, 5, 6, 7);
+            const Lanes centre = __builtin_shufflevector(left, Lanes{} + along_centre_[2][i], 0, 1, 2, 3, 12, 13, 14, 15);
+            const Lanes across_y = centre * one(v[1][i]);
+#pragma GCC unroll 6
+            for (std::size_t r = 0; r < y_rows; ++r) y[r] += across_y * y_weight_[r][i];
+            if constexpr (D == 3) {
+                const Lanes across_z = centre * one(v[2][i]);
+#pragma GCC unroll 6
+                for (std::size_t r = 0; r < z_rows; ++r) z[r] += across_z * z_weight_[r][i];
+            }
+        }
+#pragma GCC unroll 9
+        for (std::size_t r = 0; r < x_rows; ++r) x_[r] = x[r];
+#pragma GCC unroll 6
+        for (std::size_t r = 0; r < y_rows; ++r) y_[r] = y[r];
+#pragma GCC unroll 6
+        for (std::size_t r = 0; r < z_rows; ++r) z_[r] = z[r];
     }
-    WEIR_LANES static Row pattern(const std::array<real, marker_lanes>& values) {
-        Row row;
-        std::memcpy(&row, values.data(), sizeof row);
-        return row;
+    template <int A, std::size_t rows, class Row>
+    WEIR_LANES static void add_rows(const Row (&row)[rows], Grid<FaceSum, D>& sums, const Frame<D>& frame, const Index<D>& I) {
+        constexpr int along_y = A == 1 ? 2 : 3, first_j = A == 1 ? 0 : -1, first_k = D == 2 || A == 2 ? 0 : -1;
+        bool inner = true;
+        for (int d = 0; d < D; ++d) inner = inner && is_inner(frame, I, d);
+        if (inner) {
+            FaceSum* own = &sums(I) - (A == 0 ? 0 : 1);
+            const std::ptrdiff_t sy = sums.stride(1), sz = D == 2 ? 0 : sums.stride(D - 1);
+#pragma GCC unroll 9
+            for (int r = 0; r < int{rows}; ++r) add_row(row[r], own + (r % along_y + first_j) * sy + (r / along_y + first_k) * sz);
+            return;
+        }
+        const NodeOffsets<D> offset(sums, frame, I);
+        for (int r = 0; r < int{rows}; ++r) {
+            alignas(Row) std::array<real, sizeof(Row) / sizeof(real)> values;
+            std::memcpy(values.data(), &row[r], sizeof(Row));
+            for (int i = 0; i < (A == 0 ? 2 : 3); ++i) {
+                FaceSum& face = sums.data()[offset(i - (A == 0 ? 0 : 1), r % along_y + first_j, r / along_y + first_k)];
+                face.momentum += values[2 * static_cast<std::size_t>(i)];
+                face.weight += values[2 * static_cast<std::size_t>(i) + 1];
+            }
+        }
     }
-    Row sum_[rows]{};
+    WEIR_LANES static void add_row(const Quad& row, FaceSum* to) { add_to_memory(row, to); }
+    WEIR_LANES static void add_row(const Lanes& row, FaceSum* to) {
+        add_to_memory(__builtin_shufflevector(row, row, 0, 1, 2, 3), to);
+        add_to_memory(__builtin_shufflevector(row, row, 4, 5), to + 2);
+    }
+    template <class V>
+    WEIR_LANES static void add_to_memory(const V& v, FaceSum* to) {
+        V sum;
+        std::memcpy(&sum, to, sizeof sum);
+        sum += v;
+        std::memcpy(static_cast<void*>(to), &sum, sizeof sum);
+    }
+
+    alignas(64) std::array<Weights, 2> along_face_;
+    alignas(64) std::array<Weights, 3> along_centre_;
+    alignas(64) std::array<Weights, x_rows> x_weight_;
+    alignas(64) std::array<Weights, y_rows> y_weight_;
+    alignas(64) std::array<Weights, z_rows> z_weight_;  // neither this nor z_ is used in 2D
+    Quad x_[x_rows];
+    Lanes y_[y_rows], z_[z_rows];
 };
 
 /// The markers of one cell to all faces around it.
 template <int D>
 void scatter_cell(const Markers<D>& m, const Index<D>& I, std::size_t begin, std::size_t end, const Frame<D>& frame, FaceSums<D>& sums) {
-    CellSums<D, 0> x;
-    CellSums<D, 1> y;
-    CellSums<D, 2> z;  // not used in 2D
-    for (std::size_t p = begin; p < end; p += marker_lanes) {
-        const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
-        const auto d = from_centre(frame, I, load_positions(m, p, count));
-        const Hats<D, false> hats(d);
-        x.add(hats, d[0], m.v[0].data() + p, count);
-        y.add(hats, d[0], m.v[1].data() + p, count);
-        if constexpr (D == 3) z.add(hats, d[0], m.v[2].data() + p, count);
+    for (std::size_t p = begin; p < end; p += CellSums<D>::most) {
+        const int count = static_cast<int>(std::min<std::size_t>(CellSums<D>::most, end - p));
+        CellSums<D>(m, frame, I, p, count).add_to(sums, frame, I);
     }
-    x.add_to(sums.sum[0], frame, I);
-    y.add_to(sums.sum[1], frame, I);
-    if constexpr (D == 3) z.add_to(sums.sum[2], frame, I);
 }
 
 /// A periodic axis has its first face twice: both copies get the sum.
@@ -139,30 +193,31 @@ void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
     }
 }
 
-/// f(place, count) on the lines of faces along `a` within reach of markers, g(place, count) on all others.
+/// f(place, count) on that part of each line of faces which is within reach of markers, g(place, count) on the rest.
 template <int D, class F, class G>
-void for_lines_near(const Markers<D>& markers, const Frame<D>& frame, const Index<D>& extent, F&& f, G&& g) {
-    const auto row_holds = [&](const Index<D>& I) {
-        Index<D> J = I;
-        J[0] = 0;
-        std::size_t cell = 0;
-        for (int d = D - 1; d >= 0; --d) cell = cell * static_cast<std::size_t>(frame.cells[d]) + static_cast<std::size_t>(J[d]);
-        return markers.begin(cell) < markers.end(cell + static_cast<std::size_t>(frame.cells[0]) - 1);
+void for_faces_near(const Markers<D>& markers, const Frame<D>& frame, const Index<D>& extent, F&& f, G&& g) {
+    const auto row = [&](const Index<D>& I) {
+        std::size_t at = 0;
+        for (int d = D - 1; d > 0; --d) at = at * static_cast<std::size_t>(frame.cells[d]) + static_cast<std::size_t>(I[d]);
+        return markers.in_row(at);
     };
     for_each_line(extent, [&](const Index<D>& I, std::size_t at) {
-        const auto count = static_cast<std::size_t>(extent[0]);
-        bool near = false;
+        Extent near{frame.cells[0], 0};
         for (const int j : {-1, 0, 1}) {
             if constexpr (D == 2) {
-                near = near || row_holds(frame.near(I, 1, j));
+                near.join(row(frame.near(I, 1, j)));
             } else {
-                for (const int k : {-1, 0, 1}) near = near || row_holds(frame.near(frame.near(I, 1, j), 2, k));
+                for (const int k : {-1, 0, 1}) near.join(row(frame.near(frame.near(I, 1, j), 2, k)));
             }
         }
-        if (near)
-            f(at, count);
-        else
-            g(at, count);
+        const auto count = static_cast<std::size_t>(extent[0]);
+        if (near.empty()) return g(at, count);
+        const bool joins = frame.periodic(0) && (near.begin == 0 || near.end == frame.cells[0]);
+        const auto begin = static_cast<std::size_t>(joins ? 0 : std::max(0, near.begin - 1));
+        const auto end = static_cast<std::size_t>(joins ? extent[0] : std::min(extent[0], near.end + 1));
+        g(at, begin);
+        f(at + begin, end - begin);
+        g(at + end, count - end);
     });
 }
 
@@ -173,7 +228,7 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
                       std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known) {
     const auto nothing = [](std::size_t, std::size_t) {};
     for (auto& sum : sums.sum)
-        for_lines_near(
+        for_faces_near(
             markers, frame, sum.extent(),
             [&](std::size_t at, std::size_t count) { std::fill(sum.data() + at, sum.data() + at + count, FaceSum{}); }, nothing);
     const int planes = frame.cells[D - 1], slabs = (planes + slab_planes - 1) / slab_planes;
@@ -193,12 +248,17 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
     for (int a = 0; a < D; ++a) {
         const auto& sum = sums.sum[static_cast<std::size_t>(a)];
         auto& seen = known[static_cast<std::size_t>(a)];
-        for_lines_near(
+        for_faces_near(
             markers, frame, sum.extent(),
             [&](std::size_t at, std::size_t count) {
-                for (std::size_t i = at; i < at + count; ++i) {
-                    seen[i] = sum[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
-                    if (seen[i]) u[a][i] = sum[i].momentum / sum[i].weight;
+                const FaceSum* from = sum.data() + at;
+                std::uint8_t* mark = seen.data() + at;
+                real* mean = u[a].data() + at;
+#pragma omp simd
+                for (std::size_t i = 0; i < count; ++i) {
+                    const bool any = from[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
+                    mark[i] = any;
+                    mean[i] = any ? from[i].momentum / from[i].weight : mean[i];
                 }
             },
             [&](std::size_t at, std::size_t count) { std::fill(seen.data() + at, seen.data() + at + count, std::uint8_t{0}); });
@@ -227,12 +287,24 @@ void pic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& 
 }
 
 template <int D>
+void copy_faces_near(const Markers<D>& markers, const Frame<D>& frame, const MacVelocity<D>& u, MacVelocity<D>& to) {
+    for (int a = 0; a < D; ++a)
+        for_faces_near(
+            markers, frame, u[a].extent(),
+            [&](std::size_t at, std::size_t count) { std::copy_n(u[a].data() + at, count, to[a].data() + at); },
+            [](std::size_t, std::size_t) {});
+}
+
+template <int D>
 void flip_to_markers(const MacVelocity<D>& u, MacVelocity<D>& before, real beta, const Frame<D>& frame, Markers<D>& markers) {
     for (int a = 0; a < D; ++a)  // β v + Σ w (u − β u_before): one interpolation instead of two
-        for_lines_near(
+        for_faces_near(
             markers, frame, u[a].extent(),
             [&](std::size_t at, std::size_t count) {
-                for (std::size_t i = at; i < at + count; ++i) before[a][i] = u[a][i] - beta * before[a][i];
+                const real* now = u[a].data() + at;
+                real* then = before[a].data() + at;
+#pragma omp simd
+                for (std::size_t i = 0; i < count; ++i) then[i] = now[i] - beta * then[i];
             },
             [](std::size_t, std::size_t) {});
     gather(before, frame, beta, markers);
@@ -270,6 +342,7 @@ template class FaceSums<3>;
 #define WEIR_INSTANTIATE(D)                                                                                    \
     template void markers_to_faces(const Markers<D>&, const Frame<D>&, FaceSums<D>&, MacVelocity<D>&,          \
                                    std::array<Grid<std::uint8_t, D>, D>&);                                     \
+    template void copy_faces_near(const Markers<D>&, const Frame<D>&, const MacVelocity<D>&, MacVelocity<D>&); \
     template void pic_to_markers(const MacVelocity<D>&, const Frame<D>&, Markers<D>&);                         \
     template void flip_to_markers(const MacVelocity<D>&, MacVelocity<D>&, real, const Frame<D>&, Markers<D>&); \
     template void apic_to_markers(const MacVelocity<D>&, const Frame<D>&, Markers<D>&);

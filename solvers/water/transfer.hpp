@@ -36,11 +36,15 @@ template <int D>
 void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums<D>& sums, MacVelocity<D>& u,
                       std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known);
 
+/// u on every face that markers see, to `to`; its other faces are left as they were. Markers must be sorted.
+template <int D>
+void copy_faces_near(const Markers<D>& markers, const Frame<D>& frame, const MacVelocity<D>& u, MacVelocity<D>& to);
+
 /// These three want markers that are sorted.
 template <int D>
 void pic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& markers);
 
-/// `before` is the velocity that the markers gave to the faces at this step; on return it holds u − β u_before (scratch).
+/// `before` is the velocity that the markers gave to the faces at this step (copy_faces_near); on return it holds u − β u_before (scratch).
 template <int D>
 void flip_to_markers(const MacVelocity<D>& u, MacVelocity<D>& before, real beta, const Frame<D>& frame, Markers<D>& markers);
 

@@ -155,3 +155,61 @@ TEST_IN_2D_AND_3D("extrapolation continues a velocity without change along the n
             EXPECT_NEAR(s.u[a](I), std::sin(3.0 * I[0] + a), 1e-14);
         });
 }
+
+TEST_IN_2D_AND_3D("half cells measured all at once are the mean of planes one by one, to the last bit") {
+    for (std::uint64_t sample = 0; sample < 4000; ++sample) {
+        std::array<Vec<D>, 2> slope;
+        for (std::size_t side = 0; side < 2; ++side)
+            for (int d = 0; d < D; ++d) {
+                slope[side][d] = 2 * hashed_random(3, sample, 4 * side + static_cast<std::uint64_t>(d)) - 1;
+                if (sample % 5 == 0 && d == 1) slope[side][d] = 0;  // an axis that does not count
+            }
+        const real phi = 1.2 * (2 * hashed_random(3, sample, 9) - 1);
+        real sum = 0;
+        for (int half = 0; half < (1 << D); ++half) {
+            Vec<D> g;
+            real value = phi;
+            for (int d = 0; d < D; ++d) {
+                const bool up = half >> d & 1;
+                g[d] = 0.5 * slope[up ? 1 : 0][d];
+                value += up ? 0.5 * g[d] : -0.5 * g[d];
+            }
+            sum += fraction_below_plane(value, g);
+        }
+        EXPECT_EQ(fraction_of_halves<D>(phi, slope), sum / (1 << D));
+    }
+}
+
+TEST_IN_2D_AND_3D("the surface comes from where a trace says, by cubic interpolation there, in the middle and beside the walls") {
+    Surface<D> s(Index<D>::constant(15), *geometry::sphere<D>(Vec<D>::constant(0.42), 0.33));
+    for (const real speed : {0.0, 1.0, 6.0}) {  // at rest, within a cell, and beyond
+        for (int a = 0; a < D; ++a)
+            for_each_cell(s.u[a].extent(), [&](const Index<D>& I) { s.u[a](I) = speed * std::sin(1.0 + a + 0.7 * I[0] + 0.4 * I[D - 1]); });
+        const real dt = 0.9 / 15;
+        auto moved = s.level_set;
+        moved.advect(s.u, dt);
+        const auto& phi = s.level_set.phi;
+        for (const Index<D>& I : s.level_set.band()) {
+            if (std::abs(phi(I)) >= 3 * s.frame.h_max()) continue;
+            const Vec<D> from = trace(s.u, s.frame, s.frame.centre(I), -dt, Trace::rk2);
+            real sum = 0;
+            for (int node = 0; node < (D == 2 ? 16 : 64); ++node) {
+                Index<D> J{};
+                real weight = 1;
+                for (int d = 0, rest = node; d < D; ++d, rest /= 4) {
+                    const real at = (from[d] - s.frame.origin[d]) * s.frame.inv_h[d] - 0.5, f = at - std::floor(at);
+                    const std::array<real, 4> w{f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)),
+                                                f * f * (-0.5 + 0.5 * f)};
+                    weight *= w[static_cast<std::size_t>(rest % 4)];
+                    J[d] = static_cast<int>(std::floor(at));
+                    J[d] = s.frame.near(J, d, rest % 4 - 1)[d];
+                }
+                sum += weight * phi(J);
+            }
+            EXPECT_NEAR(moved.phi(I), sum, 1e-14);
+            if (speed == 0) {
+                EXPECT_EQ(moved.phi(I), phi(I));
+            }
+        }
+    }
+}

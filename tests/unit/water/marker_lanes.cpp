@@ -118,3 +118,15 @@ TEST_IN_2D_AND_3D("faces get the mean of the markers around them that interpolat
         }
     }
 }
+
+TEST_IN_2D_AND_3D("cells found eight markers at a time are those that each marker alone is in, also outside the domain") {
+    Swarm<D> swarm("[]", 1.0);
+    auto& markers = swarm.markers;
+    for (int d = 0; d < D; ++d) markers.add(3.0 * Vec<D>::unit(d), Vec<D>{}), markers.add(-0.3 * Vec<D>::unit(d), Vec<D>{});
+    markers.sort(swarm.frame);
+    std::size_t seen = 0;
+    markers.for_each_occupied_cell(swarm.frame, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p, ++seen) EXPECT_EQ(swarm.frame.cell_of(markers.position(p)), I);
+    });
+    EXPECT_EQ(seen, markers.count());
+}
