@@ -5,6 +5,8 @@
 #include "water/marker_motion.hpp"
 #include "water/transfer.hpp"
 
+#include <atomic>
+
 using namespace weir;
 using namespace weir::water;
 
@@ -124,7 +126,7 @@ TEST_IN_2D_AND_3D("cells found eight markers at a time are those that each marke
     auto& markers = swarm.markers;
     for (int d = 0; d < D; ++d) markers.add(3.0 * Vec<D>::unit(d), Vec<D>{}), markers.add(-0.3 * Vec<D>::unit(d), Vec<D>{});
     markers.sort(swarm.frame);
-    std::size_t seen = 0;
+    std::atomic<std::size_t> seen = 0;  // lines of cells run on threads
     markers.for_each_occupied_cell(swarm.frame, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p, ++seen) EXPECT_EQ(swarm.frame.cell_of(markers.position(p)), I);
     });
