@@ -7,14 +7,15 @@
 namespace weir::app {
 
 namespace {
-volatile std::sig_atomic_t count = 0;
+volatile std::sig_atomic_t count = 0, first = SIGINT;
 
-extern "C" void count_signal(int) {
+extern "C" void count_signal(int signal) {
     static constexpr char once[] = "\nfinishing the frame; once more: stop after this step; twice more: stop at once\n";
     count = count + 1;
+    if (count == 1) first = signal;
     if (count == 1) [[maybe_unused]]
         const auto ignored = write(STDERR_FILENO, once, sizeof once - 1);
-    if (count == 3) _exit(exit_interrupted);
+    if (count == 3) _exit(128 + first);
 }
 
 }  // namespace
@@ -28,5 +29,7 @@ void catch_interrupts() {
 }
 
 int interruptions() { return count; }
+
+int exit_interrupted() { return 128 + first; }
 
 }  // namespace weir::app

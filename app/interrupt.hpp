@@ -3,7 +3,8 @@
 
 namespace weir::app {
 
-inline constexpr int exit_interrupted = 130;  // 128 + SIGINT, as shells expect
+/// 128 + the first signal, as shells expect: 130 after Ctrl-C, 143 after SIGTERM.
+int exit_interrupted();
 
 /// From here on SIGINT and SIGTERM are counted; a file that grows past a limit is an error of its write, not a signal.
 void catch_interrupts();

@@ -172,7 +172,7 @@ int simulate(const RunArguments& arguments) {
     if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
                  folder.c_str());
-    return exit_interrupted;
+    return exit_interrupted();
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// A file that is either the old one or the new one, never half of it: written beside its name, then renamed.
+// A file that is either the old one or the new one, never half of it: written beside its name, then renamed. What is no regular file (a
+// device, a pipe) stays what it is and is written to; a symbolic link stays, and the file that it points to is replaced.
 #pragma once
 #include <filesystem>
 #include <string_view>

@@ -3,7 +3,11 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
+#include <cstdlib>
 #include <fstream>
+#include <iterator>
+
+#include <sys/wait.h>
 
 namespace {
 
@@ -29,6 +33,19 @@ TEST("--version, list and describe answer with exit 0") {
     EXPECT_NE(weir_says({"list", "solvers"}).text.find("mac"), std::string::npos);
     EXPECT_NE(weir_says({"list", "effects"}).text.find("buoyancy"), std::string::npos);
     EXPECT_NE(weir_says({"describe", "time.cfl"}).text.find("cfl"), std::string::npos);
+}
+
+TEST("what cannot be printed is no success: exit 2, with the system's reason") {
+    TemporaryFolder folder;
+    for (const std::string& command :
+         std::vector<std::string>{"list solvers", "describe", "validate --list", "run " + smoke + " --explain"}) {
+        const auto log = folder.path() / "log";
+        const int status = std::system((std::string(WEIR_EXECUTABLE) + ' ' + command + " >/dev/full 2>" + log.string()).c_str());
+        EXPECT_EQ(WEXITSTATUS(status), 2) << command;
+        std::ifstream said(log);
+        const std::string text{std::istreambuf_iterator<char>(said), {}};
+        EXPECT_NE(text.find("No space left"), std::string::npos) << command << ": " << text;
+    }
 }
 
 TEST("no command, an unknown command, an unknown option and a missing scene are bad input: exit 2") {

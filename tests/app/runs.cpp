@@ -77,6 +77,15 @@ TEST("Ctrl-C ends a run with its frame, exit 130 and a checkpoint; --restart the
     }
 }
 
+TEST("SIGTERM ends a run as Ctrl-C does, with exit 143") {
+    TemporaryFolder folder;
+    const auto out = folder.path() / "out";
+    Process process({"run", scene("smoke"), "--out", out, "--threads", "1"}, folder.path() / "log");
+    process.wait_for(out / "frames/grid_000001.vti");
+    process.signal(SIGTERM);
+    EXPECT_EQ(process.wait(), 128 + SIGTERM) << process.said();
+}
+
 TEST("a run killed at any moment (kill -9) leaves a readable series; its last checkpoint continues bit for bit") {
     for (const auto& name : scene_names) {
         TemporaryFolder folder;
