@@ -95,11 +95,8 @@ real fit(const std::vector<Sample<D>>& list) {
         right += s.weight * s.value * row;
     }
     // Where samples lie in one plane, or there are few, the gradient across it is not told: a pivot far below the weights in the matrix.
-    const Eigen::FullPivLU<Eigen::Matrix<real, D + 1, D + 1>> lu = [&] {
-        Eigen::FullPivLU<Eigen::Matrix<real, D + 1, D + 1>> f(normal);
-        f.setThreshold(1e-6);
-        return f;
-    }();
+    Eigen::FullPivLU<Eigen::Matrix<real, D + 1, D + 1>> lu(normal);
+    lu.setThreshold(1e-6);
     return lu.isInvertible() ? lu.solve(right)[0] : right[0] / normal(0, 0);
 }
 

@@ -50,7 +50,7 @@ Poured run(const std::string& text, real end) {
 
 }  // namespace
 
-TEST_IN_2D_AND_3D("an emitter pours its flux and no liquid outruns a jet, wherever it stands and whatever carries the momentum") {
+TEST_IN_2D_AND_3D("an emitter pours its flux and no liquid outruns the rising jet, wherever it stands and whatever carries the momentum") {
     struct Setting {
         const char* what;
         real x, y, depth;
@@ -65,6 +65,7 @@ TEST_IN_2D_AND_3D("an emitter pours its flux and no liquid outruns a jet, wherev
                                            {"beside a solid", 0.4, 0, 0,
                                             "solids = [ { shape = \"box\", min = " + list({"0.0", "0.0", "0.0"}, D) +
                                                 ", max = " + list({"0.4", "0.15", "1.0"}, D) + " } ]\n"}};
+    // At 0.3 s the jet is at its top; what falls back strikes the floor from 0.55 s on, and splashes faster than it fell.
     const real end = 0.3, section = std::pow(wide, D - 1);
     // A jet leaves with `speed` and has fallen by y + deep when it is back at the floor; a twentieth more for what splashes. At the start
     // a film thinner than a cell lies on the nozzle, and what pushes it from one step to the next presses it out at its edge.
