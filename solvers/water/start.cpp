@@ -188,7 +188,7 @@ void Water<D>::refuse_buried_emitters(const scene::Scene& scene) const {
 
 template <int D>
 void Water<D>::fill_with_liquid(const scene::Scene& scene) {
-    const auto shapes = geometry::make_shapes<D>(scene.has("liquid") ? scene.root().tables("liquid") : std::vector<scene::Table>{});
+    const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     if (shapes.empty()) {
         if (emitters_.empty()) scene.refuse("liquid", "a scene of water needs liquid: at least one shape, or an emitter");
         surface_.redistance();
