@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
+#include "validation/page/sections.hpp"
 #include "validation/page/text.hpp"
 
 #include <fmt/format.h>
@@ -53,23 +54,18 @@ std::string claims_table(const json& verdicts, const std::string& prefix) {
 }
 
 std::string limits_line(const std::filesystem::path& results, const std::string& prefix) {
-    std::size_t limits = 0, unbroken = 0, below = 0;
+    Counts counts;
     std::error_code missing;
     for (const auto& entry : std::filesystem::directory_iterator(results / "stability", missing)) {
         const json study = json_of(entry.path());
         if (!study.is_object() || !study.contains("limits")) continue;
-        for (const json& l : study["limits"]) {
-            ++limits;
-            unbroken += l.contains("first_unstable") ? 0 : 1;
-            below += l.value("guarded", true) ? 0 : 1;
-        }
+        for (const json& l : study["limits"]) counts.add(l);
     }
-    if (limits == 0) return "";
+    if (counts.limits + counts.units + counts.guards == 0) return "";
     return fmt::format(
-        "\n**Where it breaks:** {} limits measured, {} of them not reached however far the solver was pushed; {}: "
-        "[{}/stability]({}/stability/index.md).\n",
-        limits, unbroken, below == 0 ? "every guarded floor holds" : fmt::format("{} below the floor that is guarded", below), prefix,
-        prefix);
+        "\n**Where it breaks:** {} limits measured, {} of them not reached however far the solver was pushed; {} checks of units, {} of "
+        "guards. {} [{}/stability]({}/stability/index.md).\n",
+        counts.limits, counts.unbroken, counts.units, counts.guards, counts.verdict(), prefix, prefix);
 }
 
 }  // namespace
