@@ -84,6 +84,13 @@ TEST("--backend runs particles on the reference; what it has not got, and an unk
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out"));
 }
 
+TEST("--explain says so where a scene is not valid without an effect, whose cost is then no difference of two runs") {
+    const std::string drop = std::string(WEIR_SOURCE_DIR) + "/cases/couette/sph.toml";
+    const auto answer = weir_says({"run", drop, "--explain", "--set", "grid.cells=[8, 16]"});
+    EXPECT_EQ(answer.code, 0) << answer.text;
+    EXPECT_NE(answer.text.find("the scene is not valid without it"), std::string::npos) << answer.text;
+}
+
 TEST("--explain tells what was called for, what was built and what was left out, and writes nothing") {
     TemporaryFolder folder;
     const auto answer = weir_says({"run", smoke, "--explain", "--out", folder.path() / "out"});
