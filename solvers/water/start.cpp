@@ -128,6 +128,7 @@ Water<D>::Water(const scene::Scene& scene)
         viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));
         effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes()});
     }
+    if (options_.volume_control) effects_.declare({.name = "volume_control", .pass = effect_pass("volume_control")});
     read_emitters(scene);
     if (solids_.any()) {
         closed_ = near_solid_ = Grid<std::uint8_t, D>(frame_.cells);
