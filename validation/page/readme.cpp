@@ -73,7 +73,12 @@ std::string limits_line(const std::filesystem::path& results, const std::string&
 std::string readme_part(const std::filesystem::path& results, const std::string& prefix) {
     const json verdicts = json_of(results / "verdicts.json");
     if (!verdicts.is_array()) throw BadInput(results.string() + " holds no readable verdicts.json");
-    return side_by_side(results, prefix) + claims_table(verdicts, prefix) + limits_line(results, prefix) +
+    const std::size_t open = asked(verdicts).size();
+    const std::string not_reached =
+        open == 0 ? ""
+                  : fmt::format("\n{} bounds were asked for and are not reached: [the table]({}/index.md#asked-and-not-reached).\n", open,
+                                prefix);
+    return side_by_side(results, prefix) + claims_table(claimed(verdicts), prefix) + not_reached + limits_line(results, prefix) +
            fmt::format("\nAll of it on one page, to open in a browser: `{}/index.html`.\n", prefix);
 }
 
