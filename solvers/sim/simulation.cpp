@@ -2,6 +2,7 @@
 
 #include "scene/names.hpp"
 #include "sim/finite.hpp"
+#include "sim/foretold.hpp"
 #include "sim/registry.hpp"
 
 #include <fmt/format.h>
@@ -30,6 +31,12 @@ std::string get_text(const Checkpoint& from, const std::string& name) {
     return {text.begin(), text.end()};
 }
 
+/// Looked at before anything of it is built.
+scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
+    sim::require_memory(scene, kinds);
+    return scene;
+}
+
 void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
     if (!scene.has("output.fields")) return;
     std::vector<std::string> known;
@@ -49,7 +56,7 @@ Simulation::Simulation(const std::filesystem::path& scene, const std::vector<sce
 Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::registry()) {}
 
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
-    : scene_(std::move(scene)),
+    : scene_(fitting(std::move(scene), kinds)),
       solver_(sim::kind_named(scene_.solver(), kinds).make(scene_)),
       probes_(scene_, *solver_),
       end_(scene_.number("time.end")),
