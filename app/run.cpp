@@ -4,10 +4,12 @@
 #include "app/interrupt.hpp"
 #include "app/measured.hpp"
 #include "app/progress.hpp"
+#include "app/space.hpp"
 #include "core/parallel.hpp"
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
+#include "sim/foretold.hpp"
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
@@ -28,7 +30,7 @@ struct RunArguments {
     std::string reference;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
-    bool quiet = false, explain = false;
+    bool quiet = false, explain = false, any_size = false;
 };
 
 output::FrameOptions frame_options(const scene::Scene& scene) {
@@ -153,19 +155,25 @@ int simulate(const RunArguments& arguments) {
     if (arguments.scene.empty() && !checkpoint)
         throw BadInput("weir run needs a scene (a file, or a folder with a scene.toml), or --restart");
 
-    Simulation simulation(arguments.scene.empty() ? scene_of(*checkpoint, overrides)
-                                                  : scene::read(arguments.scene, sim::schemas(), overrides));
+    scene::Scene scene =
+        arguments.scene.empty() ? scene_of(*checkpoint, overrides) : scene::read(arguments.scene, sim::schemas(), overrides);
+    if (!arguments.explain)
+        sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run);
+    Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
     for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
         std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it may cost, and does nothing\n", simulation.scene().file().c_str(),
                      effect.c_str());
     if (arguments.explain) {
-        std::fputs(explain(simulation).c_str(), stdout);
+        const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
+        std::fputs((explain(simulation) + "a run writes " + space).c_str(), stdout);
         return exit_success;
     }
     output::check(frame_options(simulation.scene()), simulation.fields());
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     output::require_writable(folder);
+    const std::string space = check_space(simulation, folder, arguments.any_size);
+    if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
     Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
@@ -214,6 +222,7 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");
+    run->add_flag("--any-size", arguments->any_size, "Begin though the frames may not fit on the disk");
     run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files");
     run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }
