@@ -1,6 +1,19 @@
 #!/usr/bin/env bash
-# weir's front door: ./weir.sh build | run SCENE [...] | validate [...] | cost [...] | plan CASE --budget 16ms --error 2% | stability [...] | report | picture RESULT [...] | view RESULT [...] | list ... | describe ... | test [...] | install DIR
-# Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
+# weir's front door: ./weir.sh COMMAND [...]
+#   build               everything, with tests and benchmarks
+#   run SCENE [...]     simulate a scene, or a case by its name
+#   view RESULT         the frames of a run in a window
+#   picture RESULT      the frames of a run as a PNG
+#   validate [...]      the claims of the cases
+#   cost [...]          error against computing time; --plan SCENE: what a scene will cost
+#   plan CASE [...]     which setting to take: --budget 16ms --error 2%
+#   stability [...]     where solvers break
+#   report              the page of published results
+#   list WHAT           solvers, effects, cases or devices
+#   describe [WHAT]     what a scene may say
+#   test [...]          all tests; more words go to ctest
+#   install DIR         the program, its cases and the library
+# `./weir.sh COMMAND --help` tells more. Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
 # second call re-does only what changed. The executable is build/release/weir.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
@@ -47,8 +60,7 @@ build_all() {
 }
 
 usage() {
-    sed -n '2,4s/^# //p' "$0" >&2
-    exit 2
+    sed -n '2,/--help` tells more/{s/^# \{0,1\}//;s/ Each call.*//;p}' "$0"
 }
 
 case "${1:-}" in
@@ -61,6 +73,7 @@ case "${1:-}" in
     test) # threads that wait sleep: tests share the machine with other work, and spinning starves the thread that is waited for
         export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
         build_all && cd "$here/build/release" && exec ctest --output-on-failure "${@:2}" ;;
-    install) [ $# -eq 2 ] || usage; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
-    *) usage ;;
+    install) [ $# -eq 2 ] || { usage >&2; exit 2; }; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
+    help | --help | -h) usage ;;
+    *) usage >&2; exit 2 ;;
 esac
