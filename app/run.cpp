@@ -10,6 +10,7 @@
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
+#include "sim/solid_cells.hpp"
 #include "validation/report/command.hpp"
 
 #include <chrono>
@@ -38,6 +39,7 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
     options.compression = compression == "none"  ? output::Compression::none
                           : compression == "lz4" ? output::Compression::lz4
                                                  : output::Compression::zlib;
+    options.solid = sim::solid_cells(scene);
     return options;
 }
 
