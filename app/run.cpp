@@ -13,6 +13,8 @@
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
+#include "sim/solid_cells.hpp"
+#include "validation/report/command.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -42,6 +44,7 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
     options.compression = compression == "none"  ? output::Compression::none
                           : compression == "lz4" ? output::Compression::lz4
                                                  : output::Compression::zlib;
+    options.solid = sim::solid_cells(scene);
     return options;
 }
 
@@ -65,6 +68,7 @@ public:
           progress_(simulation.time(), simulation.end_time(), quiet) {
         log_.set_solver_bytes(simulation.solver().bytes());
         if (restarted) log_.resume(simulation.steps());
+        write_log("running");  // where the disk fills later, there is a file that can still say so
     }
     /// What is to be measured of the run: told in run.json at its end.
     void measure(Measured& measured) { measured_ = &measured; }
@@ -91,6 +95,15 @@ public:
         log_.set_solver_bytes(simulation.solver().bytes());
         if (measured_) log_.set_measured(measured_->values());
         write_log(status);
+    }
+    /// The run broke off: that is said if nothing else can be written any more.
+    void fail(const std::string& why) noexcept {
+        progress_.end();
+        try {
+            write_log("failed: " + why);
+        } catch (const std::exception&) {
+            log_.overwrite_status("failed: " + why);
+        }
     }
     std::vector<std::filesystem::path> series() const { return frames_ ? frames_->series() : std::vector<std::filesystem::path>{}; }
 
@@ -126,8 +139,11 @@ std::string scene_name(const scene::Scene& scene) {
 
 std::filesystem::path find_checkpoint(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return path;
-    const auto newest = sim::checkpoint_file(path);
-    return std::filesystem::exists(newest) ? newest : sim::last_good_file(path);
+    for (const auto& file : {sim::checkpoint_file(path), sim::last_good_file(path)})
+        if (std::filesystem::exists(file)) return file;
+    throw BadInput(path.string() +
+                   " has no checkpoint to continue from: one is written when a run is interrupted or fails, and with "
+                   "--checkpoint-every N; a finished run without one has nothing left to do");
 }
 
 /// Where --out says; else beside the checkpoint that is continued; else out/<name of the scene>.
@@ -145,6 +161,27 @@ std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& s
     return std::optional<Measured>(std::in_place, simulation, arguments.measure, arguments.reference);
 }
 
+/// What was written, and how to see it.
+void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder) {
+    for (const auto& path : series) std::printf("%s\n", path.string().c_str());
+    if (!series.empty())
+        std::printf("to see it: weir view %s (a window), weir picture %s (a PNG), or open the .pvd in ParaView\n", folder.c_str(),
+                    folder.c_str());
+}
+
+/// A checkpoint at the end of its scene: there is nothing to continue.
+int tell_finished(const Simulation& simulation) {
+    std::fprintf(stderr, "nothing is left to do: the run has reached its end at t = %.6g s; to go on: --set time.end=%.6g\n",
+                 simulation.time(), 2 * simulation.time());
+    return exit_success;
+}
+
+/// What the user names: a path; or, where nothing stands there, a case.
+std::filesystem::path find_scene(const std::string& name) {
+    const bool is_path = name.find_first_of("./") != std::string::npos;
+    return is_path || std::filesystem::exists(name) ? std::filesystem::path(name) : validation::find_case_scene(name);
+}
+
 int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
@@ -153,10 +190,10 @@ int simulate(const RunArguments& arguments) {
     std::optional<Checkpoint> checkpoint;
     if (!arguments.restart.empty()) checkpoint = Checkpoint::read(find_checkpoint(arguments.restart));
     if (arguments.scene.empty() && !checkpoint)
-        throw BadInput("weir run needs a scene (a file, or a folder with a scene.toml), or --restart");
+        throw BadInput("weir run needs a scene (a file, a folder with a scene.toml, or the name of a case), or --restart");
 
     scene::Scene scene =
-        arguments.scene.empty() ? scene_of(*checkpoint, overrides) : scene::read(arguments.scene, sim::schemas(), overrides);
+        arguments.scene.empty() ? scene_of(*checkpoint, overrides) : scene::read(find_scene(arguments.scene), sim::schemas(), overrides);
     if (!arguments.explain)
         sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run);
     Simulation simulation(std::move(scene));
@@ -169,6 +206,7 @@ int simulate(const RunArguments& arguments) {
         std::fputs((explain(simulation) + "a run writes " + space).c_str(), stdout);
         return exit_success;
     }
+    if (checkpoint && simulation.finished()) return tell_finished(simulation);
     output::check(frame_options(simulation.scene()), simulation.fields());
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     output::require_writable(folder);
@@ -187,14 +225,16 @@ int simulate(const RunArguments& arguments) {
     sim::Ending ending;
     try {
         ending = sim::run(simulation, recorder, options);
-    } catch (const NumericalFailure& failure) {
-        recorder.end(simulation, std::string("failed: ") + failure.what());
+        recorder.end(simulation,
+                     ending == sim::Ending::finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
+    } catch (const std::exception& failure) {
+        recorder.fail(failure.what());
         throw;
     }
+    if (simulation.steady())
+        std::fprintf(stderr, "steady at t = %.6g s: no velocity changes faster than time.stop_when_steady\n", simulation.time());
+    if (!arguments.quiet) tell_results(recorder.series(), folder);
     const bool finished = ending == sim::Ending::finished;
-    recorder.end(simulation, finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
-    if (!arguments.quiet)
-        for (const auto& series : recorder.series()) std::printf("%s\n", series.string().c_str());
     if (finished && measured) std::fputs(measured->text().c_str(), stdout);
     if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
@@ -207,7 +247,7 @@ int simulate(const RunArguments& arguments) {
 void add_run(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<RunArguments>();
     CLI::App* run = app.add_subcommand("run", "Simulate a scene: frames (.pvd), probes (.csv) and run.json");
-    run->add_option("scene", arguments->scene, "A scene file, or a folder with a scene.toml");
+    run->add_option("scene", arguments->scene, "A scene file, a folder with a scene.toml, or the name of a case (weir list cases)");
     run->add_option("--out", arguments->out, "Output folder (default: out/<name of the scene>)");
     run->add_option("--set", arguments->set, "Override a key: --set grid.cells=[64,64]; may be repeated")
         ->type_name("KEY=VALUE")

@@ -6,6 +6,7 @@
 #include "sim/finite.hpp"
 #include "sim/foretold.hpp"
 #include "sim/registry.hpp"
+#include "sim/steadiness.hpp"
 
 #include <fmt/format.h>
 
@@ -82,11 +83,13 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       every_(scene_.root().number_or("output.every", infinity)),
       fixed_dt_(scene_.root().number_or("time.dt", 0)),
       max_dt_(scene_.root().number_or("time.max_dt", infinity)),
-      guard_(scene_.text("time.guard") != "off") {
+      guard_(scene_.text("time.guard") != "off"),
+      steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)) {
     check_output_fields(scene_, solver_->fields());
     if (auto ignored = scene::ignored_keys(scene_, sim::kind_named(scene_.solver(), kinds).schema); !ignored.empty())
         scene_.refuse(std::move(ignored));
     probes_.sample(*solver_);
+    if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }
 
 StepReport Simulation::step() { return step_towards(next_target()); }
@@ -112,11 +115,12 @@ StepReport Simulation::step_towards(real target) {
         throw;
     }
     ++steps_;
+    if (steady_rate_ > 0) steady_ = sim::change_and_keep(fields(), last_velocity_) <= steady_rate_ * report.dt;
     if (std::string concern = concerned_ ? std::string() : solver_->concern(); !concern.empty()) {
         concerned_ = true;
         warnings_.push_back(scene_.file() + ": " + concern);
     }
-    at_frame_ = reached(frame_target);
+    at_frame_ = reached(frame_target) || steady_;
     if (at_frame_) ++frame_;
     probes_.sample(*solver_);
     return report;
@@ -182,6 +186,7 @@ void Simulation::restore(const Checkpoint& from) {
         steps_ = from.get_value<std::int64_t>("sim.steps");
         frame_ = from.get_value<std::int64_t>("sim.frame");
         at_frame_ = from.get_value<bool>("sim.at_frame");
+        if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
     } catch (const BadInput&) {
         throw;
     } catch (const std::runtime_error& error) {
