@@ -32,6 +32,7 @@ StepReport FlowSolver<D>::step(real dt) {
         hold();                        // what emitters and solids prescribe
     }
     apply(Stage::finish, dt);
+    if (solids_.moving()) clear_solids();
     state_.time += dt;
     return report(dt);
 }
@@ -128,6 +129,11 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
     clear_solids();
+    smoke_removed_ = 0;  // what a scene puts inside a solid was never there
+    if (solids_.moving() && state_.find("smoke")) {
+        was_solid_ = Grid<std::uint8_t, D>(state_.extent());
+        remember_solids();
+    }
     apply(Stage::source, 0);  // what is emitted from the start is there at the start: the first step knows its forces
     passes_.reset();
 }
@@ -187,10 +193,16 @@ void FlowSolver<D>::advect_fields(real dt) {
     if (state_.fields.empty()) return;
     const auto timed = passes_.time("advect fields");
     for (auto& field : state_.fields) {
-        if (options_.scheme == Scheme::conservative)
-            add_field_flux(field.before, state_.before, state_.solid, state_.u.h, options_.flux, dt, field.values);
-        else
+        if (options_.scheme != Scheme::conservative) {
             characteristics_.advect(field.before, field.boundary, all_cells<D>(state_.extent()), trace_, dt, field.values);
+            continue;
+        }
+        if (solids_.moving())  // a cell that a body leaves begins with what is continued into it
+            for_each_cell(state_.extent(), [&](const Index<D>& I) {
+                if (state_.cells(I) == poisson::Cell::solid) field.values(I) = field.before(I);
+            });
+        add_field_flux(field.before, state_.before, state_.solid, state_.u.h, options_.flux, dt, field.values);
+        if (solids_.moving()) keep_uniform_at_solids(field.before, state_.before, state_.solid, state_.u.h, dt, field.values);
     }
 }
 
@@ -247,21 +259,38 @@ void FlowSolver<D>::project(real dt) {
     impulse_ += dt * pressure_force(state_);
 }
 
-/// Emitted values stand where they are emitted, after each (sub)step: what flows from there in the next does not depend on its length.
+/// Emitted values stand where they are emitted, after each (sub)step: what flows from there in the next does not depend on its length. Nor
+/// does smoke stand in a solid; what a moving one covers or leaves is counted once, at the end of the step.
 template <int D>
 void FlowSolver<D>::hold() {
     for (auto& field : state_.fields) field.hold();
-    clear_solids();
+    if (!solids_.moving()) clear_solids();
 }
 
-/// No smoke stands inside a solid.
+/// No smoke stands inside a solid. What that removes is counted, of cells that a body has covered since the last step, and what is gained
+/// in those that it has left: in the others there are only values continued from beside it.
 template <int D>
 void FlowSolver<D>::clear_solids() {
     auto* smoke = state_.find("smoke");
     if (!solids_.any() || !smoke) return;
+    const auto sum = [&](auto&& counts) {
+        return state_.u.cell_volume() * sum_over(state_.extent(), [&](const Index<D>& I) { return counts(I) ? (*smoke)(I) : 0; });
+    };
+    const auto solid = [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::solid; };
+    if (!was_solid_.empty()) {
+        smoke_removed_ += sum([&](const Index<D>& I) { return solid(I) && !was_solid_(I); });
+        smoke_continued_ += sum([&](const Index<D>& I) { return !solid(I) && was_solid_(I); });
+    }
+    remember_solids();
     for_each_cell(state_.extent(), [&](const Index<D>& I) {
         if (state_.cells(I) == poisson::Cell::solid) (*smoke)(I) = 0;
     });
+}
+
+template <int D>
+void FlowSolver<D>::remember_solids() {
+    if (was_solid_.empty()) return;
+    for_each_cell(state_.extent(), [&](const Index<D>& I) { was_solid_(I) = state_.cells(I) == poisson::Cell::solid; });
 }
 
 /// Largest number of cells that anything crosses in a second, where the fluid crosses as many as it is said to.
@@ -326,6 +355,10 @@ template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
     auto list = flow::integrals(state_);
     if (!solids_.any()) return list;
+    if (state_.find("smoke")) {
+        list.push_back({"smoke_removed", D == 2 ? "m^2" : "m^3", smoke_removed_});
+        list.push_back({"smoke_continued", D == 2 ? "m^2" : "m^3", smoke_continued_});
+    }
     const Vec<D> force = pressure_force(state_);
     for (int a = 0; a < D; ++a) {
         const std::string letter(1, "xyz"[a]);
@@ -339,6 +372,7 @@ template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
     state_.save(to);
     to.put_value("impulse", impulse_);
+    to.put_value("smoke_in_solids", std::array<real, 2>{smoke_removed_, smoke_continued_});
 }
 
 template <int D>
@@ -346,9 +380,14 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     state_.restore(from);
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
+    if (from.has("smoke_in_solids")) {
+        const auto smoke = from.template get_value<std::array<real, 2>>("smoke_in_solids");
+        smoke_removed_ = smoke[0], smoke_continued_ = smoke[1];
+    }
     if (!solids_.moving()) return;
     solids_.place(state_, state_.time);
     projection_.set_matrix(state_);
+    remember_solids();
 }
 
 template <int D>
@@ -357,6 +396,7 @@ std::size_t FlowSolver<D>::bytes() const {
     for (const auto& blend : velocity_blend_) total += blend.bytes();
     for (const auto& blend : field_blend_) total += blend.bytes();
     for (const auto& component : carried_.face) total += component.bytes();
+    total += was_solid_.size();
     return total;
 }
 

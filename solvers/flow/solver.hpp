@@ -58,6 +58,7 @@ private:
     void project(real dt);
     void hold();
     void clear_solids();
+    void remember_solids();
     real rate(real fluid) const;
     real last_rate() const;
     StepReport report(real dt);
@@ -73,7 +74,10 @@ private:
     PaddedVelocity<D> carried_;  // MacCormack: what the flow carries, u less half the old pressure's push
     Projection<D> projection_;
     const poisson::Report* report_ = nullptr;
-    Vec<D> impulse_{};  // of the pressure on all solids since the start [N s]
+    real smoke_removed_ = 0;           // from inside solids since the start, times the cells' volume [m^D]
+    real smoke_continued_ = 0;         // what stood in cells that a body had left, continued from beside it [m^D]
+    Grid<std::uint8_t, D> was_solid_;  // where smoke was cleared last; only beside solids that move
+    Vec<D> impulse_{};                 // of the pressure on all solids since the start [N s]
     real cfl_, side_rate_ = 0;
     real fastest_ = not_applicable;  // max |u|/h after the last step; not known before the first [1/s]
     bool wants_vorticity_ = false, wants_divergence_ = false;

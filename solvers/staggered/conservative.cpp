@@ -86,6 +86,22 @@ void add_field_flux(const Padded<D>& before, const PaddedVelocity<D>& velocity, 
 }
 
 template <int D>
+void keep_uniform_at_solids(const Padded<D>& before, const PaddedVelocity<D>& velocity, const SolidFaces<D>& solid, const Vec<D>& h,
+                            real dt, Grid<real, D>& q) {
+    for_each_cell(q.extent(), [&](const Index<D>& I) {
+        real out = 0;
+        bool cut = false;
+        for (int b = 0; b < D; ++b) {
+            const auto& w = solid.open[static_cast<std::size_t>(b)];
+            const Index<D> up = I + e<D>(b);
+            cut = cut || w(I) < 1 || w(up) < 1;
+            out += (w(up) * *velocity[b].at(up) - w(I) * *velocity[b].at(I)) / h[b];
+        }
+        if (cut) q(I) += dt * *before.at(I) * out;
+    });
+}
+
+template <int D>
 void StageBlend<D>::blend(const Substep& stage, const Padded<D>& before, Grid<real, D>& value) {
     if (increment_.empty()) increment_ = Grid<real, D>(value.extent());
     for_each_row(Index<D>{}, value.extent(), [&](const Index<D>& first, int count) {
@@ -105,6 +121,8 @@ template void add_momentum_flux(const PaddedVelocity<2>&, const Vec<2>&, const N
 template void add_momentum_flux(const PaddedVelocity<3>&, const Vec<3>&, const Nodes<3>&, real, Grid<real, 3>&);
 template void add_field_flux(const Padded<2>&, const PaddedVelocity<2>&, const SolidFaces<2>&, const Vec<2>&, Flux, real, Grid<real, 2>&);
 template void add_field_flux(const Padded<3>&, const PaddedVelocity<3>&, const SolidFaces<3>&, const Vec<3>&, Flux, real, Grid<real, 3>&);
+template void keep_uniform_at_solids(const Padded<2>&, const PaddedVelocity<2>&, const SolidFaces<2>&, const Vec<2>&, real, Grid<real, 2>&);
+template void keep_uniform_at_solids(const Padded<3>&, const PaddedVelocity<3>&, const SolidFaces<3>&, const Vec<3>&, real, Grid<real, 3>&);
 template class StageBlend<2>;
 template class StageBlend<3>;
 

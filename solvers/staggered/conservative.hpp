@@ -33,6 +33,12 @@ template <int D>
 void add_field_flux(const Padded<D>& before, const PaddedVelocity<D>& velocity, const SolidFaces<D>& solid, const Vec<D>& h, Flux flux,
                     real dt, Grid<real, D>& q);
 
+/// q += dt q Σ_b δ_b(w_b u_b) in cells that a solid cuts, w the open part of a face: the flow out of them alone does not vanish where the
+/// solid moves, since it fills or frees a part, and q is of the whole cell. So what is uniform stays so beside a solid that moves.
+template <int D>
+void keep_uniform_at_solids(const Padded<D>& before, const PaddedVelocity<D>& velocity, const SolidFaces<D>& solid, const Vec<D>& h,
+                            real dt, Grid<real, D>& q);
+
 /// Wray's combination for one quantity: remembers the rate of each stage for the next.
 template <int D>
 class StageBlend {

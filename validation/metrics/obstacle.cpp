@@ -62,6 +62,18 @@ std::vector<Metric> obstacle_metrics() {
                  return largest_magnitude(missing_impulse(run)) / largest_magnitude(run.series("solid_impulse_x"));
              },
          .figure = [](const RunRecord& run, const Reference&) { return impulse_panel(run); }},
+        {.name = "smoke.budget_error",
+         .unit = "",
+         .doc = "Largest difference between the smoke that is held and what was there, less what was removed inside bodies, with what was "
+                "continued where they had been; over what was there.",
+         .measure =
+             [](const RunRecord& run, const Reference&) {
+                 Curve missing = run.series("total_smoke");
+                 const Curve removed = run.series("smoke_removed"), continued = run.series("smoke_continued");
+                 const real first = missing.y.at(0);
+                 for (std::size_t i = 0; i < missing.size(); ++i) missing.y[i] += removed.y[i] - continued.y[i] - first;
+                 return largest_magnitude(missing) / first;
+             }},
         {.name = "smoke.inside_solids",
          .unit = "",
          .doc = "Largest amount of smoke at any step in cells wholly inside a body.",
