@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "app/explain.hpp"
 #include "app/interrupt.hpp"
+#include "app/measured.hpp"
 #include "app/progress.hpp"
 #include "core/parallel.hpp"
 #include "output/atomic_file.hpp"
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace weir::app {
 
@@ -22,7 +24,8 @@ namespace {
 
 struct RunArguments {
     std::string scene, restart, out, backend;
-    std::vector<std::string> set;
+    std::vector<std::string> set, measure;
+    std::string reference;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
     bool quiet = false, explain = false;
@@ -61,7 +64,10 @@ public:
         log_.set_solver_bytes(simulation.solver().bytes());
         if (restarted) log_.resume(simulation.steps());
     }
+    /// What is to be measured of the run: told in run.json at its end.
+    void measure(Measured& measured) { measured_ = &measured; }
     void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
+        if (measured_) measured_->on_step(report, seconds);
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
         probes_.update(simulation.probes());  // as they come: a run that is killed leaves all that it measured
         progress_.show(simulation.time(), simulation.steps());
@@ -81,6 +87,7 @@ public:
         progress_.end();
         probes_.update(simulation.probes());
         log_.set_solver_bytes(simulation.solver().bytes());
+        if (measured_) log_.set_measured(measured_->values());
         write_log(status);
     }
     std::vector<std::filesystem::path> series() const { return frames_ ? frames_->series() : std::vector<std::filesystem::path>{}; }
@@ -101,6 +108,7 @@ private:
     sim::ProbeFiles probes_;
     output::RunLog log_;
     Progress progress_;
+    Measured* measured_ = nullptr;
     std::size_t told_ = 0;  // warnings
     clock::time_point written_{};
     clock::duration write_time_{};
@@ -127,6 +135,14 @@ std::filesystem::path output_folder(const RunArguments& arguments, const scene::
     return std::filesystem::path("out") / scene_name(scene);
 }
 
+/// A metric may look at every step, so a run is measured whole or not at all.
+std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& simulation) {
+    if (arguments.measure.empty() && arguments.reference.empty()) return std::nullopt;
+    if (arguments.measure.empty()) throw BadInput("--reference says what a run is compared with: it needs --measure");
+    if (!arguments.restart.empty()) throw BadInput("--measure looks at a run from its start: it does not go with --restart");
+    return std::optional<Measured>(std::in_place, simulation, arguments.measure, arguments.reference);
+}
+
 int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
@@ -151,7 +167,9 @@ int simulate(const RunArguments& arguments) {
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     output::require_writable(folder);
 
+    std::optional<Measured> measured = measured_of(arguments, simulation);
     Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
+    if (measured) recorder.measure(*measured);
     catch_interrupts();
     sim::LoopOptions options;
     options.folder = folder;
@@ -169,6 +187,7 @@ int simulate(const RunArguments& arguments) {
     recorder.end(simulation, finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
     if (!arguments.quiet)
         for (const auto& series : recorder.series()) std::printf("%s\n", series.string().c_str());
+    if (finished && measured) std::fputs(measured->text().c_str(), stdout);
     if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
                  folder.c_str());
@@ -188,6 +207,10 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--threads", arguments->threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
     run->add_option("--backend", arguments->backend,
                     "threads[:isa], opencl[:N] (weir list devices) or reference: the same as --set scheme.backend=...");
+    run->add_option("--measure", arguments->measure, "A metric of the finished run, as cases measure it; may be repeated")
+        ->type_name("METRIC")
+        ->allow_extra_args(false);
+    run->add_option("--reference", arguments->reference, "What --measure compares with, by name, as in case.toml");
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");

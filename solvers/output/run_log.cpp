@@ -83,7 +83,11 @@ void RunLog::resume(std::int64_t last) {
 
 void RunLog::write() const {
     std::string text = head_ + ",\n \"status\": " + json(status_).dump() + ",\n \"series\": " + json(series_).dump() +
-                       ",\n \"solver_bytes\": " + std::to_string(solver_bytes_) + ",\n \"steps\": [";
+                       ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);
+    json measured = json::object();
+    for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);
+    if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();
+    text += ",\n \"steps\": [";
     for (std::size_t i = 0; i < steps_.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + steps_[i];
     write_file(file_, text + "\n ]\n}\n");
 }

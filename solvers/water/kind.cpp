@@ -63,6 +63,8 @@ scene::SolverKind kind() {
                    scheme_keys(),
                    initial_keys()};
     schema.effects = effect_schemas();
+    schema.without = {"sides.*.temperature", "sides.*.smoke",       "sides.*.profile", "emitters.temperature",
+                      "emitters.smoke",      "initial.temperature", "initial.smoke"};
     return {schema,
             staggered::make<Water>,
             {{"velocity", "pressure", "level_set", "position", "velocity"},

@@ -188,9 +188,11 @@ void Water<D>::refuse_buried_emitters(const scene::Scene& scene) const {
 
 template <int D>
 void Water<D>::fill_with_liquid(const scene::Scene& scene) {
-    const auto shapes = geometry::make_shapes<D>(scene.has("liquid") ? scene.root().tables("liquid") : std::vector<scene::Table>{});
+    const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     if (shapes.empty()) {
-        if (emitters_.empty()) scene.refuse("liquid", "a scene of water needs liquid: at least one shape, or an emitter");
+        const real end = scene.number("time.end");
+        if (std::none_of(emitters_.begin(), emitters_.end(), [&](const auto& e) { return e.works(0, end); }))
+            scene.refuse("liquid", "a scene of water needs liquid: at least one shape, or an emitter that gives some before the end");
         surface_.redistance();
     } else {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
