@@ -43,6 +43,12 @@ protected:
     void show(const particles::Fluid<Backend::dim>& fluid, FieldSet& set) const final {
         set.fields.push_back({"pressure", "Pa", Where::particle, "particles", {std::span<const real>(fluid.carried)}});
     }
+    void sum_up(std::vector<Integral>& list) const final {
+        const auto& fluid = this->state();
+        list.push_back({"elastic_energy", "J", particles::block_sum(fluid.count(), [&](int i) {
+                            return fluid.mass * options_.elastic_energy(fluid.density[static_cast<std::size_t>(i)], rho_rest_);
+                        })});
+    }
     void save_more(Checkpoint& to) const final { to.put_value("sph.max_acceleration", max_acceleration_); }
     void restore_more(const Checkpoint& from) final { max_acceleration_ = from.get_value<real>("sph.max_acceleration"); }
 

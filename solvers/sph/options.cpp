@@ -61,6 +61,13 @@ real Options::density(real p, real rho0) const {
     return gamma == 1 ? rho0 + p / c2 : rho0 * std::pow(1 + gamma * p / (c2 * rho0), 1 / gamma);
 }
 
+real Options::elastic_energy(real rho, real rho0) const {
+    const real r = rho / rho0, c2 = sound * sound;
+    if (r < 1 && !tension) return 0;
+    if (gamma == 1) return c2 * (std::log(r) + 1 / r - 1);
+    return c2 / gamma * ((std::pow(r, gamma - 1) - 1) / (gamma - 1) + 1 / r - 1);
+}
+
 /// What gravity and walls do to the parameters.
 template <class Params>
 void add_surroundings(Params& p, const Options& o, real spacing, real rho0) {

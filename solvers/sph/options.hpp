@@ -32,6 +32,8 @@ struct Options : particles::Scheme {
     real pressure(real rho, real rho0) const;
     /// The density that has this pressure.
     real density(real pressure, real rho0) const;
+    /// What compression from rho0 to rho stores: the integral of p / rho^2 over rho [J/kg].
+    real elastic_energy(real rho, real rho0) const;
     /// Whether walls add to the forces more than a particle's own pressure.
     bool wall_forces() const;
 

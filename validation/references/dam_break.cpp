@@ -36,6 +36,13 @@ REFERENCE(dam_break_martin_moyce) {
     return ref;
 }
 
+REFERENCE(dam_break_front) {
+    Reference ref = dam_break_martin_moyce_reference(scene, data);
+    ref.curves["front.other"] =
+        read_table(data / "koshizuka_oka1996.csv").where("series", "exp").curve("T", "Z", "Koshizuka & Oka 1996, experiment");
+    return ref;
+}
+
 REFERENCE(dam_break_koshizuka_oka) {
     Reference ref{.source = "Koshizuka & Oka 1996 (experiment, digitised)"};
     add_scales(ref, scene);

@@ -84,14 +84,13 @@ void add_sweeps(std::vector<Panel>& panels, const CaseResult& result) {
     }
 }
 
-/// What the metrics drew of the finest run of each variant: equal titles share a panel, and the reference's points come once.
+/// What the metrics drew of the finest run of each variant: equal titles share a panel, a sweep's too, and the reference's points come
+/// once.
 void add_profiles(std::vector<Panel>& panels, const CaseResult& result) {
-    const std::size_t first = panels.size();
     for (const auto& v : result.variants) {
         if (v.runs.empty()) continue;
         for (const Panel& p : v.runs.back().panels) {
-            auto shared = std::find_if(panels.begin() + static_cast<std::ptrdiff_t>(first), panels.end(),
-                                       [&](const Panel& q) { return q.title == p.title; });
+            auto shared = std::find_if(panels.begin(), panels.end(), [&](const Panel& q) { return q.title == p.title; });
             if (shared == panels.end()) shared = panels.insert(panels.end(), {.title = p.title, .x = p.x, .y = p.y});
             for (Curve c : p.curves) {
                 const bool ours = !c.points && !c.dashed;

@@ -175,3 +175,20 @@ TEST("surface tension without tension, diffusion of a summed density, a surface 
     EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("density = \"summation\"", "effects.density_diffusion = {}")), scene::BadScene);
     EXPECT_THROW(sph::SphSolver<2>(sph_scene<2>("density = \"summation\"", "initial.surface = [0, 1]")), scene::BadScene);
 }
+
+TEST("elastic energy is the work of compression: the integral of p / rho^2, which Simpson's rule gives to nine digits") {
+    for (const real gamma : {1.0, 7.0})
+        for (const bool tension : {false, true})
+            for (const real rho : {900.0, 990.0, 1000.0, 1010.0, 1100.0}) {
+                sph::Options o;
+                o.gamma = gamma, o.tension = tension, o.sound = 30;
+                const int n = 2000;
+                const real rho0 = 1000, step = (rho - rho0) / n;
+                real sum = 0;
+                for (int i = 0; i <= n; ++i) {
+                    const real at = rho0 + i * step, weight = i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2;
+                    sum += weight * o.pressure(at, rho0) / (at * at) * step / 3;
+                }
+                EXPECT_NEAR(o.elastic_energy(rho, rho0), sum, 1e-9 * (std::abs(sum) + 1e-3)) << gamma << ' ' << tension << ' ' << rho;
+            }
+}
