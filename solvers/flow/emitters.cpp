@@ -40,23 +40,43 @@ FieldPlan& Emitters<D>::needs(const scene::Scene& scene, FieldPlan& plan) {
 }
 
 template <int D>
-Emitters<D>::Emitters(const scene::Scene& scene, const MacVelocity<D>& grid) : cfl_(scene.number("time.cfl")) {
+typename Emitters<D>::Emitter Emitters<D>::make(const scene::Table& table, const MacVelocity<D>& grid) {
+    Emitter emitter{table.number("start"), table.number_or("end", infinity), {}};
+    const auto shape = geometry::make_shape<D>(table);
+    for (const char* name : settable)
+        if (table.has(name))
+            emitter.sets.push_back(
+                {name, -1, table.number(name), covered(*shape, grid.cells, [&](const Index<D>& I) { return grid.cell_centre(I); })});
+    if (!table.has("velocity")) return emitter;
+    const auto velocity = table.vec<D>("velocity");
+    for (int a = 0; a < D; ++a)
+        emitter.sets.push_back(
+            {"", a, velocity[a], covered(*shape, grid[a].extent(), [&](const Index<D>& I) { return grid.face_centre(a, I); })});
+    return emitter;
+}
+
+template <int D>
+std::string Emitters<D>::idle(const Emitter& emitter, const std::vector<std::size_t>& cells, const MacState<D>& state) {
+    if (emitter.sets.empty()) return "the emitter gives nothing: it names no velocity, smoke or temperature";
+    for (const auto& set : emitter.sets)
+        if (set.entries.empty() && (set.axis < 0 || set.value != 0))
+            return std::string("the emitter is thinner than a cell: it covers the centre of no ") + (set.axis < 0 ? "cell" : "face") +
+                   (set.axis < 0 ? "" : std::string(" along ") + "xyz"[set.axis]);
+    const auto solid = [&](std::size_t i) { return state.cells[i] == poisson::Cell::solid; };
+    if (!cells.empty() && std::all_of(cells.begin(), cells.end(), solid)) return "the emitter lies inside solids: nothing can leave it";
+    return {};
+}
+
+template <int D>
+Emitters<D>::Emitters(const scene::Scene& scene, const MacState<D>& state) : cfl_(scene.number("time.cfl")) {
+    const MacVelocity<D>& grid = state.u;
     for (const auto& table : scene.root().tables("emitters")) {
-        Emitter emitter{table.number("start"), table.number_or("end", infinity), {}};
-        const auto shape = geometry::make_shape<D>(table);
-        for (const char* name : settable)
-            if (table.has(name))
-                emitter.sets.push_back(
-                    {name, -1, table.number(name), covered(*shape, grid.cells, [&](const Index<D>& I) { return grid.cell_centre(I); })});
-        if (table.has("velocity")) {
-            const auto velocity = table.vec<D>("velocity");
-            for (int a = 0; a < D; ++a) {
-                emitter.sets.push_back(
-                    {"", a, velocity[a], covered(*shape, grid[a].extent(), [&](const Index<D>& I) { return grid.face_centre(a, I); })});
-                max_rate_ = std::max(max_rate_, std::abs(velocity[a]) / grid.h[a]);
-            }
-        }
-        emitters_.push_back(std::move(emitter));
+        emitters_.push_back(make(table, grid));
+        const auto cells = covered(*geometry::make_shape<D>(table), grid.cells, [&](const Index<D>& I) { return grid.cell_centre(I); });
+        if (const auto why = idle(emitters_.back(), cells, state); !why.empty())
+            scene.refuse("emitters[" + std::to_string(emitters_.size() - 1) + "]", why);
+        for (const auto& set : emitters_.back().sets)
+            if (set.axis >= 0) max_rate_ = std::max(max_rate_, std::abs(set.value) / grid.h[set.axis]);
     }
 }
 

@@ -8,7 +8,8 @@ namespace weir::flow {
 template <int D>
 class Emitters final : public MacEffect<D> {
 public:
-    Emitters(const scene::Scene& scene, const MacVelocity<D>& grid);
+    /// Refuses emitters that give nothing, are thinner than a cell or lie inside the solids of `state`.
+    Emitters(const scene::Scene& scene, const MacState<D>& state);
     static bool any(const scene::Scene& scene) { return scene.has("emitters") && !scene.root().tables("emitters").empty(); }
     /// The fields that the scene's emitters set.
     static FieldPlan& needs(const scene::Scene& scene, FieldPlan& plan);
@@ -28,6 +29,10 @@ private:
         real start = 0, end = infinity;
         std::vector<Set> sets;
     };
+    static Emitter make(const scene::Table& table, const MacVelocity<D>& grid);
+    /// Why nothing would come of it; empty where something does.
+    static std::string idle(const Emitter& emitter, const std::vector<std::size_t>& cells, const MacState<D>& state);
+
     std::vector<Emitter> emitters_;
     real cfl_, max_rate_ = 0;
 };

@@ -2,10 +2,12 @@
 
 #include "core/error.hpp"
 #include "flow/emitters.hpp"
+#include "scene/names.hpp"
 #include "staggered/diagnostics.hpp"
 #include "staggered/initial.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace weir::flow {
 
@@ -60,6 +62,34 @@ real ambient_temperature(const scene::Scene& scene) {
     return 0;
 }
 
+/// What flows in must flow out: through an open side, or through another inflow that takes as much out. The sums' rounding is no inflow.
+template <int D>
+void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
+    real net = 0, gross = 0, faces = 0;
+    std::string first;
+    for (int a = 0; a < D; ++a)
+        for (int end = 0; end < 2; ++end) {
+            if (s.sides.open(a, end)) return;
+            if (s.sides.side(a, end).kind != geometry::SideKind::inflow) continue;
+            if (first.empty()) first = std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max");
+            real area = 1;
+            for (int b = 0; b < D; ++b) area *= b == a ? 1 : s.u.h[b];
+            const auto& open = s.solid.open[static_cast<std::size_t>(a)];
+            const auto flux = [&](Index<D> I) {
+                I[a] = end == 0 ? 0 : s.u.cells[a];
+                return (end == 0 ? 1 : -1) * area * (open.empty() ? 1 : open(I)) * s.u[a](I);
+            };
+            Index<D> side = s.u.cells;
+            side[a] = 1;
+            net += sum_over(side, flux), faces += static_cast<real>(product(side));
+            gross += sum_over(side, [&](const Index<D>& I) { return std::abs(flux(I)); });
+        }
+    if (!(std::abs(net) > faces * std::numeric_limits<real>::epsilon() * gross)) return;
+    scene.refuse(first,
+                 "the box is closed: " + scene::number_text(net) + (D == 2 ? " m^2/s" : " m^3/s") + " flow in and nothing lets them out",
+                 "a side of kind \"outflow\", or an inflow with the velocity to the outside that takes out as much");
+}
+
 bool lists(const scene::Scene& scene, const std::string& field) {
     const auto& names = scene.root().texts("output.fields");
     return std::find(names.begin(), names.end(), field) != names.end();
@@ -84,7 +114,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     const auto& cells = state_.cells.values();
     if (std::none_of(cells.begin(), cells.end(), [](poisson::Cell c) { return c == poisson::Cell::fluid; }))
         scene.refuse("solids", "the solids leave no cell for the fluid");
-    if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_.u));
+    if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_));
     state_.before = PaddedVelocity<D>(state_.u);
     if (options_.scheme == Scheme::maccormack) carried_ = PaddedVelocity<D>(state_.u);
     set_initial_velocity(state_, scene);
@@ -94,6 +124,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         set_initial_field(field.values, state_.u, scene, field.name);
     }
     solids_.set_faces(state_);
+    refuse_closed_box(scene, state_);
     clear_solids();
     apply(Stage::source, 0);  // what is emitted from the start is there at the start: the first step knows its forces
     passes_.reset();

@@ -22,10 +22,10 @@ Side<D> make_side(const scene::Table& table) {
     side.no_slip = side.kind == SideKind::moving_wall || table.text_or("slip", "free") == "no";
     if (table.has("velocity")) side.velocity = table.vec<D>("velocity");
     side.profile = table.text_or("profile", "uniform");
-    if (table.has("temperature")) side.temperature = table.number("temperature");
-    if (table.has("smoke")) side.smoke = table.number("smoke");
     return side;
 }
+
+std::string path_of(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
 
 }  // namespace
 
@@ -34,13 +34,21 @@ Sides<D>::Sides(const scene::Scene& scene) {
     for (int axis = 0; axis < D; ++axis) {
         const std::string letter(1, "xyz"[axis]);
         for (int end = 0; end < 2; ++end) {
-            const std::string path = "sides." + letter + (end == 0 ? "_min" : "_max");
+            const std::string path = path_of(axis, end);
             if (scene.has(path)) side(axis, end) = make_side<D>(scene.root().table(path));
         }
         if (!scene.has("grid.periodic")) continue;
         for (const auto& name : scene.root().texts("grid.periodic"))
             if (name == letter) side(axis, 0).kind = side(axis, 1).kind = SideKind::periodic;
     }
+}
+
+template <int D>
+void Sides<D>::read(const scene::Scene& scene, const std::string& field) {
+    for (int axis = 0; axis < D; ++axis)
+        for (int end = 0; end < 2; ++end)
+            if (const auto path = path_of(axis, end) + "." + field; scene.has(path))
+                (field == "temperature" ? side(axis, end).temperature : side(axis, end).smoke) = scene.number(path);
 }
 
 template class Sides<2>;

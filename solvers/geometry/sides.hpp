@@ -28,6 +28,8 @@ public:
     Sides() = default;
     /// From "sides" and "grid.periodic" of a scene; a side not named is a free-slip wall.
     explicit Sides(const scene::Scene& scene);
+    /// What the sides say of "temperature" or "smoke", for solvers that carry it.
+    void read(const scene::Scene& scene, const std::string& field);
     const Side<D>& side(int axis, int end) const { return sides_[static_cast<std::size_t>(2 * axis + end)]; }
     Side<D>& side(int axis, int end) { return sides_[static_cast<std::size_t>(2 * axis + end)]; }
     bool periodic(int axis) const { return side(axis, 0).kind == SideKind::periodic; }

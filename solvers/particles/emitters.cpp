@@ -40,9 +40,13 @@ Emitters<D>::Emitters(const scene::Scene& scene, const Domain<D>& domain) {
         int axis = 0;
         for (int a = 1; a < D; ++a)
             if (std::abs(e.velocity[a]) > std::abs(e.velocity[axis])) axis = a;
-        if (e.velocity[axis] == 0) scene.refuse("emitters", "an emitter of particles needs a velocity");
+        const std::string path = "emitters[" + std::to_string(emitters_.size()) + "]";
+        if (e.velocity[axis] == 0) scene.refuse(path, "an emitter of particles needs a velocity");
         e.period = domain.spacing / std::abs(e.velocity[axis]);
         e.sites = upstream_sites<D>(*geometry::make_shape<D>(table), domain, axis, e.velocity[axis] > 0);
+        if (e.sites.empty()) scene.refuse(path, "the emitter is thinner than the particles' spacing: it covers the centre of no cell");
+        if (std::all_of(e.sites.begin(), e.sites.end(), [&](const Vec<D>& x) { return domain.solids.distance(x) <= 0; }))
+            scene.refuse(path, "the emitter begins inside solids: nothing can leave it");
         emitters_.push_back(std::move(e));
     }
     if (scene.has("sinks")) sinks_ = geometry::make_shapes<D>(scene.root().tables("sinks"));

@@ -78,7 +78,7 @@ std::vector<scene::Variant> effects() {
 
 scene::SolverKind kind() {
     const char* doc = "Position Based Fluids (Macklin & Müller 2013): liquid particles kept at rest density by constraints.";
-    return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects()}, {}),
+    return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"fluid.viscosity"}}, {}),
             particles::make_solver<PbfSolver, ReferencePbfSolver, DevicePbfSolver>,
             particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"})};
 }

@@ -95,6 +95,8 @@ std::string solver_section(const SolverSchema& solver) {
     if (!own.leaves.empty()) out += "\n| key | value | if absent | meaning |\n|---|---|---|---|\n";
     for (const auto& leaf : own.leaves) out += row(leaf.key, leaf.path);
     for (const auto& choice : own.choices) out += choice_list(choice);
+    if (!solver.without.empty())
+        out += fmt::format("\nIt has no use for `{}`, and refuses a scene that says them.\n", fmt::join(solver.without, "`, `"));
     if (!solver.effects.empty()) out += fmt::format("\nEffects of `{}`:\n", solver.name);
     for (const Variant& effect : solver.effects) out += variant_section(effect, "####");
     return out;

@@ -164,6 +164,11 @@ void Reader::unknown_key(const Member& member, const Allowed& allowed, const std
                    known(names));
         return;
     }
+    const std::string full = path.empty() ? member.key : path + "." + member.key;
+    if (solvers_)
+        for (const SolverSchema& s : *solvers_)
+            if (s.name == solver_ && is_without(s, full))
+                return report(member.place, fmt::format("solver \"{}\" has no use for {}", solver_, full), known(names));
     std::string meant = did_you_mean(member.key, names);
     if (const auto there = place_elsewhere(member.key); meant.empty() && !there.empty()) meant = fmt::format("; did you mean {}?", there);
     report(member.place, fmt::format("unknown key {}{}{}{}", quote(member.key), path.empty() ? "" : " in " + path, kind, meant),

@@ -122,7 +122,9 @@ Scene read(const std::filesystem::path& path, const std::vector<SolverSchema>& s
 const Table* Scene::effect(std::string_view name) const {
     const Value* effects = root_.find("effects");
     const Value* found = effects ? std::get<Table>(*effects).find(name) : nullptr;
-    return found ? &std::get<Table>(*found) : nullptr;
+    if (!found) return nullptr;
+    std::get<Table>(*effects).mark_read(name);
+    return &std::get<Table>(*found);
 }
 
 Scene Scene::without_effect(std::string_view name) const {

@@ -75,6 +75,12 @@ public:
     /// Keys in the order of the file, then defaults in schema order.
     std::vector<std::string> keys() const;
 
+    /// Whether a value was asked for by one of the functions of its type, since it was set or forgotten; those that go through keys()
+    /// and find(), to print a table, do not count. A key that a scene gives and nobody reads is a mistake (scene/given.hpp).
+    bool was_read(std::string_view path) const;
+    void mark_read(std::string_view path) const;
+    void forget_reading();
+
     void set(const std::string& key, Value value, Place place = {});
     const Value* find(std::string_view path) const;
     Table* find_table(std::string_view path);  // nullptr where there is none
@@ -90,6 +96,7 @@ struct Table::Entry {
     std::string key;
     Value value;
     Place place;
+    mutable bool read = false;  // set by whoever reads, on any thread: std::atomic_ref
 };
 
 struct Override {
@@ -117,6 +124,8 @@ public:
     [[noreturn]] void refuse(std::string_view path, const std::string& message, const std::string& hint = "") const;
     [[noreturn]] void refuse(std::vector<Problem> problems) const;
     const std::vector<Override>& overrides() const { return overrides_; }
+    /// From here on it counts who reads what.
+    void forget_reading() { root_.forget_reading(); }
 
     bool has(std::string_view path) const { return root_.has(path); }
     real number(std::string_view path) const { return root_.number(path); }

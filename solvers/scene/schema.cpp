@@ -55,7 +55,46 @@ Key overlay_key(const Key& base, const Key& more) {
     return key;
 }
 
+/// "sides.*" gives "sides", and leaves "*".
+std::string_view first_part(std::string_view& path) {
+    const std::string_view part = path.substr(0, path.find('.'));
+    path.remove_prefix(std::min(part.size() + 1, path.size()));
+    return part;
+}
+
+/// Takes the path out of the keys, and out of those of their variants.
+void leave_out(std::vector<Key>& keys, std::string_view path) {
+    const std::string_view part = first_part(path);
+    if (path.empty()) {
+        std::erase_if(keys, [&](const Key& k) { return k.name == part; });
+        return;
+    }
+    for (Key& key : keys) {
+        if (part != "*" && key.name != part) continue;
+        leave_out(key.keys, path);
+        auto variants = variants_of(key);
+        bool had = false;
+        for (Variant& v : variants) {
+            const std::size_t before = v.keys.size();
+            leave_out(v.keys, path);
+            had = had || v.keys.size() != before;
+        }
+        if (had) key.variants = std::move(variants), key.variants_from = nullptr;
+    }
+}
+
 }  // namespace
+
+bool is_without(const SolverSchema& solver, std::string_view path) {
+    return std::any_of(solver.without.begin(), solver.without.end(), [&](std::string_view without) {
+        std::string_view rest = path;
+        while (!without.empty() && !rest.empty()) {
+            const std::string_view part = first_part(without), key = first_part(rest);
+            if (part != "*" && part != key.substr(0, key.find('['))) return false;
+        }
+        return without.empty() && rest.empty();
+    });
+}
 
 std::vector<Key> overlay(std::vector<Key> base, const std::vector<Key>& more) {
     for (const Key& key : more) {
@@ -70,6 +109,7 @@ std::vector<Key> overlay(std::vector<Key> base, const std::vector<Key>& more) {
 
 std::vector<Key> keys_of(const SolverSchema& solver) {
     auto keys = overlay(common_keys(), solver.keys);
+    for (const auto& path : solver.without) leave_out(keys, path);
     keys.push_back(
         {.name = "effects",
          .type = Type::named,

@@ -69,6 +69,7 @@ struct SolverSchema {
     std::vector<int> dims{2, 3};
     std::vector<Key> keys{};  // top level: "scheme", ...
     std::vector<Variant> effects{};
+    std::vector<std::string> without{};  // common keys that it has no use for: "time.cfl", "emitters.smoke", "sides.*.temperature"
 };
 
 /// The keys that every scene has (title, solver, dim, grid, time, fluid, sides, liquid, solids, emitters, initial, probes, output).
@@ -76,10 +77,13 @@ const std::vector<Key>& common_keys();
 const std::vector<Variant>& shapes();   // box, sphere, plane, ... for liquid, solids, emitters and wherever an effect acts in a place
 const std::vector<Variant>& motions();  // constant, sinusoidal, rotation, keyframes
 
-/// Common keys with a solver's own laid over them, and its effects as the last key.
+/// Common keys with a solver's own laid over them and those left out that it is without, and its effects as the last key.
 std::vector<Key> keys_of(const SolverSchema& solver);
 /// The keys of `base`, changed and completed by those of `more`.
 std::vector<Key> overlay(std::vector<Key> base, const std::vector<Key>& more);
+
+/// Whether `path` ("sides.x_min.temperature", "emitters[0].smoke") is one of the keys that the solver is without.
+bool is_without(const SolverSchema& solver, std::string_view path);
 
 const std::vector<Variant>& variants_of(const Key& key);
 const Key* find_key(const std::vector<Key>& keys, std::string_view name);

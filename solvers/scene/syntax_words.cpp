@@ -57,7 +57,7 @@ Problem added_to_braces(Place place, const SourceText& text) {
     const std::string name(key.substr(0, key.find('.')));
     Problem problem = given_twice(name, place, text);
     if (const int first = first_given(text, place.line, name))
-        problem.hint = fmt::format("\"{}\" stands in braces in line {}: write this key there", name, first);
+        problem.hint = fmt::format("\"{}\" stands in braces in line {}: write {} there", name, first, key.substr(key.find('.') + 1));
     return problem;
 }
 

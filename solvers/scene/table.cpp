@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <stdexcept>
 
@@ -34,6 +35,7 @@ const T& get(const Table& table, std::string_view path, const char* type) {
     if (!value) throw std::logic_error(fmt::format("the scene has no key \"{}\"", path));
     const T* typed = std::get_if<T>(value);
     if (!typed) throw std::logic_error(fmt::format("the scene's key \"{}\" is not {}", path, type));
+    table.mark_read(path);
     return *typed;
 }
 
@@ -70,7 +72,7 @@ std::int64_t Table::integer(std::string_view path) const { return get<std::int64
 
 real Table::number(std::string_view path) const {
     const Value* value = find(path);
-    if (value && std::holds_alternative<std::int64_t>(*value)) return static_cast<real>(std::get<std::int64_t>(*value));
+    if (value && std::holds_alternative<std::int64_t>(*value)) return static_cast<real>(integer(path));
     return get<double>(*this, path, "a number");
 }
 
@@ -86,6 +88,24 @@ const Table& Table::table(std::string_view path) const { return get<Table>(*this
 const std::vector<Table>& Table::tables(std::string_view path) const {
     static const std::vector<Table> none;
     return has(path) ? get<std::vector<Table>>(*this, path, "a list of tables") : none;
+}
+
+bool Table::was_read(std::string_view path) const {
+    const Entry* e = entry(path);
+    return e && std::atomic_ref(e->read).load(std::memory_order_relaxed);
+}
+
+void Table::mark_read(std::string_view path) const {
+    if (const Entry* e = entry(path)) std::atomic_ref(e->read).store(true, std::memory_order_relaxed);
+}
+
+void Table::forget_reading() {
+    for (Entry& e : entries_) {
+        e.read = false;
+        if (auto* table = std::get_if<Table>(&e.value)) table->forget_reading();
+        if (auto* list = std::get_if<std::vector<Table>>(&e.value))
+            for (Table& t : *list) t.forget_reading();
+    }
 }
 
 Place Table::place(std::string_view path) const {

@@ -1,5 +1,7 @@
 #include "sim/simulation.hpp"
 
+#include "core/parallel.hpp"
+#include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "sim/finite.hpp"
 #include "sim/foretold.hpp"
@@ -37,6 +39,17 @@ scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& k
     return scene;
 }
 
+long cells_of(const scene::Scene& scene) {
+    long cells = 1;
+    for (const real n : scene.root().numbers("grid.cells")) cells *= static_cast<long>(n);
+    return cells;
+}
+
+std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+    const ThreadsWorth worth(cells_of(scene));
+    return sim::kind_named(scene.solver(), kinds).make(scene);
+}
+
 void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
     if (!scene.has("output.fields")) return;
     std::vector<std::string> known;
@@ -48,6 +61,12 @@ void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
                          scene::known(known));
 }
 
+/// Nobody has asked for anything yet: what is not asked for from here on would be ignored.
+scene::Scene unread(scene::Scene scene) {
+    scene.forget_reading();
+    return scene;
+}
+
 }  // namespace
 
 Simulation::Simulation(const std::filesystem::path& scene, const std::vector<scene::Override>& overrides)
@@ -56,13 +75,17 @@ Simulation::Simulation(const std::filesystem::path& scene, const std::vector<sce
 Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::registry()) {}
 
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
-    : scene_(fitting(std::move(scene), kinds)),
-      solver_(sim::kind_named(scene_.solver(), kinds).make(scene_)),
+    : scene_(unread(fitting(std::move(scene), kinds))),
+      solver_(make_solver(scene_, kinds)),
       probes_(scene_, *solver_),
       end_(scene_.number("time.end")),
       every_(scene_.root().number_or("output.every", infinity)),
+      fixed_dt_(scene_.root().number_or("time.dt", 0)),
+      max_dt_(scene_.root().number_or("time.max_dt", infinity)),
       guard_(scene_.text("time.guard") != "off") {
     check_output_fields(scene_, solver_->fields());
+    if (auto ignored = scene::ignored_keys(scene_, sim::kind_named(scene_.solver(), kinds).schema); !ignored.empty())
+        scene_.refuse(std::move(ignored));
     probes_.sample(*solver_);
 }
 
@@ -73,6 +96,7 @@ void Simulation::run_until(real t) {
 }
 
 StepReport Simulation::step_towards(real target) {
+    const ThreadsWorth worth(cells_of(scene_));
     const real frame_target = next_target();
     StepReport report;
     try {
@@ -111,9 +135,8 @@ real Simulation::next_target() const {
 
 real Simulation::wanted_dt(real target) const {
     const real remaining = target - time();
-    const scene::Table& root = scene_.root();
-    const bool fixed = root.has("time.dt");
-    const real dt = fixed ? root.number("time.dt") : std::min(solver_->advised_dt(), root.number_or("time.max_dt", infinity));
+    const bool fixed = fixed_dt_ > 0;
+    const real dt = fixed ? fixed_dt_ : std::min(solver_->advised_dt(), max_dt_);
     if (!(dt > slack(time())) && remaining > 0)
         throw NumericalFailure("time step", "the advised time step is " + scene::number_text(dt) + " s: time no longer advances");
     if (remaining <= 0) return dt;

@@ -71,7 +71,7 @@ private:
     scene::Scene scene_;
     std::unique_ptr<Solver> solver_;
     sim::Probes probes_;
-    real end_ = 0, every_ = infinity;
+    real end_ = 0, every_ = infinity, fixed_dt_ = 0, max_dt_ = infinity;  // fixed_dt_ 0: the solver advises
     std::int64_t steps_ = 0, frame_ = 0;
     bool at_frame_ = true, guard_ = true;
     bool split_ = false, concerned_ = false;  // whether a step was taken in parts, or the solver had a concern

@@ -94,9 +94,10 @@ Key surface() {
 
 scene::SolverKind kind() {
     const char* doc = "Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003), weakly compressible.";
-    return {particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects()}, {surface()}),
-            particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
-            particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"})};
+    return {
+        particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"time.cfl"}}, {surface()}),
+        particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
+        particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"})};
 }
 
 }  // namespace weir::sph

@@ -15,6 +15,14 @@ auto find_in(Fields& fields, std::string_view name) -> decltype(&fields.front().
     return nullptr;
 }
 
+/// The effect, and the exact flow that depends on it.
+template <int D>
+bool asks_for_viscosity(const scene::Scene& scene, const geometry::Sides<D>& sides) {
+    bool asks = scene.effect("viscosity") != nullptr || scene.root().text_or("initial.velocity.name", "") == "kovasznay";
+    for (int a = 0; a < D; ++a) asks = asks || sides.side(a, 0).profile == "kovasznay" || sides.side(a, 1).profile == "kovasznay";
+    return asks;
+}
+
 }  // namespace
 
 template <int D>
@@ -30,10 +38,13 @@ MacState<D>::MacState(const scene::Scene& scene, const FieldPlan& plan) : sides(
     u = MacVelocity<D>(lattice.cells, lattice.h, lattice.origin);
     p = Grid<real, D>(u.cells);
     cells = Grid<poisson::Cell, D>(u.cells, poisson::Cell::fluid);
-    for (const auto& name : plan.advected_fields()) fields.push_back({name, Grid<real, D>(u.cells), {}, field_boundary(sides, name)});
+    for (const auto& name : plan.advected_fields()) {
+        if (name == "temperature" || name == "smoke") sides.read(scene, name);
+        fields.push_back({name, Grid<real, D>(u.cells), {}, field_boundary(sides, name)});
+    }
     for (const auto& name : plan.scratch_fields()) scratch.push_back({name, Grid<real, D>(u.cells), {}, {}});
-    rho = scene.number("fluid.density");
-    nu = scene.number("fluid.viscosity");
+    rho = scene.root().number_or("fluid.density", rho);
+    if (asks_for_viscosity(scene, sides)) nu = scene.number("fluid.viscosity");
     for (int a = 0; a < D; ++a) boundary[static_cast<std::size_t>(a)] = velocity_boundary(sides, u, a, nu);
 }
 

@@ -1,0 +1,226 @@
+// Nothing that a scene may say is ignored. A scene is refused where it gives a key that nobody reads; and here small scenes give, solver by
+// solver, every key that the schema allows: a key that no solver reads makes the test fail.
+#include "scene/given.hpp"
+#include "sim/registry.hpp"
+#include "sim/simulation.hpp"
+#include "support/test.hpp"
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <set>
+
+using namespace weir;
+
+namespace {
+
+/// What a solver cannot do without, and lines of which each makes another scene; it takes the place of the line above that begins with the
+/// same word. Those of `refused` are refused by their own message, because what they ask for is not there.
+struct Said {
+    std::vector<std::string> least, lines, refused{}, in_3d{};
+};
+
+const std::vector<std::string> of_the_run{
+    "title = \"a\"",
+    "grid.origin = [0, 0]",
+    "time.dt = 0.001",
+    "time.max_dt = 0.001\ntime.guard = \"off\"",
+    "output = { every = 0.5, fields = [], faces = true, precision = \"single\", compression = \"none\" }",
+};
+/// With `field` as one that the solver has.
+std::vector<std::string> probes(const std::string& field) {
+    const std::string of = ", field = \"" + field + "\"";
+    return {"probes = [ { name = \"a\", every = 0.1, kind = \"point\", at = [0.4, 0.4]" + of + " } ]",
+            "probes = [ { name = \"a\", kind = \"line\", from = [0.1, 0.1], to = [0.9, 0.9], count = 9" + of + " } ]",
+            "probes = [ { name = \"a\", kind = \"integral\"" + of + " } ]"};
+}
+const std::vector<std::string> of_the_surface{"probes = [ { name = \"a\", kind = \"gauge\", at = [0.5, 0.5] } ]",
+                                              "probes = [ { name = \"a\", kind = \"front\", axis = \"x\" } ]"};
+const std::string at_the_wall = "probes = [ { name = \"a\", kind = \"wall_pressure\", at = [0.0, 0.4] } ]";
+const std::vector<std::string> solids{
+    "solids = [ { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9], slip = \"free\", motion = { kind = \"constant\", velocity = [0.1, "
+    "0] } "
+    "} ]",
+    "solids = [ { shape = \"sphere\", centre = [0.7, 0.7], radius = 0.1, motion = { kind = \"sinusoidal\", amplitude = [0.1, 0], "
+    "frequency = 1, phase = 1 } } ]",
+    "solids = [ { shape = \"capsule\", from = [0.7, 0.7], to = [0.8, 0.7], radius = 0.1, motion = { kind = \"rotation\", centre = [0.7, "
+    "0.7], rate = 1 } } ]",
+    "solids = [ { shape = \"plane\", point = [0.8, 0.8], normal = [-1, -1], motion = { kind = \"keyframes\", centre = [0.8, 0.8], frames = "
+    "[ { t = 0, "
+    "offset = [0, 0], angle = 0 }, { t = 1, offset = [0, 0], angle = 1 } ] } } ]",
+    "solids = [ { shape = \"union\", of = [ { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9] } ] } ]",
+    "solids = [ { shape = \"difference\", from = { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9] }, minus = [ { shape = "
+    "\"sphere\", centre = [0.7, 0.7], radius = 0.05 } ] } ]",
+};
+const std::vector<std::string> poisson{"scheme.poisson = { method = \"cg\", tolerance = 1e-6, max_iterations = 100, fixed = false }"};
+const std::vector<std::string> grid_velocities{
+    "initial.velocity = \"rest\"",
+    "initial.velocity = { name = \"constant\", value = [0, 0] }",
+    "initial.velocity = { name = \"taylor_green\", speed = 1, wavenumber = 1 }",
+    "initial.velocity = \"kovasznay\"\nfluid.viscosity = 1",
+    "initial.velocity = { name = \"shear_layer\", speed = 1, width = 0.1, stir = 0.1 }",
+    "initial.velocity = { name = \"random\", speed = 1, seed = 2 }",
+};
+const std::vector<std::string> particle_velocities{
+    "initial.velocity = { name = \"constant\", value = [0, 0] }",
+    "initial.velocity = { name = \"strain\", rate = 1, centre = [0, 0] }",
+    "initial.velocity = { name = \"rotation\", omega = 1, centre = [0, 0] }",
+};
+const std::vector<std::string> walls{"sides.x_min = { kind = \"wall\", slip = \"free\" }",
+                                     "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1] }"};
+const std::vector<std::string> open_sides{"sides.x_min = \"outflow\"", "sides.x_min = \"open\"",
+                                          "sides = { x_min = \"periodic\", x_max = \"periodic\" }", "grid.periodic = [\"x\"]"};
+const std::string inflow = "sides = { x_min = { kind = \"inflow\", velocity = [1, 0]";
+
+/// Each function for the field, and each place where a side says its value, if it says one.
+std::vector<std::string> of_field(const std::string& field, bool sides) {
+    const std::string is = "initial." + field + " = { name = ";
+    std::vector<std::string> lines;
+    for (const char* function :
+         {"\"constant\", value = 1", "\"linear\", value = 1, gradient = [1, 0], at = [0, 0]",
+          "\"gaussian\", base = 0, amplitude = 1, centre = [0, 0], width = 1",
+          "\"ball\", centre = [0, 0], radius = 1, value = 1, outside = 0", "\"distance\", centre = [0, 0], radius = 1",
+          "\"slotted_disk\", centre = [0, 0], radius = 0.2, slot = 0.05, top = 0.1"})
+        lines.push_back(is + function + " }");
+    if (!sides) return lines;
+    const std::string given = is + "\"constant\", value = 1 }\n", value = ", " + field + " = 1 }";
+    lines.push_back(given + inflow + value + ", x_max = \"outflow\" }");
+    if (field == "temperature")
+        for (const char* kind : {"\"wall\"", "\"moving_wall\", velocity = [0, 1]", "\"outflow\"", "\"open\""})
+            lines.push_back(given + "sides.x_min = { kind = " + kind + value);
+    return lines;
+}
+
+template <class... Lists>
+std::vector<std::string> all(const Lists&... lists) {
+    std::vector<std::string> sum;
+    (sum.insert(sum.end(), lists.begin(), lists.end()), ...);
+    return sum;
+}
+
+std::map<std::string, Said> everything() {
+    using Lines = std::vector<std::string>;
+    std::map<std::string, Said> said;
+    const std::string emitter = "emitters = [ { shape = \"box\", min = [0.6, 0.6], max = [0.8, 0.8], start = 0, end = 1, velocity = [1, 0]";
+    const Lines particles{emitter + " } ]",
+                          "sinks = [ { shape = \"box\", min = [0.6, 0.6], max = [0.8, 0.8] } ]",
+                          "effects.gravity.g = [0, -1]",
+                          "effects.central_force = { omega = 1, centre = [0, 0] }",
+                          "effects.xsph.c = 0.1",
+                          "effects.vorticity.epsilon = 0.1"};
+    const Lines liquid{"liquid = [ { shape = \"box\", min = [0, 0], max = [0.5, 0.5] } ]"};
+    const Lines refused_by_particles{inflow + " } }", "output.fields = [\"vorticity\"]"};
+    said["mac"] = {
+        {},
+        all(of_the_run, probes("pressure"), Lines{at_the_wall}, solids, poisson, grid_velocities, of_field("temperature", true),
+            of_field("smoke", true), walls, open_sides,
+            Lines{inflow + ", profile = \"parabolic\" }, x_max = \"outflow\" }", emitter + ", smoke = 1, temperature = 1 } ]",
+                  "scheme = { advection = \"maccormack\", interpolation = \"linear\", trace = \"rk2\", limiter = \"clamp\" }",
+                  "scheme = { advection = \"conservative\", flux = \"central\" }", "time.cfl = 0.4", "fluid.density = 2",
+                  "effects.gravity.g = [0, -1]", "effects.buoyancy = { alpha = 1, beta = 1, ambient = 0 }",
+                  "effects.confinement = { epsilon = 0.1 }", "effects.diffusion = { scheme = \"explicit\", temperature = 1, smoke = 1 }",
+                  "effects.cooling = { rate = 1, ambient = 0 }", "effects.decay = { rate = 1 }",
+                  "effects.viscosity = { scheme = \"explicit\" }\nfluid.viscosity = 1"}),
+        of_the_surface,
+        {"solids = [ { shape = \"cylinder\", from = [0.4, 0.4, 0.4], to = [0.6, 0.4, 0.4], radius = 0.2, motion = { kind = \"rotation\", "
+         "centre = [0.5, 0.5, 0.5], axis = [0, 0, 1], rate = 1 } } ]",
+         "solids = [ { shape = \"sphere\", centre = [0.4, 0.4, 0.4], radius = 0.2, motion = { kind = \"keyframes\", axis = [0, 0, 1], "
+         "frames = [ "
+         "{ t = 0, angle = 0 }, { t = 1, angle = 1 } ] } } ]"}};
+    said["mac_water"] = {
+        liquid, all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, poisson, grid_velocities, walls, open_sides,
+                    Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
+                    Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }",
+                          "scheme = { volume_control = true, reseed = true, seed = 3 }", "time.cfl = 0.4", "fluid.density = 2",
+                          "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
+                          "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"})};
+    const Lines flows{"flow = { name = \"constant\", value = [1, 0] }", "flow = { name = \"rotation\", centre = [0, 0], rate = 1 }",
+                      "flow = { name = \"single_vortex\", period = 1 }"};
+    said["transport"] = {
+        {flows[0], "initial.tracer = { name = \"constant\", value = 1 }"},
+        all(of_the_run, probes("tracer"), of_field("temperature", true), of_field("smoke", true), of_field("level_set", false),
+            of_field("tracer", false), walls, open_sides, flows,
+            Lines{inflow + ", profile = \"uniform\" } }", "time.cfl = 0.4",
+                  "scheme = { advection = \"maccormack\", interpolation = \"linear\", trace = \"rk2\", limiter = \"clamp\" }",
+                  "scheme = { advection = \"conservative\", flux = \"central\" }"}),
+        all(of_the_surface, Lines{at_the_wall}),
+        {"flow = { name = \"enright\", period = 1 }"}};
+    said["poisson"] = {{"problem = \"N1\""}, all(of_the_run, probes("pressure"), poisson, Lines{at_the_wall}), of_the_surface};
+    said["pbf"] = {
+        liquid,
+        all(of_the_run, particles, solids, particle_velocities, of_the_surface, Lines{walls[0]}, open_sides,
+            Lines{"time.cfl = 0.4", "fluid.density = 2",
+                  "scheme = { kernel = \"cubic\", support = 2, iterations = 3, cfm = 1, relaxation = 1, warm_start = 0, settle = 1 "
+                  "}",
+                  "scheme = { tolerance = 0.1, max_iterations = 9, backend = \"threads\" }",
+                  "effects.artificial_pressure = { k = 1, dq = 0.1 }"}),
+        all(probes("density"), Lines{walls[1], at_the_wall}, refused_by_particles)};
+    said["sph"] = {
+        liquid,
+        all(of_the_run, particles, solids, particle_velocities, of_the_surface, Lines{walls[0], at_the_wall}, open_sides,
+            Lines{walls[1] + "\neffects.viscosity = {}\nfluid.viscosity = 0.01", "fluid.density = 2", "initial.surface = [0, 1]",
+                  "scheme = { kernel = \"cubic\", support = 2, sound_speed = 10, state = \"tait\", gamma = 7, density = \"delta\" }",
+                  "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
+                  "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
+                  "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
+        all(probes("density"), refused_by_particles)};
+    return said;
+}
+
+/// The same code reads all sides; all fields, whatever their function, once a field is read at all; and shapes and motions of all solvers.
+/// "open" is another word for "outflow".
+std::string written_once(std::string key, const std::string& solver) {
+    static const std::regex side("sides\\.[xyz]_m(in|ax)"), field("initial\\.[a-z_]+<(linear|gaussian|ball|distance|slotted_disk)>"),
+        open("<open>");
+    key = std::regex_replace(key, side, "sides");
+    key = std::regex_replace(key, field, "initial.<$1>");
+    key = std::regex_replace(key, open, "<outflow>");
+    return key.starts_with('<') ? key : solver + ": " + key;
+}
+
+/// What the scene gives counts as read where somebody read it, or where all of it was refused as it should be.
+void note_one(const scene::Scene& scene, const scene::SolverSchema& schema, bool refused, const std::string& line,
+              std::set<std::string>& read) {
+    try {
+        const Simulation simulation(scene);
+        EXPECT_FALSE(refused) << schema.name << " accepts " << line;
+        for (const auto& key : scene::given_keys(simulation.scene(), schema))
+            if (key.read) read.insert(written_once(key.schema, schema.name));
+    } catch (const BadInput& error) {
+        EXPECT_TRUE(refused) << schema.name << ": " << error.what();
+        for (const auto& key : scene::given_keys(scene, schema)) read.insert(written_once(key.schema, schema.name));
+    }
+}
+
+}  // namespace
+
+TEST("every key that a solver's schema allows is read in a scene that names it") {
+    const auto said = everything();
+    std::set<std::string> read;  // of shapes and motions, by any solver; of others with the solver's name
+    for (const auto& schema : sim::schemas()) {
+        const auto note = [&](const std::string& line, bool refused, bool flat = true) {
+            std::string source =
+                "solver = \"" + schema.name + "\"\ntime.end = 1\n" +
+                (flat ? "dim = 2\ngrid.cells = [8, 8]\ngrid.size = [1, 1]\n" : "dim = 3\ngrid.cells = [8, 8, 8]\ngrid.size = [1, 1, 1]\n");
+            for (const auto& least : said.at(schema.name).least)
+                if (!line.starts_with(least.substr(0, least.find(' ')))) source += flat ? least + "\n" : "";
+            source += line + "\n";
+            if (!flat && schema.name == "transport") source += "initial.tracer = { name = \"constant\", value = 1 }\n";
+            try {
+                const scene::Scene scene = scene::parse(source, "scene.toml", sim::schemas());
+                note_one(scene, schema, refused, line, read);
+            } catch (const BadInput& error) {
+                ADD_FAILURE() << schema.name << ": " << error.what();
+            }
+        };
+        for (const auto& line : said.at(schema.name).lines) note(line, false);
+        for (const auto& line : said.at(schema.name).refused) note(line, true);
+        for (const auto& line : said.at(schema.name).in_3d) note(line, false, false);
+    }
+    for (const auto& schema : sim::schemas()) {
+        std::set<std::string> missing;
+        for (const auto& key : scene::every_key(schema))
+            if (const auto name = written_once(key, schema.name); read.count(name) == 0) missing.insert(name);
+        EXPECT_EQ(missing, std::set<std::string>{}) << schema.name;
+    }
+}
