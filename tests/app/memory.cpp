@@ -14,7 +14,7 @@ namespace {
 const std::string plume =
     "solver = \"mac\"\ndim = 3\ngrid = { cells = [100, 100, 100], size = [1.0, 1.0, 1.0] }\ntime = { end = 0.011, max_dt = 0.005 }\n"
     "effects = { buoyancy = { alpha = 0.0, beta = 0.03, ambient = 293.0 }, confinement = { epsilon = 0.2 } }\n"
-    "emitters = [ { shape = \"sphere\", centre = [0.5, 0.1, 0.5], radius = 0.08, smoke = 1.0, temperature = 323.0 } ]\n"
+    "emitters = [ { shape = \"sphere\", centre = [0.5, 0.3, 0.5], radius = 0.2, smoke = 1.0, temperature = 323.0 } ]\n"
     "output = { every = 0.01, compression = \"none\" }\n";
 
 }  // namespace

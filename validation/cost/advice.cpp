@@ -51,8 +51,9 @@ std::string ranks_at_good_enough(const StudyResult& result) {
         fmt::format("Read along each method's curve at {} = {:g}, in units of the time of {}{}: {}", study.error, study.good_enough,
                     first.label, first.at.at_most ? " (at most its cheapest setting's)" : "", fmt::join(others, ", "));
     if (!alike.empty())
-        s += fmt::format(". Not told apart from {}, for their errors differ by less than the {:g} that the reference is known to: {}",
-                         first.label, study.known_to, fmt::join(alike, ", "));
+        s += fmt::format(
+            ". Not told apart from {}, for at its price their errors differ by less than the {:g} that the reference is known to: {}",
+            first.label, study.known_to, fmt::join(alike, ", "));
     if (!ranking.missing.empty()) s += fmt::format(". Not reached by {}", fmt::join(ranking.missing, ", "));
     return s + ".";
 }

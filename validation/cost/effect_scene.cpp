@@ -62,7 +62,7 @@ std::string effect_text(const scene::Variant& effect, real strength) {
 
 scene::Scene make(const scene::SolverKind& kind, int dim, int cells, const Names& prepared_for, const Names& effects, real strength) {
     std::set<std::string> lines;  // two effects may need the same
-    real viscosity = 0.01;
+    std::string viscosity;        // only where an effect reads it
     for (const Names& list : {prepared_for, effects})
         for (const std::string& name : list)
             if (const scene::Variant& effect = effect_of(kind, name); !effect.along_with.empty()) lines.insert(effect.along_with + "\n");
@@ -72,9 +72,10 @@ scene::Scene make(const scene::SolverKind& kind, int dim, int cells, const Names
     for (const std::string& name : effects) {
         const scene::Variant& effect = effect_of(kind, name);
         text += effect_text(effect, strength);
-        if (std::count(effect.strength.begin(), effect.strength.end(), "fluid.viscosity") > 0) viscosity = viscosity_of * strength;
+        if (std::count(effect.strength.begin(), effect.strength.end(), "fluid.viscosity") > 0)
+            viscosity = fmt::format(", viscosity = {:g}", viscosity_of * strength);
     }
-    text += fmt::format("fluid = {{ density = 1000.0, viscosity = {:g} }}\n", viscosity);
+    text += fmt::format("fluid = {{ density = 1000.0{} }}\n", viscosity);
     return scene::parse(for_dim(text, dim), kind.schema.name + ".toml", {kind.schema});
 }
 

@@ -59,8 +59,8 @@ Ranking rank(const std::vector<Envelope>& methods, real error, real known_to) {
     std::stable_sort(order.begin(), order.end(), [&](auto* a, auto* b) { return price_at(*a, error)->price < price_at(*b, error)->price; });
     for (const Envelope* m : order) {
         const PriceAt first = *price_at(*order.front(), error), at = *price_at(*m, error);
-        const double both = std::max(first.price, m->points.front().price);
-        const bool alike = std::abs(error_at(*m, both) - error_at(*order.front(), both)) < known_to;
+        const bool as_cheap = m->points.front().price <= first.price;
+        const bool alike = as_cheap && error_at(*m, first.price) - error_at(*order.front(), first.price) < known_to;
         ranking.reached.push_back({m->label, at, at.price / first.price, m != order.front() && alike});
     }
     return ranking;

@@ -41,8 +41,8 @@ struct Ranking {
     std::vector<Rank> reached{};         // by price
     std::vector<std::string> missing{};  // methods that do not reach the error
 };
-/// Methods by the price at which they reach `error`. A method is alike to the cheapest where their errors differ by less than the
-/// reference is known to, `known_to`, at the least price that both can be had for and at which the cheapest reaches the error.
+/// Methods by the price at which they reach `error`. A method is alike to the cheapest where for the price of that one it has an error that
+/// is larger by less than the reference is known to, `known_to`. One that cannot be had for that price is dearer, whatever its error.
 Ranking rank(const std::vector<Envelope>& methods, real error, real known_to);
 
 }  // namespace weir::validation

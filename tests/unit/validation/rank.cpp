@@ -81,14 +81,15 @@ TEST("methods whose errors differ by less than the reference is known to are not
     EXPECT_NEAR(rank({a, b}, 0.1, 0.0).reached[1].times, 1.21, 1e-12);
     EXPECT_FALSE(rank({a, b}, 0.1, 0.0099).reached[1].alike);
     EXPECT_TRUE(rank({a, b}, 0.1, 0.0101).reached[1].alike);
+    const Envelope dear = power("dear", 0.4, 0.5, {20, 60});
+    EXPECT_FALSE(rank({a, dear}, 0.1, 0.0101).reached[1].alike) << "it has no setting that is as cheap";
     StudyResult result{.study = {.name = "s", .error = "e", .good_enough = 0.1, .known_to = 0.02, .known_why = "w"}};
     for (const Envelope* curve : {&a, &b})
         for (const auto& p : curve->points) result.points.push_back(point(curve->label, p.error, p.price));
     mark_front(result.points, result.study);
-    EXPECT_EQ(
-        advice(result)[1],
-        "Read along each method's curve at e = 0.1, in units of the time of a: b 1.21. Not told apart from a, for their errors differ "
-        "by less than the 0.02 that the reference is known to: b.");
+    EXPECT_EQ(advice(result)[1],
+              "Read along each method's curve at e = 0.1, in units of the time of a: b 1.21. Not told apart from a, for at its price their "
+              "errors differ by less than the 0.02 that the reference is known to: b.");
 }
 
 }  // namespace weir::validation
