@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "app/explain.hpp"
 #include "app/interrupt.hpp"
+#include "app/measured.hpp"
 #include "app/progress.hpp"
 #include "core/parallel.hpp"
 #include "output/atomic_file.hpp"
@@ -17,6 +18,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace weir::app {
 
@@ -24,7 +26,8 @@ namespace {
 
 struct RunArguments {
     std::string scene, restart, out, backend;
-    std::vector<std::string> set;
+    std::vector<std::string> set, measure;
+    std::string reference;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
     bool quiet = false, explain = false;
@@ -65,7 +68,10 @@ public:
         if (restarted) log_.resume(simulation.steps());
         write_log("running");  // where the disk fills later, there is a file that can still say so
     }
+    /// What is to be measured of the run: told in run.json at its end.
+    void measure(Measured& measured) { measured_ = &measured; }
     void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
+        if (measured_) measured_->on_step(report, seconds);
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
         probes_.update(simulation.probes());  // as they come: a run that is killed leaves all that it measured
         progress_.show(simulation.time(), simulation.steps());
@@ -85,6 +91,7 @@ public:
         progress_.end();
         probes_.update(simulation.probes());
         log_.set_solver_bytes(simulation.solver().bytes());
+        if (measured_) log_.set_measured(measured_->values());
         write_log(status);
     }
     /// The run broke off: that is said if nothing else can be written any more.
@@ -114,6 +121,7 @@ private:
     sim::ProbeFiles probes_;
     output::RunLog log_;
     Progress progress_;
+    Measured* measured_ = nullptr;
     std::size_t told_ = 0;  // warnings
     clock::time_point written_{};
     clock::duration write_time_{};
@@ -164,6 +172,14 @@ std::filesystem::path find_scene(const std::string& name) {
     return is_path || std::filesystem::exists(name) ? std::filesystem::path(name) : validation::find_case_scene(name);
 }
 
+/// A metric may look at every step, so a run is measured whole or not at all.
+std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& simulation) {
+    if (arguments.measure.empty() && arguments.reference.empty()) return std::nullopt;
+    if (arguments.measure.empty()) throw BadInput("--reference says what a run is compared with: it needs --measure");
+    if (!arguments.restart.empty()) throw BadInput("--measure looks at a run from its start: it does not go with --restart");
+    return std::optional<Measured>(std::in_place, simulation, arguments.measure, arguments.reference);
+}
+
 int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
@@ -189,7 +205,9 @@ int simulate(const RunArguments& arguments) {
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     output::require_writable(folder);
 
+    std::optional<Measured> measured = measured_of(arguments, simulation);
     Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
+    if (measured) recorder.measure(*measured);
     catch_interrupts();
     sim::LoopOptions options;
     options.folder = folder;
@@ -205,10 +223,12 @@ int simulate(const RunArguments& arguments) {
         recorder.fail(failure.what());
         throw;
     }
+    const bool finished = ending == sim::Ending::finished;
     if (simulation.steady())
         std::fprintf(stderr, "steady at t = %.6g s: no velocity changes faster than time.stop_when_steady\n", simulation.time());
     if (!arguments.quiet) tell_results(recorder.series(), folder);
-    if (ending == sim::Ending::finished) return exit_success;
+    if (finished && measured) std::fputs(measured->text().c_str(), stdout);
+    if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
                  folder.c_str());
     return exit_interrupted();
@@ -227,6 +247,10 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--threads", arguments->threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
     run->add_option("--backend", arguments->backend,
                     "threads[:isa], opencl[:N] (weir list devices) or reference: the same as --set scheme.backend=...");
+    run->add_option("--measure", arguments->measure, "A metric of the finished run, as cases measure it; may be repeated")
+        ->type_name("METRIC")
+        ->allow_extra_args(false);
+    run->add_option("--reference", arguments->reference, "What --measure compares with, by name, as in case.toml");
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");

@@ -5,15 +5,22 @@
 namespace weir {
 
 namespace {
-int chosen_threads = 0;  // 0: not chosen yet
-}
+int chosen_threads = 0;              // 0: nobody has chosen
+thread_local int worth_of_work = 0;  // 0: unknown
+}  // namespace
 
 int threads() {
-    if (chosen_threads == 0) chosen_threads = std::max(1, omp_get_max_threads());
-    return chosen_threads;
+    static const int available = std::max(1, omp_get_max_threads());
+    if (chosen_threads > 0) return chosen_threads;
+    return worth_of_work > 0 ? std::min(worth_of_work, available) : available;
 }
 
-void set_threads(int count) { chosen_threads = std::max(1, count); }
+void set_threads(int count) { chosen_threads = std::max(0, count); }
+
+ThreadsWorth::ThreadsWorth(long cells) : before_(worth_of_work) {
+    worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_a_thread, 1, 1 << 20));
+}
+ThreadsWorth::~ThreadsWorth() { worth_of_work = before_; }
 
 namespace detail {
 std::vector<real>& reduction_scratch(std::size_t count) {

@@ -9,9 +9,26 @@
 
 namespace weir {
 
-/// Number of threads that every parallel loop of the library uses; at least 1. Default: OpenMP's own.
+/// Number of threads that every parallel loop of the library uses; at least 1. Default: OpenMP's own, or fewer where a simulation has too
+/// little work for them (ThreadsWorth). A number that is set is taken as it is. Threads that wait for the next loop spin as long as
+/// OpenMP's runtime lets them: a program that embeds the library sets GOMP_SPINCOUNT (or OMP_WAIT_POLICY) in its environment before it
+/// starts, since libgomp reads them before main.
 int threads();
-void set_threads(int count);
+void set_threads(int count);  // 0: the default again
+
+/// While it lives, loops of the calling thread are those of a problem of so many cells: below cells_a_thread for each thread, waiting for
+/// one another takes longer than the work that is shared. Without effect where a number of threads was set.
+class ThreadsWorth {
+public:
+    static constexpr long cells_a_thread = 2048;
+    explicit ThreadsWorth(long cells);
+    ~ThreadsWorth();
+    ThreadsWorth(const ThreadsWorth&) = delete;
+    ThreadsWorth& operator=(const ThreadsWorth&) = delete;
+
+private:
+    int before_;
+};
 
 /// f(i) for i in [begin, end), in contiguous blocks, one a thread. f must write only what belongs to i.
 template <class F>

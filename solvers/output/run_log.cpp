@@ -98,8 +98,12 @@ bool RunLog::overwrite_status(const std::string& status) const {
 void RunLog::write() const {
     std::string status = json(status_).dump();
     status.resize(std::max(status.size(), status_room), ' ');
-    std::string text = head_ + status_key + status + ",\n \"series\": " + json(series_).dump() +
-                       ",\n \"solver_bytes\": " + std::to_string(solver_bytes_) + ",\n \"steps\": [";
+    std::string text =
+        head_ + status_key + status + ",\n \"series\": " + json(series_).dump() + ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);
+    json measured = json::object();
+    for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);
+    if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();
+    text += ",\n \"steps\": [";
     for (std::size_t i = 0; i < steps_.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + steps_[i];
     write_file(file_, text + "\n ]\n}\n");
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ public:
     void set_status(const std::string& status) { status_ = status; }
     void set_series(std::vector<std::string> files) { series_ = std::move(files); }
     void set_solver_bytes(std::size_t bytes) { solver_bytes_ = bytes; }
+    /// What was measured of the finished run, by name. Numbers that are not finite are left out.
+    void set_measured(std::map<std::string, double> values) { measured_ = std::move(values); }
     /// Takes over the steps up to `last` of an earlier run's file, where it can be read.
     void resume(std::int64_t last);
     /// Replaces the file. Throws OutputError.
@@ -38,6 +41,7 @@ private:
     std::string status_ = "running";
     std::vector<std::string> series_;
     std::size_t solver_bytes_ = 0;
+    std::map<std::string, double> measured_;
 };
 
 }  // namespace weir::output

@@ -1,5 +1,8 @@
 #include "particles/flow.hpp"
 
+#include "particles/emitters.hpp"
+#include "scene/names.hpp"
+
 namespace weir::particles {
 
 using scene::Key;
@@ -78,9 +81,27 @@ void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid) {
     }
 }
 
+namespace {
+
+/// Nothing moves in a scene without liquid to which nothing is ever given; most often its shapes fall between the particles' places.
+template <int D>
+void refuse_nothing(const scene::Scene& scene, const Fluid<D>& fluid) {
+    if (fluid.count() > 0 || Emitters<D>(scene, fluid.domain).entered(scene.number("time.end")) > 0) return;
+    const bool named = scene.has("liquid") && !scene.root().tables("liquid").empty();
+    const std::string spacing = scene::number_text(fluid.domain.spacing);
+    scene.refuse(
+        "liquid",
+        named ? "no particle stands in the liquid: it lies inside solids, or is thinner than the " + spacing + " m between two particles"
+              : "a scene of particles needs liquid: at least one shape, or an emitter that gives some before the end",
+        named ? "particles stand at centres of cells" : "");
+}
+
+}  // namespace
+
 template <int D>
 Fluid<D> initial_fluid(const scene::Scene& scene) {
     Fluid<D> fluid(scene);
+    refuse_nothing(scene, fluid);
     set_initial_velocity(scene, fluid);
     return fluid;
 }

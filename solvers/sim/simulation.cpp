@@ -1,5 +1,6 @@
 #include "sim/simulation.hpp"
 
+#include "core/parallel.hpp"
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "sim/finite.hpp"
@@ -32,6 +33,17 @@ std::string get_text(const Checkpoint& from, const std::string& name) {
     return {text.begin(), text.end()};
 }
 
+long cells_of(const scene::Scene& scene) {
+    long cells = 1;
+    for (const real n : scene.root().numbers("grid.cells")) cells *= static_cast<long>(n);
+    return cells;
+}
+
+std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+    const ThreadsWorth worth(cells_of(scene));
+    return sim::kind_named(scene.solver(), kinds).make(scene);
+}
+
 void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
     if (!scene.has("output.fields")) return;
     std::vector<std::string> known;
@@ -58,7 +70,7 @@ Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::r
 
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
     : scene_(unread(std::move(scene))),
-      solver_(sim::kind_named(scene_.solver(), kinds).make(scene_)),
+      solver_(make_solver(scene_, kinds)),
       probes_(scene_, *solver_),
       end_(scene_.number("time.end")),
       every_(scene_.root().number_or("output.every", infinity)),
@@ -80,6 +92,7 @@ void Simulation::run_until(real t) {
 }
 
 StepReport Simulation::step_towards(real target) {
+    const ThreadsWorth worth(cells_of(scene_));
     const real frame_target = next_target();
     StepReport report;
     try {

@@ -23,7 +23,11 @@ std::vector<scene::Variant> effect_schemas() {
            .doc = "In time.",
            .fallback = std::string("crank-nicolson"),
            .choices = {"crank-nicolson", "implicit"}}},
-         {"fluid.viscosity"}}};
+         {"fluid.viscosity"}},
+        {"volume_control",
+         "Moves the surface, at most a fiftieth of a cell a step, so that the volume stays what was poured in; the integral "
+         "\"volume_shift\" tells how far.",
+         {}}};
     list.insert(list.end(), own.begin(), own.end());
     return list;
 }

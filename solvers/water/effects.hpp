@@ -8,7 +8,8 @@ namespace weir::water {
 /// Forces on the liquid's bulk, which act between momentum and pressure.
 const EffectKinds& body_forces();
 
-/// What a scene may name: body forces, and what is solved for inside other passes: surface tension (a jump of the pressure), viscosity.
+/// What a scene may name: body forces, and what is solved for inside other passes: surface tension (a jump of the pressure), viscosity;
+/// and what moves the surface: volume control.
 std::vector<scene::Variant> effect_schemas();
 
 }  // namespace weir::water

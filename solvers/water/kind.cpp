@@ -18,9 +18,9 @@ WaterOptions::WaterOptions(const scene::Scene& scene) {
     trace = order == "rk1" ? Trace::rk1 : order == "rk3" ? Trace::rk3 : Trace::rk2;
     poisson = PoissonChoice(scheme.table("poisson"));
     cfl = scene.number("time.cfl");
-    volume_control = scheme.flag("volume_control");
     reseed = scheme.flag("reseed");
     seed = static_cast<std::uint64_t>(scheme.integer("seed"));
+    volume_control = scene.effect("volume_control") != nullptr;
     if (const auto* tension = scene.effect("surface_tension")) sigma = tension->number("sigma");
     if (const auto* friction = scene.effect("viscosity")) viscosity = friction->text("scheme") == "implicit" ? 1 : 0.5;
 }
@@ -47,10 +47,6 @@ Key scheme_keys() {
                       .doc = "Runge-Kutta scheme that moves markers.",
                       .fallback = std::string("rk2"),
                       .choices = {"rk1", "rk2", "rk3"}},
-                     {.name = "volume_control",
-                      .type = Type::flag,
-                      .doc = "Move the surface so that the volume stays what was poured in; the integral \"volume_shift\" tells how far.",
-                      .fallback = true},
                      {.name = "reseed", .type = Type::flag, .doc = "Fill holes among the markers and thin heaps.", .fallback = true},
                      {.name = "seed", .type = Type::integer, .doc = "Of the markers' jitter.", .fallback = std::int64_t{1}, .min = 0},
                      PoissonChoice::key()}};

@@ -103,7 +103,7 @@ std::vector<Integral> Water<D>::integrals() const {
     list.push_back({"top", "m", furthest(up_)});
     list.push_back({"height_at_x_min", "m", height});
     list.push_back({"markers", "", static_cast<real>(markers_.count())});
-    list.push_back({"volume_shift", "m", volume_shift_});
+    if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     list.push_back({"escaped_markers", "", static_cast<real>(escaped_)});
     list.push_back({"reseeded_markers", "", static_cast<real>(reseeded_)});
     return list;

@@ -43,8 +43,8 @@ void Water<D>::correct_surface(real dt) {
         const auto timed = passes_.time("level set");
         escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
         surface_.redistance();
-        control_volume();
     }
+    control_volume();
     curvature();
     const auto timed = passes_.time("level set");
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
@@ -180,6 +180,7 @@ void Water<D>::set_fixed_faces() {
 template <int D>
 void Water<D>::control_volume() {
     if (!options_.volume_control) return;
+    const auto timed = passes_.time("effect volume_control");
     const real missing = volume_target_ - surface_.volume() - markers_.volume * static_cast<real>(surface_.count_airborne(markers_));
     const real area = surface_.area();
     if (area == 0) return;

@@ -40,11 +40,11 @@ struct WaterOptions {
     Trace trace = Trace::rk2;
     PoissonChoice poisson;
     real cfl = 1;
-    bool volume_control = true;
     bool reseed = true;
     std::uint64_t seed = 1;
     real sigma = 0;      // surface tension [N/m]; 0: no curvature is computed
     real viscosity = 0;  // θ of the viscous solve: ½ Crank–Nicolson, 1 implicit; 0: no viscosity
+    bool volume_control = false;
     explicit WaterOptions(const scene::Scene& scene);
 };
 

@@ -128,6 +128,7 @@ Water<D>::Water(const scene::Scene& scene)
         viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));
         effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes()});
     }
+    if (options_.volume_control) effects_.declare({.name = "volume_control", .pass = effect_pass("volume_control")});
     read_emitters(scene);
     if (solids_.any()) {
         closed_ = near_solid_ = Grid<std::uint8_t, D>(frame_.cells);
@@ -189,7 +190,9 @@ template <int D>
 void Water<D>::fill_with_liquid(const scene::Scene& scene) {
     const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     if (shapes.empty()) {
-        if (emitters_.empty()) scene.refuse("liquid", "a scene of water needs liquid: at least one shape, or an emitter");
+        const real end = scene.number("time.end");
+        if (std::none_of(emitters_.begin(), emitters_.end(), [&](const auto& e) { return e.works(0, end); }))
+            scene.refuse("liquid", "a scene of water needs liquid: at least one shape, or an emitter that gives some before the end");
         surface_.redistance();
     } else {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);

@@ -143,13 +143,17 @@ TEST_IN_2D_AND_3D("a single particle falls like one and ends on the floor") {
     EXPECT_NEAR(solver->fluid().position(0)[1], solver->fluid().domain.margin, 1e-6);
 }
 
-TEST_IN_2D_AND_3D("a scene without any liquid steps and reports nothing") {
+TEST_IN_2D_AND_3D("a tank that has run empty steps and reports nothing; one that is empty from the start is refused") {
     NEEDS_BACKEND;
-    auto solver =
-        on_backend<D>(fmt::format("{{ shape = \"sphere\", centre = {}, radius = 0.01 }}", D == 2 ? "[0.5, 0.5]" : "[0.5, 0.5, 0.5]"));
+    auto solver = on_backend<D>(test::box<D>(0.5, 0.5, 0.5));
+    solver->fluid().remove_if([](int) { return true; });
     ASSERT_EQ(solver->fluid().count(), 0);
     EXPECT_EQ(solver->step(0.008).density_error, 0);
     EXPECT_GT(solver->advised_dt(), 0);
+    // between the lattice's places
+    const std::string speck =
+        fmt::format("{{ shape = \"sphere\", centre = {}, radius = 0.01 }}", D == 2 ? "[0.5, 0.5]" : "[0.5, 0.5, 0.5]");
+    EXPECT_THROW(on_backend<D>(speck), BadInput);
 }
 
 TEST_IN_2D_AND_3D("a particle that is not a number is caught in the step it appears, by name") {

@@ -32,7 +32,7 @@ inline const std::vector<FieldView>& fields_of_water(int dim) {
     return dim == 2 ? in_2d : in_3d;
 }
 
-class FakeSolver final : public Solver {
+class FakeSolver : public Solver {
 public:
     explicit FakeSolver(const scene::Scene& scene)
         : dim_(scene.dim()),

@@ -1,11 +1,11 @@
 // What a diagram says to somebody with a budget.
+#include "validation/cost/rank.hpp"
 #include "validation/cost/tables.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace weir::validation {
 namespace {
@@ -23,22 +23,37 @@ std::string priced(const CostPoint& p, Price by) {
 
 std::string plain(const CostPoint& p) { return p.name().empty() ? "the only setting" : p.name(); }
 
-/// The cheapest setting of each method that is good enough, and the cheapest of all.
+/// The cheapest setting that is good enough: what somebody can take.
 std::string at_good_enough(const Study& study, const Points& by_price) {
-    Points good;
-    std::set<std::string> methods;
-    for (const CostPoint* p : by_price)
-        if (p->error <= study.good_enough && methods.insert(p->method).second) good.push_back(p);
-    if (good.empty()) {
+    const auto good = std::find_if(by_price.begin(), by_price.end(), [&](auto* p) { return p->error <= study.good_enough; });
+    if (good == by_price.end()) {
         const auto nearest = *std::min_element(by_price.begin(), by_price.end(), [](auto* a, auto* b) { return a->error < b->error; });
         return fmt::format("No setting reaches {} = {:g}; {} comes nearest with {:.3g}, for {}.", study.error, study.good_enough,
                            plain(*nearest), nearest->error, priced(*nearest, study.price));
     }
+    return fmt::format("For {} <= {:g} take {}: {}.", study.error, study.good_enough, plain(**good), priced(**good, study.price));
+}
+
+std::string times_of(const Rank& r) { return fmt::format("{} {}{:.3g}", r.label, r.at.at_most ? "at most " : "", r.times); }
+
+/// How the methods stand to each other at that error, whatever settings were measured; nothing where fewer than two reach it.
+std::string ranks_at_good_enough(const StudyResult& result) {
+    const Study& study = result.study;
+    const Ranking ranking = rank(envelopes(result), study.good_enough, study.known_to);
+    if (ranking.reached.size() < 2) return "";
+    std::vector<std::string> others, alike;
+    for (const Rank& r : ranking.reached) {
+        if (&r != &ranking.reached.front()) others.push_back(times_of(r));
+        if (r.alike) alike.push_back(r.label);
+    }
+    const Rank& first = ranking.reached.front();
     std::string s =
-        fmt::format("For {} <= {:g} take {}: {}", study.error, study.good_enough, plain(*good[0]), priced(*good[0], study.price));
-    if (good.size() > 1)
-        s += fmt::format("; the next method, {}, costs {:.3g} times as much", plain(*good[1]),
-                         good[1]->price(study.price) / good[0]->price(study.price));
+        fmt::format("Read along each method's curve at {} = {:g}, in units of the time of {}{}: {}", study.error, study.good_enough,
+                    first.label, first.at.at_most ? " (at most its cheapest setting's)" : "", fmt::join(others, ", "));
+    if (!alike.empty())
+        s += fmt::format(". Not told apart from {}, for their errors differ by less than the {:g} that the reference is known to: {}",
+                         first.label, study.known_to, fmt::join(alike, ", "));
+    if (!ranking.missing.empty()) s += fmt::format(". Not reached by {}", fmt::join(ranking.missing, ", "));
     return s + ".";
 }
 
@@ -111,6 +126,7 @@ std::vector<std::string> advice(const StudyResult& result) {
     std::sort(by_price.begin(), by_price.end(), [&](auto* a, auto* b) { return a->price(study.price) < b->price(study.price); });
     std::vector<std::string> sentences;
     if (study.good_enough > 0) sentences.push_back(at_good_enough(study, by_price));
+    if (const std::string ranks = study.good_enough > 0 ? ranks_at_good_enough(result) : ""; !ranks.empty()) sentences.push_back(ranks);
     if (study.price == Price::second) sentences.push_back(in_real_time(study, by_price));
     const std::string in_vain = that_finer_does_not_pay(study, by_price);
     sentences.push_back(in_vain.empty() ? along_the_front(study, by_price) : in_vain);

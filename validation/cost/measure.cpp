@@ -28,19 +28,6 @@ RunOptions run_options(const Study& study, const Variant& method, const MeasureO
     return run;
 }
 
-/// Computing seconds and simulated seconds of a run, without its first step (first touches of memory) where there are others.
-struct Timing {
-    double computing = 0, simulated = 0;
-    std::int64_t steps = 0;
-};
-Timing timing_of(const RunRecord& record) {
-    Timing t;
-    const std::size_t from = record.history.size() > 2 ? 2 : 1;  // entry 0 is the initial state
-    for (std::size_t i = from; i < record.history.size(); ++i)
-        t.computing += record.history[i].seconds, t.simulated += record.history[i].report.dt, ++t.steps;
-    return t;
-}
-
 void take_errors(CostPoint& point, const Study& study, const RunRecord& record, const Reference& reference) {
     point.error = std::abs(measure(study.error, record, reference));
     for (const std::string& name : study.also) try {
@@ -85,8 +72,8 @@ void take_times(CostPoint& point, std::vector<Timing> runs) {
     std::sort(runs.begin(), runs.end(), [](const Timing& a, const Timing& b) { return a.computing < b.computing; });
     const Timing& median = runs[(runs.size() - 1) / 2];
     point.repeats = static_cast<int>(runs.size());
-    if (median.simulated > 0) point.seconds_per_second = median.computing / median.simulated;
-    if (median.steps > 0) point.ms_per_step = 1e3 * median.computing / static_cast<double>(median.steps);
+    point.seconds_per_second = median.seconds_per_second();
+    point.ms_per_step = median.ms_per_step();
     if (median.computing > 0) point.spread = (runs.back().computing - runs.front().computing) / median.computing;
 }
 
@@ -134,6 +121,14 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
 }
 
 }  // namespace
+
+Timing timing_of(const RunRecord& record) {
+    Timing t;
+    const std::size_t from = record.history.size() > 2 ? 2 : 1;  // entry 0 is the initial state
+    for (std::size_t i = from; i < record.history.size(); ++i)
+        t.computing += record.history[i].seconds, t.simulated += record.history[i].report.dt, ++t.steps;
+    return t;
+}
 
 StudyResult measure_study(const Study& study, const MeasureOptions& options, const Solvers& solvers,
                           const std::function<void(const std::string&)>& progress) {

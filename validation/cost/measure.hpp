@@ -40,6 +40,15 @@ struct CostPoint {
     static constexpr std::string_view not_run = "not run: ";
 };
 
+/// Computing seconds and simulated seconds of a run, without its first step (first touches of memory) where there are others.
+struct Timing {
+    double computing = 0, simulated = 0;
+    std::int64_t steps = 0;
+    double ms_per_step() const { return steps > 0 ? 1e3 * computing / static_cast<double>(steps) : 0; }
+    double seconds_per_second() const { return simulated > 0 ? computing / simulated : 0; }
+};
+Timing timing_of(const RunRecord& record);
+
 struct StudyResult {
     Study study;
     std::string source{};  // the reference's citation

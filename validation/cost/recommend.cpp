@@ -1,12 +1,11 @@
 #include "validation/cost/recommend.hpp"
 
+#include "backend/device.hpp"
 #include "core/error.hpp"
-#include "output/machine.hpp"
+#include "particles/isa.hpp"
 #include "sim/registry.hpp"
-#include "validation/report/command.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -14,7 +13,7 @@
 #include <fstream>
 #include <map>
 #include <numeric>
-#include <sstream>
+#include <utility>
 
 namespace weir::validation {
 namespace {
@@ -96,34 +95,83 @@ real parse_error(const std::string& text) {
     return unit.empty() ? value : value / 100;
 }
 
+namespace {
+
+/// Which of a method's settings the table calls so, the only one where it has no sweep; runs() where it has none of that name.
+std::size_t index_of(const Variant& method, const std::string& setting) {
+    for (std::size_t i = 0; i < method.runs(); ++i)
+        if (setting == (method.sweep ? fmt::format("{:g}", method.sweep->values[i]) : std::string())) return i;
+    return method.runs();
+}
+
+/// Whether this machine has the device or the vector unit that a scene names.
+bool runs_here(const scene::Scene& scene) {
+    if (!scene.has("scheme.backend")) return true;
+    const backend::Choice choice = backend::parse_choice(scene.text("scheme.backend"));
+    if (choice.kind == backend::Choice::Kind::opencl) return static_cast<std::size_t>(choice.device) < backend::devices().size();
+    const auto& here = particles::available_passes();
+    return choice.isa == "auto" || std::any_of(here.begin(), here.end(), [&](const auto* p) { return p->name == choice.isa; });
+}
+
+struct TableFile {
+    std::string title;                             // its first line
+    std::vector<std::string> head;                 // names of the columns
+    std::vector<std::vector<std::string>> rows{};  // cells
+
+    std::string cell(std::size_t row, const char* name) const {
+        const auto at = static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
+        return at < rows[row].size() ? rows[row][at] : std::string();
+    }
+};
+
+TableFile read_table(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    TableFile table;
+    for (std::string line; std::getline(in, line);) {
+        if (line.empty()) continue;
+        if (line[0] == '#')
+            table.title += line;
+        else if (table.head.empty())
+            table.head = cells_of(line);
+        else
+            table.rows.push_back(cells_of(line));
+    }
+    return table;
+}
+
+}  // namespace
+
+Size size_of_table(const std::string& study, const std::filesystem::path& folder) {
+    const bool full = read_table(table_file(folder, study)).title.find(" at full size") != std::string::npos;
+    return full ? Size::full : Size::ci;
+}
+
 std::vector<CostCurve> read_cost_table(const Study& study, const std::filesystem::path& folder) {
     const auto file = table_file(folder, study.name);
-    std::ifstream in(file);
-    std::vector<std::string> head;
+    const TableFile table = read_table(file);
+    const auto schemas = sim::schemas();
     std::vector<CostCurve> curves;
-    for (std::string line; std::getline(in, line);) {
-        if (line.empty() || line[0] == '#') continue;
-        const auto cells = cells_of(line);
-        if (head.empty()) {
-            head = cells;
-            continue;
-        }
-        const auto cell = [&](const char* name) {
-            const auto at = static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
-            return at < cells.size() ? cells[at] : std::string();
-        };
-        if (!cell("failure").empty() || cell("setting").empty()) continue;
-        auto curve = std::find_if(curves.begin(), curves.end(), [&](const CostCurve& c) { return c.method == cell("method"); });
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const auto cell = [&](const char* name) { return table.cell(row, name); };
+        const Variant* method = method_named(study, cell("method"));
+        if (!method || !cell("failure").empty()) continue;
+        const std::size_t index = index_of(*method, cell("setting"));
+        if (index == method->runs() || !runs_here(scene_of(*method, index, schemas))) continue;
+        auto curve = std::find_if(curves.begin(), curves.end(), [&](const CostCurve& c) { return c.method == method->name; });
         if (curve == curves.end()) {
-            const Variant* method = method_named(study, cell("method"));
-            const bool iterations = method && method->sweep && method->sweep->key.find("iterations") != std::string::npos;
-            curve = curves.insert(curves.end(), {cell("method"), iterations, {}});
-            if (method && method->sweep) curve->grain = grain_of(*method);
+            const bool iterations = method->sweep && method->sweep->key.find("iterations") != std::string::npos;
+            curve = curves.insert(curves.end(), {.method = method->name, .counts_iterations = iterations, .points = {}});
+            if (method->sweep) curve->grain = grain_of(*method);
         }
-        curve->points.push_back(
-            {std::stod(cell("setting")), std::stod(cell("error")), std::stod(cell("seconds_per_second")), std::stod(cell("ms_per_step"))});
+        curve->points.push_back({.setting = method->sweep ? method->sweep->values[index] : 0,
+                                 .error = std::stod(cell("error")),
+                                 .seconds_per_second = std::stod(cell("seconds_per_second")),
+                                 .ms_per_step = std::stod(cell("ms_per_step")),
+                                 .steps = std::stoll(cell("steps")),
+                                 .threads = std::stoi(cell("threads")),
+                                 .index = index});
     }
-    if (head.empty() || curves.empty()) throw BadInput(file.string() + ": no setting in this table can be read");
+    if (curves.empty()) throw BadInput(file.string() + ": no setting in this table can be run here");
     for (CostCurve& c : curves)
         std::sort(c.points.begin(), c.points.end(), [](const Priced& a, const Priced& b) { return a.setting < b.setting; });
     return curves;
@@ -152,7 +200,11 @@ std::optional<Priced> predict(const CostCurve& curve, real setting) {
     const auto time = curve.counts_iterations ? by_line : by_power;
     const auto error = curve.counts_iterations ? by_factor : by_power;
     const auto read = [&](auto how, auto Priced::*of) { return how(setting, a.setting, b.setting, a.*of, b.*of); };
-    return Priced{setting, read(error, &Priced::error), read(time, &Priced::seconds_per_second), read(time, &Priced::ms_per_step)};
+    return Priced{.setting = setting,
+                  .error = read(error, &Priced::error),
+                  .seconds_per_second = read(time, &Priced::seconds_per_second),
+                  .ms_per_step = read(time, &Priced::ms_per_step),
+                  .threads = a.threads};
 }
 
 double seconds_of(const Priced& p, Price price, const Budget& budget) {
@@ -160,103 +212,83 @@ double seconds_of(const Priced& p, Price price, const Budget& budget) {
     return price == Price::step ? step : std::max(step, p.seconds_per_second * budget.frame);
 }
 
-Recommendation recommend(const std::vector<CostCurve>& curves, Price price, const Budget& budget) {
+namespace {
+
+std::vector<Choice> entries(const std::vector<CostCurve>& curves, Price price, const Budget& budget) {
     std::vector<Choice> all;
-    const auto consider = [&](const CostCurve& c, const Priced& p, bool measured) {
-        all.push_back({&c, p, seconds_of(p, price, budget), measured});
-    };
     for (const CostCurve& c : curves)
-        for (std::size_t i = 0; i < c.points.size(); ++i) {
-            consider(c, c.points[i], true);
-            if (i == 0) continue;
+        for (const Priced& p : c.points) all.push_back({&c, p, seconds_of(p, price, budget)});
+    return all;
+}
+
+/// Settings between two entries of a curve that a scene can take.
+std::vector<Choice> between_entries(const std::vector<CostCurve>& curves, Price price, const Budget& budget) {
+    std::vector<Choice> all;
+    for (const CostCurve& c : curves)
+        for (std::size_t i = 1; i < c.points.size(); ++i) {
             const real from = c.points[i - 1].setting, to = c.points[i].setting;
             real last = from;
             for (int k = 1; k < between; ++k) {
                 const real setting = rounded(by_power(k, 1, between, from, to), c.grain);
                 if (setting <= last || setting >= to) continue;
                 last = setting;
-                if (const auto p = predict(c, setting)) consider(c, *p, false);
+                if (const auto p = predict(c, setting)) all.push_back({&c, *p, seconds_of(*p, price, budget)});
             }
         }
-    const auto cheaper = [](const Choice& a, const Choice& b) { return a.seconds < b.seconds; };
-    const auto better = [](const Choice& a, const Choice& b) { return a.at.error < b.at.error; };
-    const auto best = [&](auto holds, auto less) {
-        std::optional<Choice> found;
-        for (const Choice& c : all)
-            if (holds(c) && (!found || less(c, *found))) found = c;
-        return found;
-    };
-    const auto in_time = [&](const Choice& c) { return c.seconds <= budget.seconds; };
-    const auto good = [&](const Choice& c) { return c.at.error <= budget.error; };
-    Recommendation r;
-    r.take = best([&](const Choice& c) { return in_time(c) && good(c); }, cheaper);
-    if (r.take) return r;
-    const auto any = [](const Choice&) { return true; };
-    auto within = best(in_time, better), enough = best(good, cheaper);
-    r.nearest.push_back(within ? *within : *best(any, cheaper));
-    const Choice second = enough ? *enough : *best(any, better);
-    const auto same = [&](const Choice& c) { return c.curve == r.nearest[0].curve && c.at.setting == r.nearest[0].at.setting; };
-    const auto other = best([&](const Choice& c) { return c.curve != r.nearest[0].curve && in_time(c); }, better);
-    if (!same(second))
-        r.nearest.push_back(second);
-    else if (other)
-        r.nearest.push_back(*other);  // one setting is nearest in both ways: the best of another method
-    return r;
+    return all;
 }
 
-namespace {
-
-std::string setting_text(const Choice& c, const Study& study) {
-    const Variant* method = method_named(study, c.curve->method);
-    const std::string key = method && method->sweep ? method->sweep->key : "setting";
-    std::string also;
-    if (method && method->sweep)
-        for (const auto& follower : method->sweep->also) also += fmt::format(" ({} goes with it)", follower.key);
-    return fmt::format("{}{}{} = {:g}{}{}", c.curve->method, c.curve->method.empty() ? "" : ", ", key, c.at.setting,
-                       key == "grid.cells" ? " along x" : "", also);
+template <class Holds, class Less>
+std::optional<Choice> best(const std::vector<Choice>& all, Holds&& holds, Less&& less) {
+    std::optional<Choice> found;
+    for (const Choice& c : all)
+        if (holds(c) && (!found || less(c, *found))) found = c;
+    return found;
 }
 
-std::string priced_text(const Choice& c, const Study& study) {
-    return fmt::format("{}: {} {:.3g}, {:.3g} ms a {} ({:.3g} ms a step){}", setting_text(c, study), study.error, c.at.error,
-                       1e3 * c.seconds, study.price == Price::step ? "step" : "frame", c.at.ms_per_step,
-                       c.measured ? "" : ", read between two measured settings");
-}
-
-/// Says whose tables these are, where they are not this machine's.
-std::string machine_text(const PlanOptions& options, const std::string& name) {
-    for (const auto& file : {options.tables / "json" / (name + ".json"), options.tables / (name + ".json")}) {
-        std::ifstream in(file);
-        if (!in) continue;
-        const auto tables = nlohmann::json::parse(in, nullptr, false);
-        if (!tables.is_object()) continue;
-        const std::string machine = tables.value("machine", ""), here = output::this_machine().processor;
-        const std::string whose =
-            fmt::format("measured on {}, {} thread(s), commit {}\n", machine, tables.value("threads", 1), tables.value("commit", ""));
-        return machine.find(here) != std::string::npos
-                   ? whose
-                   : whose + fmt::format("this machine is {}: measure its own with `weir cost {} --publish`\n", here, name);
-    }
-    return {};
-}
+bool same(const Choice& a, const Choice& b) { return a.curve == b.curve && a.at.setting == b.at.setting; }
 
 }  // namespace
 
-int plan_command(const PlanOptions& options) {
-    if (options.error.empty()) throw BadInput("weir plan needs --error: how wrong the result may be, such as 2%");
-    const Study study = read_study(find_case(options.name), options.size);
-    const Budget budget{parse_seconds(options.budget), parse_error(options.error), parse_seconds(options.frame)};
-    const auto curves = read_cost_table(study, options.tables);
-    const Recommendation r = recommend(curves, study.price, budget);
-    fmt::print("{}: {} at most {:g} for {:g} ms of computing a {}\n", study.name, study.error, budget.error, 1e3 * budget.seconds,
-               study.price == Price::step ? std::string("step") : fmt::format("frame of {:.3g} ms", 1e3 * budget.frame));
-    if (r.take) {
-        fmt::print("take {}\n", priced_text(*r.take, study));
-    } else {
-        fmt::print("no setting of the table reaches it; the nearest two:\n");
-        for (const Choice& c : r.nearest) fmt::print("  {}\n", priced_text(c, study));
+Recommendation recommend(const std::vector<CostCurve>& curves, Price price, const Budget& budget) {
+    const auto cheaper = [&](const Choice& a, const Choice& b) {
+        return std::pair(a.seconds, budget.told(a.at.error)) < std::pair(b.seconds, budget.told(b.at.error));
+    };
+    const auto better = [&](const Choice& a, const Choice& b) {
+        return std::pair(budget.told(a.at.error), a.seconds) < std::pair(budget.told(b.at.error), b.seconds);
+    };
+    const auto in_time = [&](const Choice& c) { return c.seconds <= budget.seconds; };
+    const auto good = [&](const Choice& c) { return budget.told(c.at.error) <= budget.told(budget.error); };
+    const auto both = [&](const Choice& c) { return in_time(c) && good(c); };
+    const auto any = [](const Choice&) { return true; };
+    const std::vector<Choice> all = entries(curves, price, budget);
+    Recommendation r;
+    if (budget.error == infinity)
+        r.take = best(all, in_time, better);
+    else
+        r.take = best(all, both, cheaper);
+    if (budget.error < infinity) r.between = best(between_entries(curves, price, budget), both, cheaper);
+    if (r.take && r.between && !(r.between->seconds < r.take->seconds)) r.between.reset();
+    if (r.take) return r;
+    const auto within = best(all, in_time, better), enough = best(all, good, cheaper);
+    r.nearest.push_back(within ? *within : *best(all, any, cheaper));
+    const Choice second = enough ? *enough : *best(all, any, better);
+    if (!same(second, r.nearest[0])) r.nearest.push_back(second);
+    return r;
+}
+
+std::vector<Choice> recommendable(const std::vector<CostCurve>& curves, Price price, const Budget& budget) {
+    const std::vector<Choice> all = entries(curves, price, budget);
+    std::vector<Choice> list;
+    for (const Choice& p : all) {
+        const real error = budget.told(p.at.error);
+        const auto beats = [&](const Choice& q) {
+            const real other = budget.told(q.at.error);
+            return q.seconds <= p.seconds && other <= error && (q.seconds < p.seconds || other < error || &q < &p);
+        };
+        if (std::none_of(all.begin(), all.end(), beats)) list.push_back(p);
     }
-    fmt::print("{}", machine_text(options, study.name));
-    return r.take ? exit_success : exit_claim_failed;
+    return list;
 }
 
 }  // namespace weir::validation

@@ -101,6 +101,17 @@ Study read_study(const std::filesystem::path& folder, Size size) {
     return parse_study(scene::read_text(file), file.string(), folder, size);
 }
 
+Study study_of_row(const Study& study, const std::string& method, std::size_t index) {
+    Study one = study;
+    std::erase_if(one.methods, [&](const Variant& v) { return v.name != method || index >= v.runs(); });
+    if (one.methods.empty() || !one.methods.front().sweep) return one;
+    Sweep& sweep = *one.methods.front().sweep;
+    const auto only = [index](std::vector<real>& values) { values = {values.at(index)}; };
+    only(sweep.values);
+    for (auto& follower : sweep.also) only(follower.values);
+    return one;
+}
+
 std::vector<std::filesystem::path> find_studies(const std::filesystem::path& root) {
     std::vector<std::filesystem::path> found;
     std::error_code unreadable;

@@ -43,6 +43,9 @@ const std::vector<scene::Key>& study_keys();
 Study read_study(const std::filesystem::path& folder, Size size);
 Study parse_study(std::string_view text, const std::string& file, const std::filesystem::path& folder, Size size);
 
+/// The study with one method at one setting of its sweep and nothing else; without a method where it has no such setting.
+Study study_of_row(const Study& study, const std::string& method, std::size_t index);
+
 /// Folders below `root` with a cost.toml, in alphabetical order.
 std::vector<std::filesystem::path> find_studies(const std::filesystem::path& root);
 

@@ -56,6 +56,7 @@ private:
     Criterion read_criterion(const Table& t) {
         ++claims_;
         Criterion c{.metric = variants_.said(t, "metric"), .why = variants_.said(t, "why"), .place = t.place("metric")};
+        if (t.has("not_reached")) c.not_reached = variants_.said(t, "not_reached");
         std::vector<std::string_view> given;
         for (const std::string_view test : tests)
             if (t.has(test)) given.push_back(test);

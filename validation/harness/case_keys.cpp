@@ -45,6 +45,7 @@ Key accept() {
         "accept", "What is claimed: a metric, one test, and the reason for the bound.",
         {text("metric", "What is measured.", true),
          text("why", "Where the bound comes from.", true),
+         text("not_reached", "Why this bound, which is asked for, is not met: it is listed and not claimed, and an error once it is met."),
          number("at_most", "Measured <= this."),
          number("at_least", "Measured >= this."),
          pair("within", "low <= measured <= high."),

@@ -17,19 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void remember(RunRecord& record, const Simulation& simulation, const StepReport& report, double seconds,
-              const std::vector<const Metric*>& observers) {
-    Moment moment{.step = simulation.steps(), .time = simulation.time(), .seconds = seconds, .report = report};
-    record.integrals = simulation.solver().integrals();
-    for (const Integral& i : record.integrals) moment.integrals.push_back(i.value);
-    if (!observers.empty()) {
-        const FieldSet fields = simulation.fields();
-        for (const Metric* m : observers) moment.observed.push_back(m->observe(fields, *record.scene, moment.time));
-    }
-    record.history.push_back(std::move(moment));
-    record.time = simulation.time();
-}
-
 /// The metrics of the variant's claims, each once.
 std::vector<std::string> metrics_of(const Variant& variant) {
     std::vector<std::string> names;
@@ -90,36 +77,70 @@ void take(RunResult& result, const RunRecord& record, const Reference& reference
 
 }  // namespace
 
+RunWatch::RunWatch(Simulation& simulation, const std::vector<const Metric*>& metrics) : simulation_(&simulation) {
+    for (const Metric* m : metrics) {
+        if (!m || !m->observe) continue;
+        observers_.push_back(m);
+        record_.observers.push_back(m->name);
+    }
+    record_.simulation = std::shared_ptr<Simulation>(std::shared_ptr<void>(), simulation_);
+    record_.scene = {record_.simulation, &simulation.scene()};
+    remember({}, 0);
+}
+
+void RunWatch::remember(const StepReport& report, double seconds) {
+    Moment moment{.step = simulation_->steps(), .time = simulation_->time(), .seconds = seconds, .report = report};
+    record_.integrals = simulation_->solver().integrals();
+    for (const Integral& i : record_.integrals) moment.integrals.push_back(i.value);
+    if (!observers_.empty()) {
+        const FieldSet fields = simulation_->fields();
+        for (const Metric* m : observers_) moment.observed.push_back(m->observe(fields, *record_.scene, moment.time));
+    }
+    record_.history.push_back(std::move(moment));
+    record_.time = simulation_->time();
+}
+
+void RunWatch::on_step(const StepReport& report, double seconds) {
+    record_.seconds += seconds;
+    remember(report, seconds);
+}
+
+RunRecord& RunWatch::record() {
+    record_.fields = simulation_->fields();
+    record_.probes.clear();
+    for (const auto& p : simulation_->probes()) record_.probes.push_back({p.name, p.kind, p.columns, p.positions, p.times, p.values});
+    record_.passes = simulation_->solver().passes().list();
+    return record_;
+}
+
 RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers& solvers) {
-    RunRecord record;
-    record.simulation = std::make_shared<Simulation>(std::move(scene), solvers);
-    Simulation& simulation = *record.simulation;
-    record.scene = {record.simulation, &simulation.scene()};
-    for (const Metric* m : options.observers) record.observers.push_back(m->name);
-    remember(record, simulation, {}, 0, options.observers);
-    record.fields = simulation.fields();
-    if (options.at_start) options.at_start(record);
+    const auto owner = std::make_shared<Simulation>(std::move(scene), solvers);
+    Simulation& simulation = *owner;
+    RunWatch watch(simulation, options.observers);
+    if (options.at_start) options.at_start(watch.record());
     FrameWriter frames(options.frames, simulation.scene());
     frames.write(simulation);
+    double seconds_so_far = 0;
+    std::optional<std::string> failed;
     try {
         while (!simulation.finished()) {
             const auto start = Clock::now();
             const StepReport report = simulation.step();
             const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-            record.seconds += seconds;
-            remember(record, simulation, report, seconds, options.observers);
+            seconds_so_far += seconds;
+            watch.on_step(report, seconds);
             frames.write(simulation);
-            if (record.seconds > options.time_limit)
+            if (seconds_so_far > options.time_limit)
                 throw NumericalFailure("time limit", fmt::format("not finished after {:g} s of computing", options.time_limit));
         }
     } catch (const NumericalFailure& failure) {
         const auto step = failure.step >= 0 ? failure.step : simulation.steps();
-        record.failure =
-            fmt::format("step {}, t = {:.6g} s: {}", step, failure.step >= 0 ? failure.time : simulation.time(), failure.what());
+        failed = fmt::format("step {}, t = {:.6g} s: {}", step, failure.step >= 0 ? failure.time : simulation.time(), failure.what());
     }
-    record.fields = simulation.fields();
-    for (const auto& p : simulation.probes()) record.probes.push_back({p.name, p.kind, p.columns, p.positions, p.times, p.values});
-    record.passes = simulation.solver().passes().list();
+    RunRecord record = std::move(watch.record());
+    record.simulation = owner;
+    record.scene = {owner, &simulation.scene()};
+    record.failure = failed;
     return record;
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace weir::validation {
 
@@ -19,6 +20,22 @@ struct RunOptions {
     real time_limit = infinity;                                // wall seconds
     std::vector<const Metric*> observers{};                    // metrics that watch every step
     std::function<void(const RunRecord&)> at_start = nullptr;  // sees the initial state; may throw BadInput before a step is spent
+};
+
+/// What metrics see of a run, kept while somebody's loop drives it: the state at the start, then every step.
+class RunWatch {
+public:
+    /// The simulation must outlive the watch. `metrics` that observe are asked at the start and after every step.
+    RunWatch(Simulation& simulation, const std::vector<const Metric*>& metrics);
+    void on_step(const StepReport& report, double seconds);
+    /// As the run stands now: fields, probes and passes are taken up to date.
+    RunRecord& record();
+
+private:
+    void remember(const StepReport& report, double seconds);
+    Simulation* simulation_;
+    std::vector<const Metric*> observers_{};
+    RunRecord record_{};
 };
 
 /// Runs a scene to its end. A NumericalFailure or an exceeded time limit ends the run and stands in `failure`.

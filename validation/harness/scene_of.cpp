@@ -11,7 +11,8 @@ namespace {
 
 /// Numbers as TOML: whole ones without a point, so that they may set integers.
 std::string text_of(real value) {
-    return value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value) : fmt::format("{:.17g}", value);
+    return value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value)
+                                                                : fmt::format("{}", value);  // the fewest digits that give it back
 }
 
 /// Cells for `count` along the sweep's axis, others in proportion; refused where that is not a whole number.

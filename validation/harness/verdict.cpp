@@ -66,7 +66,13 @@ void judge_orders(Verdict& v, const Criterion& c, const std::vector<RunResult>& 
 }
 
 Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<RunResult>& runs) {
-    Verdict v{.variant = plan.name, .metric = c.metric, .criterion = std::string(name(c.test)), .low = c.low, .high = c.high, .why = c.why};
+    Verdict v{.variant = plan.name,
+              .metric = c.metric,
+              .criterion = std::string(name(c.test)),
+              .low = c.low,
+              .high = c.high,
+              .why = c.why,
+              .not_reached = c.not_reached};
     const auto chosen = runs_of(c, runs);
     for (const RunResult* r : chosen) v.seconds += r->seconds;
     const auto failed = std::find_if(chosen.begin(), chosen.end(), [](const RunResult* r) { return r->failure.has_value(); });
@@ -79,6 +85,7 @@ Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<Run
         judge_orders(v, c, runs);
     else
         judge_values(v, c, chosen);
+    if (!c.not_reached.empty() && v.pass) v.note = "this bound is reached: \"not_reached\" can go";
     return v;
 }
 
@@ -120,7 +127,7 @@ real largest_rise(const Curve& series, bool falls) {
 bool CaseResult::pass() const {
     for (const auto& v : variants)
         for (const auto& verdict : v.verdicts)
-            if (!verdict.pass) return false;
+            if (!verdict.as_said()) return false;
     return !variants.empty();
 }
 

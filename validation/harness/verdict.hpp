@@ -37,10 +37,15 @@ struct Verdict {
     real low = -infinity, high = infinity;
     bool pass = false;
     std::string why{};
-    std::string note{};  // a failure's message, or a warning about the grids
-    double seconds = 0;  // of the runs that it rests on
+    std::string not_reached{};  // why a bound that is asked for is not met: listed, not claimed
+    std::string note{};         // a failure's message, or a warning about the grids
+    double seconds = 0;         // of the runs that it rests on
     /// "<= 1e-08", "in [0.9, 1.1]", ">= 1.8"
     std::string bound() const;
+    /// A claim must hold. What is listed as not reached must have been measured and fall short: once it is met the list is wrong.
+    bool as_said() const { return not_reached.empty() ? pass : !pass && note.empty(); }
+    /// "pass", "FAIL", "asked" (and not reached, as the case says).
+    const char* word() const { return !as_said() ? "FAIL" : pass ? "pass" : "asked"; }
 };
 
 struct VariantResult {

@@ -28,16 +28,16 @@ real discrete_deviation(const RunRecord& run, const Reference& ref) {
     return std::max(std::abs(std::sqrt(square) / ref.number("rms." + n) - 1), std::abs(largest / ref.number("max." + n) - 1));
 }
 
-/// Largest |max |div u| / (dt/rho max |r|) - 1| of any step.
+/// Largest |max |div u| - dt/rho max |r|| of any step, over the largest speed of the run a cell: what round-off is measured by.
 real identity_error(const RunRecord& run, const Reference&) {
     const real rho = run.scene->number("fluid.density");
     real worst = run.steps() > 0 ? 0 : std::nan("");
     for (const Moment& m : run.history) {
         if (m.step == 0) continue;
-        const real error = std::abs(m.report.max_divergence / (m.report.dt / rho * m.report.residual_max) - 1);
+        const real error = std::abs(m.report.max_divergence - m.report.dt / rho * m.report.residual_max);
         if (!(error <= worst)) worst = error;
     }
-    return worst;
+    return worst * run.fields.grid.spacing[0] / largest(run.series("projection.identity_error"));
 }
 
 /// Largest |u(x) - mirrored u| over largest |u|, mirrored at the middle plane across `axis`: the normal component changes its sign.
@@ -71,8 +71,9 @@ std::vector<Metric> exactness_metrics() {
          .measure = discrete_deviation},
         {.name = "projection.identity_error",
          .unit = "",
-         .doc = "Largest deviation from max |div u| = dt/rho max |residual| over all steps, relative.",
-         .measure = identity_error},
+         .doc = "Largest deviation from max |div u| = dt/rho max |residual| over all steps, over the largest speed a cell width.",
+         .measure = identity_error,
+         .observe = [](const FieldSet& fields, const scene::Scene&, real) { return max_speed(fields); }},
         {.name = "rest.speed",
          .unit = "",
          .doc = "Largest speed at any step, over sqrt(g H).",

@@ -19,9 +19,11 @@ constexpr double nearly = 0.9;  // of a bound: what the summary calls close to i
 struct CaseClaims {
     std::string name{};
     std::vector<const json*> claims{};
-    std::size_t held = 0;
+    std::size_t held = 0, asked = 0;  // asked: bounds that are listed as not reached
     double seconds = 0;
     std::optional<double> nearest{};  // the largest part of a bound that one of its claims uses
+    std::size_t count() const { return claims.size() - asked; }
+    bool all_held() const { return held == count(); }
 };
 
 std::vector<CaseClaims> by_case(const json& verdicts) {
@@ -30,6 +32,10 @@ std::vector<CaseClaims> by_case(const json& verdicts) {
         CaseClaims& c = cases[text_at(v, "case")];
         c.name = text_at(v, "case");
         c.claims.push_back(&v);
+        if (!text_at(v, "not_reached").empty()) {
+            ++c.asked;
+            continue;
+        }
         c.held += v.value("pass", false) ? 1 : 0;
         c.seconds += number_at(v, "seconds").value_or(0);
         if (const auto used = used_part(v)) c.nearest = std::max(c.nearest.value_or(0), *used);
@@ -55,19 +61,23 @@ HtmlTable::Cell bar(std::optional<double> part) {
             .number = true};
 }
 
-HtmlTable::Cell verdict_cell(bool pass) { return raw(pass ? "<b class=\"pass\">pass</b>" : "<b class=\"no\">FAIL</b>", pass ? 1 : 0); }
+HtmlTable::Cell verdict_cell(const json& v) {
+    if (!text_at(v, "not_reached").empty()) return raw("asked", 0.5);
+    const bool pass = v.value("pass", false);
+    return raw(pass ? "<b class=\"pass\">pass</b>" : "<b class=\"no\">FAIL</b>", pass ? 1 : 0);
+}
 
 std::string overview(const std::vector<CaseClaims>& cases) {
     HtmlTable table({"case", "question", "kind", "claims held", "nearest to its bound", "seconds"},
                     "Every case; its name leads to its claims, reasons and blind spot");
     for (const CaseClaims& c : cases) {
         const json& first = *c.claims.front();
-        const bool all = c.held == c.claims.size();
+        const bool all = c.all_held();
         table.row({raw(fmt::format("<a href=\"#case-{0}\">{0}</a>", escaped(c.name))),
                    word(text_at(first, "question")),
                    word(kind_text(text_at(first, "kind"))),
-                   {.html = fmt::format("<b class=\"{}\">{} of {}</b>", all ? "pass" : "no", c.held, c.claims.size()),
-                    .key = static_cast<double>(c.held) / static_cast<double>(c.claims.size()),
+                   {.html = fmt::format("<b class=\"{}\">{} of {}</b>", all ? "pass" : "no", c.held, c.count()),
+                    .key = static_cast<double>(c.held) / static_cast<double>(std::max<std::size_t>(c.count(), 1)),
                     .number = true},
                    bar(c.nearest),
                    {.html = fmt::format("{:.1f}", c.seconds), .key = c.seconds, .number = true}},
@@ -94,26 +104,28 @@ std::string links(const std::string& name, const std::filesystem::path& results)
 
 std::string detail(const CaseClaims& c, const std::filesystem::path& results) {
     const json& first = *c.claims.front();
-    const bool all = c.held == c.claims.size();
+    const bool all = c.all_held();
     std::string s =
         fmt::format("<details id=\"case-{0}\" class=\"case\"{1}><summary><b>{0}</b> <span class=\"{2}\">{3} of {4}</span> {5}</summary>\n",
-                    escaped(c.name), all ? "" : " open", all ? "pass" : "no", c.held, c.claims.size(), escaped(text_at(first, "question")));
+                    escaped(c.name), all ? "" : " open", all ? "pass" : "no", c.held, c.count(), escaped(text_at(first, "question")));
     s += fmt::format("<p><b>Blind to:</b> {}</p>\n", escaped(text_at(first, "blind_to")));
     if (!text_at(first, "source").empty()) s += fmt::format("<p><b>Compared with:</b> {}</p>\n", escaped(text_at(first, "source")));
     HtmlTable table({"verdict", "claim", "measured", "bound", "part of the bound used", "why this bound", "seconds"},
                     "Claims of " + c.name);
     for (const json* v : c.claims) {
         std::string why = escaped(text_at(*v, "why"));
+        const std::string short_of = text_at(*v, "not_reached");
+        if (!short_of.empty()) why += " <b>Not reached:</b> " + escaped(short_of);
         if (const std::string note = text_at(*v, "note"); !note.empty()) why += " <b>" + escaped(note) + "</b>";
         const double seconds = number_at(*v, "seconds").value_or(0);
-        table.row({verdict_cell(v->value("pass", false)),
+        table.row({verdict_cell(*v),
                    word(text_at(*v, "claim")),
                    value(number_at(*v, "measured")),
                    raw("<span class=\"bound\">" + escaped(text_at(*v, "bound_text")) + "</span>"),
                    bar(used_part(*v)),
                    raw("<span class=\"why\">" + why + "</span>"),
                    {.html = fmt::format("{:.2f}", seconds), .key = seconds, .number = true}},
-                  v->value("pass", false) ? "" : "fail");
+                  v->value("pass", false) || !short_of.empty() ? "" : "fail");
     }
     s += table.html() + figure(c.name, results);
     return s + fmt::format("<p class=\"fine\"><code>./weir.sh validate {0} --size {1}</code> · commit {2}, {3}{4}</p></details>\n",
@@ -132,6 +144,25 @@ std::string parts(const json& verdicts) {
     std::string list;
     for (const auto& [kind, count] : counts) list += fmt::format("<li>{}: {} of {}</li>", kind, count.first, count.second);
     return "<ul>" + list + "</ul>";
+}
+
+/// What was asked and is not met, with its figure: a bound is never moved to where it passes.
+std::string not_reached(const json& bounds) {
+    if (bounds.empty()) return "";
+    HtmlTable table({"case", "bound", "asked", "measured", "why it is asked", "why it is not met"},
+                    "Bounds that were asked for and are not met");
+    for (const json& v : bounds)
+        table.row({raw(fmt::format("<a href=\"#case-{0}\">{0}</a>", escaped(text_at(v, "case")))), word(text_at(v, "claim")),
+                   raw("<span class=\"bound\">" + escaped(text_at(v, "bound_text")) + "</span>"), value(number_at(v, "measured")),
+                   word(text_at(v, "why")), word(text_at(v, "not_reached"))});
+    return "<h3 id=\"asked\">Asked and not reached</h3>\n" + table.html();
+}
+
+std::string older(const json& verdicts) {
+    std::string list;
+    for (const std::string& name : older_cases(verdicts))
+        list += fmt::format("{0}<a href=\"#case-{1}\">{1}</a>", list.empty() ? "" : ", ", escaped(name));
+    return list.empty() ? "" : "<p><b>Measured at an older commit than the others:</b> " + list + ".</p>\n";
 }
 
 std::string failures(const json& verdicts) {
@@ -158,20 +189,23 @@ std::optional<double> used_part(const json& v) {
     return std::max(0.0, *measured / b);
 }
 
-Section claims_section(const json& verdicts, const std::filesystem::path& results) {
-    const auto cases = by_case(verdicts);
+Section claims_section(const json& all_verdicts, const std::filesystem::path& results) {
+    const auto cases = by_case(all_verdicts);
+    const json verdicts = claimed(all_verdicts), open = asked(all_verdicts);
     std::size_t held = 0, close = 0;
     for (const json& v : verdicts) held += v.value("pass", false) ? 1 : 0, close += used_part(v).value_or(0) > nearly ? 1 : 0;
     const bool all = held == verdicts.size();
     Section section;
     section.summary = fmt::format(
         "<p class=\"big {}\">{} of {}</p><p>claims hold, in {} cases, each against an analytic or published reference. {} use more than "
-        "{:.0f}% of their bound.</p>{}{}",
-        all ? "pass" : "no", held, verdicts.size(), cases.size(), close, 100 * nearly, parts(verdicts), failures(verdicts));
+        "{:.0f}% of their bound.{}</p>{}{}",
+        all ? "pass" : "no", held, verdicts.size(), cases.size(), close, 100 * nearly,
+        open.empty() ? "" : fmt::format(" <a href=\"#asked\">{} bounds were asked for and are not reached.</a>", open.size()),
+        parts(verdicts), failures(verdicts));
     section.html =
         "<p>A claim is a measured number, a bound, and the reason of that bound. Verification asks whether the equations are "
         "solved right, validation whether they are the right equations. A case also says what it cannot see.</p>\n" +
-        overview(cases) +
+        older(all_verdicts) + overview(cases) + not_reached(open) +
         "<h3 id=\"cases\">Claim by claim</h3>\n<p class=\"tools\"><label>Show claims that contain <input id=\"filter\" "
         "type=\"search\" placeholder=\"sph, divergence, order …\"></label> <button type=\"button\" id=\"unfold\">Open all "
         "cases</button></p>\n";

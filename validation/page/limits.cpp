@@ -29,20 +29,23 @@ HtmlTable::Cell last_stable(const json& limit) {
 void add_rows(HtmlTable& table, const json& study) {
     for (const json& l : study["limits"]) {
         const bool guarded = l.value("guarded", true);
+        const std::string doubt = text_at(l, "doubt").empty() ? "" : " <b class=\"no\">" + escaped(text_at(l, "doubt")) + "</b>";
+        const std::string there = text_at(l, "hardship").empty() ? "" : "<br>there: " + escaped(text_at(l, "hardship"));
         std::string theory = number_at(l, "theory") ? number_text(*number_at(l, "theory")) : "–";
         if (!text_at(l, "theory_source").empty())
             theory = "<span class=\"theory\">" + theory + ": " + escaped(text_at(l, "theory_source")) + "</span>";
         table.row({word(text_at(l, "solver").empty() ? text_at(study, "study") : text_at(l, "solver")),
                    word(axis_of(l)),
+                   word(text_at(l, "kind")),
                    last_stable(l),
                    {.html = theory, .key = number_at(l, "theory")},
                    {.html = (number_at(l, "floor") ? number_text(*number_at(l, "floor")) : "–") +
                             (guarded ? "" : " <b class=\"no\">not reached</b>"),
                     .key = number_at(l, "floor"),
                     .number = true},
-                   raw("<span class=\"why\">" + escaped(text_at(l, "broke")) + "</span>"),
+                   raw("<span class=\"why\">" + escaped(text_at(l, "broke")) + there + "</span>" + doubt),
                    word(text_at(study, "study"))},
-                  guarded ? "" : "fail");
+                  guarded && doubt.empty() ? "" : "fail");
     }
 }
 
@@ -81,6 +84,25 @@ std::string beside_theory(const std::vector<json>& studies) {
 }
 
 }  // namespace
+
+void Counts::add(const json& limit) {
+    const std::string kind = text_at(limit, "kind");
+    const bool broke = limit.contains("first_unstable");
+    if (kind == "units")
+        ++units;
+    else if (kind == "guard")
+        ++guards;
+    else
+        ++limits, unbroken += broke ? 0 : 1;
+    below += limit.value("guarded", true) ? 0 : 1;
+    doubted += text_at(limit, "doubt").empty() ? 0 : 1;
+}
+
+std::string Counts::verdict() const {
+    const std::string floors =
+        below ? fmt::format("{} below the floor that is guarded.", below) : std::string("Every floor that is guarded holds.");
+    return floors + (doubted ? fmt::format(" {} are not what they say.", doubted) : "");
+}
 
 Map drawing_of_map(const json& m) {
     const auto texts = [](const json& list) {
@@ -121,25 +143,21 @@ Map drawing_of_map(const json& m) {
 
 Section limits_section(const std::vector<json>& studies) {
     if (studies.empty()) return {.summary = "<p>No limit is published: <code>./weir.sh stability --all --publish</code></p>", .html = ""};
-    HtmlTable table({"solver", "pushed along", "last stable", "theory", "floor", "what broke first", "case"},
+    HtmlTable table({"solver", "pushed along", "kind", "last stable", "theory", "floor", "what broke first", "case"},
                     "Each key is raised until something that must hold does not; the last value at which all held is the limit");
-    std::size_t limits = 0, unbroken = 0, below = 0;
+    Counts counts;
     std::set<std::string> machines;
     for (const json& study : studies) {
         add_rows(table, study);
-        for (const json& l : study["limits"]) {
-            ++limits;
-            unbroken += l.contains("first_unstable") ? 0 : 1;
-            below += l.value("guarded", true) ? 0 : 1;
-        }
+        for (const json& l : study["limits"]) counts.add(l);
         machines.insert(fmt::format("{}: commit {}, {}", text_at(study, "study"), text_at(study, "commit"), text_at(study, "machine")));
     }
     Section section;
     section.summary = fmt::format(
-        "<p class=\"big {}\">{} limits</p><p>measured by pushing solvers until an invariant broke; {} did not break however far "
-        "they were pushed. {}</p>{}",
-        below ? "no" : "pass", limits, unbroken,
-        below ? fmt::format("{} fall below the floor that is guarded.", below) : std::string("Every floor that is guarded holds."),
+        "<p class=\"big {}\">{} limits</p><p>measured by pushing solvers until an invariant broke; {} did not break, and the table says "
+        "why "
+        "nothing can. {} more axes are checks of units, {} of what guards a run. {}</p>{}",
+        counts.below + counts.doubted ? "no" : "pass", counts.limits, counts.unbroken, counts.units, counts.guards, counts.verdict(),
         beside_theory(studies));
     for (const json& study : studies)
         if (study.contains("maps"))

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
+#include "validation/page/sections.hpp"
 #include "validation/page/text.hpp"
 
 #include <fmt/format.h>
@@ -53,23 +54,18 @@ std::string claims_table(const json& verdicts, const std::string& prefix) {
 }
 
 std::string limits_line(const std::filesystem::path& results, const std::string& prefix) {
-    std::size_t limits = 0, unbroken = 0, below = 0;
+    Counts counts;
     std::error_code missing;
     for (const auto& entry : std::filesystem::directory_iterator(results / "stability", missing)) {
         const json study = json_of(entry.path());
         if (!study.is_object() || !study.contains("limits")) continue;
-        for (const json& l : study["limits"]) {
-            ++limits;
-            unbroken += l.contains("first_unstable") ? 0 : 1;
-            below += l.value("guarded", true) ? 0 : 1;
-        }
+        for (const json& l : study["limits"]) counts.add(l);
     }
-    if (limits == 0) return "";
+    if (counts.limits + counts.units + counts.guards == 0) return "";
     return fmt::format(
-        "\n**Where it breaks:** {} limits measured, {} of them not reached however far the solver was pushed; {}: "
-        "[{}/stability]({}/stability/index.md).\n",
-        limits, unbroken, below == 0 ? "every guarded floor holds" : fmt::format("{} below the floor that is guarded", below), prefix,
-        prefix);
+        "\n**Where it breaks:** {} limits measured, {} of them not reached however far the solver was pushed; {} checks of units, {} of "
+        "guards. {} [{}/stability]({}/stability/index.md).\n",
+        counts.limits, counts.unbroken, counts.units, counts.guards, counts.verdict(), prefix, prefix);
 }
 
 }  // namespace
@@ -77,7 +73,12 @@ std::string limits_line(const std::filesystem::path& results, const std::string&
 std::string readme_part(const std::filesystem::path& results, const std::string& prefix) {
     const json verdicts = json_of(results / "verdicts.json");
     if (!verdicts.is_array()) throw BadInput(results.string() + " holds no readable verdicts.json");
-    return side_by_side(results, prefix) + claims_table(verdicts, prefix) + limits_line(results, prefix) +
+    const std::size_t open = asked(verdicts).size();
+    const std::string not_reached =
+        open == 0 ? ""
+                  : fmt::format("\n{} bounds were asked for and are not reached: [the table]({}/index.md#asked-and-not-reached).\n", open,
+                                prefix);
+    return side_by_side(results, prefix) + claims_table(claimed(verdicts), prefix) + not_reached + limits_line(results, prefix) +
            fmt::format("\nAll of it on one page, to open in a browser: `{}/index.html`.\n", prefix);
 }
 

@@ -28,6 +28,14 @@ Map drawing_of_map(const nlohmann::json& map);
 /// The pictures themselves, inside the page.
 Section pictures_section(const std::filesystem::path& results);
 
+/// How many axes there are of each kind, and how they came out.
+struct Counts {
+    std::size_t limits = 0, unbroken = 0, units = 0, guards = 0, below = 0, doubted = 0;
+    void add(const nlohmann::json& limit);
+    /// "Every floor that is guarded holds."
+    std::string verdict() const;
+};
+
 /// How much of its bound a claim uses: 1 is all of it; absent where the bound is zero.
 std::optional<double> used_part(const nlohmann::json& verdict);
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace weir::validation {
@@ -62,6 +63,27 @@ nlohmann::json json_of(const std::filesystem::path& file) {
     if (!stream || !std::filesystem::is_regular_file(file)) return nullptr;  // a folder opens, and throws when it is read
     auto parsed = nlohmann::json::parse(stream, nullptr, false);
     return parsed.is_discarded() ? nlohmann::json(nullptr) : parsed;
+}
+
+nlohmann::json asked(const nlohmann::json& verdicts) {
+    auto list = nlohmann::json::array();
+    for (const auto& v : verdicts)
+        if (!text_at(v, "not_reached").empty()) list.push_back(v);
+    return list;
+}
+
+nlohmann::json claimed(const nlohmann::json& verdicts) {
+    auto list = nlohmann::json::array();
+    for (const auto& v : verdicts)
+        if (text_at(v, "not_reached").empty()) list.push_back(v);
+    return list;
+}
+
+std::vector<std::string> older_cases(const nlohmann::json& verdicts) {
+    std::set<std::string> names;
+    for (const auto& v : verdicts)
+        if (v.value("older", false)) names.insert(text_at(v, "case"));
+    return {names.begin(), names.end()};
 }
 
 std::string text_at(const nlohmann::json& entry, const char* key) {

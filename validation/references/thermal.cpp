@@ -22,3 +22,10 @@ REFERENCE(thermal) {
                    {"origin", ball.numbers("centre").at(1)}};
     return ref;
 }
+
+// A source at the floor feeds a plume; its front is counted from the floor.
+REFERENCE(plume) {
+    Reference ref{.source = "self-similarity of starting plumes: Turner 1962; Lee & Emmons 1961 in 2D (exponent exact, factor not)"};
+    ref.numbers = {{"exponent", 1}, {"origin", scene.root().numbers("grid.origin").at(1)}};
+    return ref;
+}

@@ -4,9 +4,11 @@
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
+#include "validation/page/text.hpp"
 #include "validation/report/tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <fstream>
@@ -35,8 +37,13 @@ std::string number(const json& entry, const char* key, const char* form) {
 std::string row(const json& v) {
     const std::string name = text(v, "case");
     std::string why = text(v, "why");
+    const bool only_asked = !text(v, "not_reached").empty();
+    if (only_asked) why += " **Not reached:** " + text(v, "not_reached");
     if (!text(v, "note").empty()) why += " **" + text(v, "note") + "**";
-    return fmt::format("| {} | {} | {} | {} | {} | {} | [svg](svg/{}.svg) | `{}` |\n", v.value("pass", false) ? "pass" : "**FAIL**",
+    return fmt::format("| {} | {} | {} | {} | {} | {} | [svg](svg/{}.svg) | `{}` |\n",
+                       only_asked               ? "asked"
+                       : v.value("pass", false) ? "pass"
+                                                : "**FAIL**",
                        cell(text(v, "claim")), number(v, "measured", "{:.4g}"), cell(text(v, "bound_text")), cell(why),
                        number(v, "seconds", "{:.2f}"), name, cell(text(v, "frames")));
 }
@@ -53,6 +60,18 @@ std::string section(const std::vector<const json*>& claims) {
         "`./weir.sh validate {0} --size {1}`\n\n",
         name, text(first, "size"), text(first, "commit"), text(first, "machine"));
     return s;
+}
+
+/// What was asked of a case and is not met stands first, with its figure.
+std::string not_reached_table(const json& bounds) {
+    if (bounds.empty()) return "";
+    std::string s =
+        "## Asked and not reached\n\n| case | bound | asked | measured | why it is asked | why it is not met "
+        "|\n|---|---|---|---|---|---|\n";
+    for (const json& v : bounds)
+        s += fmt::format("| {0} | {1} | {2} | {3} | {4} | {5} |\n", text(v, "case"), cell(text(v, "claim")), cell(text(v, "bound_text")),
+                         number(v, "measured", "{:.4g}"), cell(text(v, "why")), cell(text(v, "not_reached")));
+    return s + "\n";
 }
 
 std::string machine_text(const output::Machine& m) {
@@ -79,9 +98,14 @@ void copy_over(const std::filesystem::path& from, const std::filesystem::path& t
 std::string index_markdown(const json& verdicts) {
     std::map<std::string, std::vector<const json*>> by_case;
     std::size_t passed = 0;
-    for (const json& v : verdicts) by_case[text(v, "case")].push_back(&v), passed += v.value("pass", false) ? 1 : 0;
+    for (const json& v : verdicts) by_case[text(v, "case")].push_back(&v);
+    const json claims = claimed(verdicts);
+    for (const json& v : claims) passed += v.value("pass", false) ? 1 : 0;
     std::string s = "# Results\n\nThis page is written by `weir validate --publish`; nothing in it is typed by hand.\n\n";
-    s += fmt::format("**{} of {} claims hold, in {} cases.**\n\n", passed, verdicts.size(), by_case.size());
+    s += fmt::format("**{} of {} claims hold, in {} cases.**\n\n", passed, claims.size(), by_case.size());
+    if (const auto older = older_cases(verdicts); !older.empty())
+        s += fmt::format("Measured at an older commit than the others: {}.\n\n", fmt::join(older, ", "));
+    s += not_reached_table(asked(verdicts));
     const std::pair<const char*, std::set<std::string>> parts[] = {
         {"Verification: are the equations solved right?", {"exact", "convergence"}},
         {"Accuracy against the work of the solver", {"iterations"}},
@@ -112,8 +136,11 @@ void publish(const std::vector<CaseResult>& results, const std::filesystem::path
             copy_over(out / "svg" / (name + ".svg"), folder / "svg" / (name + ".svg"));
         copy_over(out / "csv" / (name + ".csv"), folder / "csv" / (name + ".csv"));
     }
-    for (const json& old : read_entries(folder / "verdicts.json"))
-        if (!measured.count(text(old, "case"))) entries.push_back(old);
+    for (json old : read_entries(folder / "verdicts.json"))
+        if (!measured.count(text(old, "case"))) {
+            old["older"] = text(old, "commit") != machine.commit;
+            entries.push_back(old);
+        }
     output::write_file(folder / "verdicts.json", entries.dump(1) + "\n");
     output::write_file(folder / "index.md", index_markdown(entries));
 }

@@ -50,11 +50,12 @@ std::string claims_table(const CaseResult& result) {
         for (const Verdict& verdict : v.verdicts) all.push_back(&verdict), width = std::max(width, claim_of(verdict).size());
     std::string s =
         fmt::format("{} ({}, {}): {}\n", result.plan.name, name(result.plan.kind), name(result.plan.size), result.plan.question);
-    s += fmt::format("        {:{}}  {:>11}  {:22}  {:>8}  {}\n", "claim", width, "measured", "bound", "seconds", "why");
+    s += fmt::format("         {:{}}  {:>11}  {:22}  {:>8}  {}\n", "claim", width, "measured", "bound", "seconds", "why");
     for (const Verdict* v : all) {
-        s += fmt::format("  {:4}  {:{}}  {:>11.4g}  {:22}  {:>8.2f}  {}\n", v->pass ? "pass" : "FAIL", claim_of(*v), width, v->measured,
-                         v->bound(), v->seconds, v->why);
-        if (!v->note.empty()) s += fmt::format("        {}\n", v->note);
+        s += fmt::format("  {:5}  {:{}}  {:>11.4g}  {:22}  {:>8.2f}  {}\n", v->word(), claim_of(*v), width, v->measured, v->bound(),
+                         v->seconds, v->why);
+        if (!v->not_reached.empty()) s += fmt::format("         asked and not reached: {}\n", v->not_reached);
+        if (!v->note.empty()) s += fmt::format("         {}\n", v->note);
     }
     return s;
 }
@@ -116,6 +117,7 @@ nlohmann::json verdicts_json(const CaseResult& result) {
                             {"claim", claim_of(verdict)},
                             {"bound_text", verdict.bound()},
                             {"why", verdict.why},
+                            {"not_reached", verdict.not_reached},
                             {"note", verdict.note},
                             {"frames", frames_folder(result.plan, v.plan, v.runs.size() - 1).string()},
                             {"source", result.source},

@@ -99,7 +99,7 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
     const output::Machine machine = output::this_machine();
     std::vector<json> done;
-    bool guarded = true;
+    bool sound = true;
     for (const StressStudy& study : studies) {
         const auto say = [&](const Stress& s, const std::string& more) {
             if (talk) std::fprintf(stderr, "\r\033[K%s %s %s%s", study.name.c_str(), s.name.c_str(), s.method.c_str(), more.c_str());
@@ -108,7 +108,7 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
         for (const Stress& s : study.stresses) {
             say(s, "");
             limits.push_back(options.floors ? check_floor(s, solvers) : find_limit(s, bisection_factor(options.size), solvers));
-            guarded = guarded && limits.back().guarded();
+            sound = sound && limits.back().passes();
         }
         done.push_back(limits_json(study, limits));
         for (const StressMap& m : study.maps) {
@@ -125,7 +125,7 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
         output::write_file(options.out / (study.name + ".json"), done.back().dump(1) + "\n");
     }
     if (!options.publish.empty()) publish_limits(done, options.publish);
-    return guarded ? exit_success : exit_claim_failed;
+    return sound ? exit_success : exit_claim_failed;
 }
 
 }  // namespace weir::validation

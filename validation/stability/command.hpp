@@ -39,7 +39,8 @@ std::string maps_text(const nlohmann::json& study);
 /// "study-dt-against-iterations-flip.svg"
 std::string map_file(const nlohmann::json& study, const nlohmann::json& map);
 
-/// Runs the command and returns its exit code: 1 where a floor is not reached. Throws BadInput before anything is run.
+/// Runs the command and returns its exit code: 1 where a floor is not reached or an axis proves to be another than it says. Throws BadInput
+/// before anything is run.
 int stability_command(const StabilityOptions& options, const Solvers& solvers = sim::registry());
 
 }  // namespace weir::validation

@@ -13,20 +13,12 @@
 namespace weir::validation {
 namespace {
 
-/// The value of a series now: an integral, a number of the step's report, or the sum of two: "kinetic_energy+potential_energy".
-real value_of(const std::string& series, const Simulation& simulation, const StepReport& report) {
-    if (const auto plus = series.find('+'); plus != std::string::npos)
-        return value_of(series.substr(0, plus), simulation, report) + value_of(series.substr(plus + 1), simulation, report);
-    if (series == "divergence") return report.max_divergence;
-    if (series == "iterations") return static_cast<real>(report.iterations);
-    if (series == "density_error") return report.density_error;
-    if (series == "dt") return report.dt;
-    for (const Integral& i : simulation.solver().integrals())
-        if (i.name == series) return i.value;
-    throw BadInput(fmt::format("no integral or step report is called \"{}\"", series));
-}
-
 constexpr int rungs = 6;  // from the low end of an axis to its high end
+
+/// What there is no value of before the first step.
+bool of_a_step(const std::string& series) {
+    return series == "divergence" || series == "density_error" || series == "dt" || series == "cfl" || series == "fastest";
+}
 
 /// Watches one invariant from step to step.
 class Watch {
@@ -95,6 +87,16 @@ std::string growth(real power) { return power == 0 ? "" : power == 1 ? " times t
 
 }  // namespace
 
+std::string_view name(AxisKind kind) { return kind == AxisKind::limit ? "limit" : kind == AxisKind::units ? "units" : "guard"; }
+
+std::string Limit::doubt() const {
+    if (!climbed) return {};
+    if (first_unstable && stress.kind == AxisKind::units) return "rungs that are dimensionally similar do not all hold";
+    if (first_unstable && !stress.unbroken.empty()) return "it breaks, though it is said that nothing can";
+    if (!first_unstable && stress.kind == AxisKind::limit && stress.unbroken.empty()) return "it ends before anything breaks";
+    return {};
+}
+
 std::string Invariant::text() const {
     switch (test) {
         case Test::at_most:
@@ -116,7 +118,8 @@ Variant pushed_to(const Stress& stress, real value) {
     return variant;
 }
 
-std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers) {
+std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers,
+                                 std::vector<Shown>* shown) {
     const auto schemas = scene::schemas_of(solvers);
     auto scene = scene_of(variant, 0, schemas);
     const auto failed = [](const NumericalFailure& failure, std::int64_t step, real time) {
@@ -136,11 +139,18 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
     }
     std::vector<Watch> watches;
     for (const Invariant& invariant : stress.watch) watches.emplace_back(invariant, value);
+    Hardship hardship(stress.proof, value);
+    const auto prove = [&](bool at_start) {
+        if (const std::string what = hardship.missing(at_start); !what.empty())
+            throw BadInput(fmt::format("axis \"{}\"{}{} at {:g} is not as hard as it says: {}", stress.name,
+                                       stress.method.empty() ? "" : " of ", stress.method, value, what));
+    };
+    hardship.start(*simulation), prove(true);
     StepReport report;
     const auto broken = [&]() -> std::optional<Break> {
         for (Watch& watch : watches) {
             const std::string& series = watch.invariant().series;
-            if (simulation->steps() == 0 && (series == "divergence" || series == "density_error" || series == "dt")) continue;
+            if (simulation->steps() == 0 && of_a_step(series)) continue;
             if (const real v = value_of(series, *simulation, report); !watch.holds(v))
                 return Break{fmt::format("{}: {:.4g}", watch.invariant().text(), v), watch.invariant().text(), simulation->steps(),
                              simulation->time()};
@@ -154,13 +164,16 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
         } catch (const NumericalFailure& failure) {
             return failed(failure, simulation->steps() + 1, simulation->time());
         }
+        hardship.step(*simulation, report);
         if (auto found = broken()) return found;
     }
+    hardship.end(*simulation, report), prove(false);
+    if (shown) *shown = hardship.shown();
     return std::nullopt;
 }
 
-std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers) {
-    return run_watched(pushed_to(stress, value), stress, value, solvers);
+std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers, std::vector<Shown>* shown) {
+    return run_watched(pushed_to(stress, value), stress, value, solvers, shown);
 }
 
 std::vector<std::vector<std::optional<Break>>> fill_map(const StressMap& map, const Solvers& solvers,
@@ -201,14 +214,32 @@ Limit bisect(const Stress& stress, real factor, const std::function<std::optiona
     return limit;
 }
 
+namespace {
+
+/// The limit with what the proofs came to at its last stable value.
+Limit proven(const Stress& axis, const Stress& stress, real factor, const Solvers& solvers) {
+    std::vector<Shown> latest, at_last_stable;
+    Limit limit = bisect(axis, factor, [&](real value) {
+        const auto broke = push(stress, value, solvers, &latest);
+        if (!broke) at_last_stable = latest;
+        return broke;
+    });
+    limit.hardship = at_last_stable;
+    return limit;
+}
+
+}  // namespace
+
 Limit check_floor(const Stress& stress, const Solvers& solvers) {
     Stress at_floor = stress;
     at_floor.low = *stress.floor, at_floor.high = infinity;  // nothing further is tried
-    return bisect(at_floor, 1, [&](real value) { return push(stress, value, solvers); });
+    return proven(at_floor, stress, 1, solvers);
 }
 
 Limit find_limit(const Stress& stress, real factor, const Solvers& solvers) {
-    return bisect(stress, factor, [&](real value) { return push(stress, value, solvers); });
+    Limit limit = proven(stress, stress, factor, solvers);
+    limit.climbed = true;
+    return limit;
 }
 
 }  // namespace weir::validation

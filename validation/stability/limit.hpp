@@ -3,6 +3,7 @@
 #pragma once
 #include "validation/harness/case.hpp"
 #include "validation/harness/runner.hpp"
+#include "validation/stability/hardship.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -26,11 +27,17 @@ struct Invariant {
     std::string text() const;
 };
 
+/// What an axis is for. limit: pushed until something breaks. units: all its rungs are dimensionally similar, so that a break is an
+/// absolute number in the code. guard: it ends where a guard takes over, or refuses.
+enum class AxisKind { limit, units, guard };
+std::string_view name(AxisKind kind);
+
 /// One axis of one method. Its value sets `key`, and stands wherever a change of the scene says <a> (a times the value), <a^p> (a times
 /// its power p) or <a^p round> (that, as a whole number).
 struct Stress {
     std::string name{};  // of the axis: "cfl"
     std::string method{};
+    AxisKind kind = AxisKind::limit;
     std::string solver{};    // as the scene names it; known once its scene has been read
     std::string key{};       // may be empty where changes hold the value
     real low = 0, high = 0;  // both positive; the axis is logarithmic
@@ -43,6 +50,8 @@ struct Stress {
     std::int64_t steps = 0;  // a run ends here if its scene has not ended before
     Variant base{};
     std::vector<Invariant> watch{};
+    std::vector<Proof> proof{};  // that the hardship is there, at each value
+    std::string unbroken{};      // limit: why nothing can break however far it is pushed
 };
 
 /// One axis of a two-axis map: a key and its values, as they stand in a scene.
@@ -82,23 +91,31 @@ struct Break {
 
 struct Limit {
     Stress stress{};
+    bool climbed = false;                  // the whole axis was tried, not only its floor
     std::optional<real> last_stable{};     // absent: not even the low end is
     std::optional<real> first_unstable{};  // absent: the high end is still stable
     Break broke{};                         // at first_unstable
+    std::vector<Shown> hardship{};         // at last_stable, or where nothing is stable at the low end
     int runs = 0;
     double seconds = 0;
     bool guarded() const { return !stress.floor || (last_stable && *last_stable >= *stress.floor); }
+    /// What speaks against the axis itself: it ends before anything breaks and nobody says why, it breaks though that was ruled out, or
+    /// another kind of axis breaks. Empty where nothing does.
+    std::string doubt() const;
+    bool passes() const { return guarded() && doubt().empty(); }
 };
 
 /// The configuration with the axis at `value`. Throws BadInput where a placeholder cannot be read.
 Variant pushed_to(const Stress& stress, real value);
 
 /// Runs the configuration until something breaks, its scene ends or so many steps are taken; nothing broke: no value. A state that the
-/// solver refuses to start from is a break at step 0; a scene that does not read is BadInput.
-std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers);
+/// solver refuses to start from is a break at step 0; a scene that does not read is BadInput, and so is a run that is not as hard as its
+/// axis says. shown: what its proofs came to.
+std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers,
+                                 std::vector<Shown>* shown = nullptr);
 
 /// The same with the axis at `value`.
-std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers);
+std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers, std::vector<Shown>* shown = nullptr);
 
 /// Climbs the axis until something breaks, then bisects in the logarithm until stable and unstable differ by less than `factor`.
 Limit find_limit(const Stress& stress, real factor, const Solvers& solvers);

@@ -43,6 +43,28 @@ Key watch_key() {
                    positive("never_rises", "No step raises the value by more than this part of the largest.")});
 }
 
+Key proof_key() {
+    return tables(
+        "proof", "That the run is as hard as its axis says: at each value, or the study is in error.",
+        {text("quantity", "An integral, a number of the step's report, or what is counted: wet_cells, film, gap, pockets, ...", true),
+         text("why", "What it proves.", true),
+         {.name = "at_least", .type = Type::number, .doc = "value >= this"},
+         {.name = "at_most", .type = Type::number, .doc = "value <= this"},
+         {.name = "power", .type = Type::number, .doc = "Both are for a key of 1, and grow with this power of it.", .fallback = 0.0},
+         {.name = "when",
+          .type = Type::choice,
+          .doc = "Before the first step; the largest of the run; at its end.",
+          .fallback = std::string("start"),
+          .choices = {"start", "most", "end"}},
+         methods_of_key()},
+        true);
+}
+
+Key unbroken_key() {
+    return tables("unbroken", "Of a limit that is not reached: why nothing can break.",
+                  {text("why", "The reason.", true), methods_of_key()});
+}
+
 Key steps_key() { return {.name = "steps", .type = Type::integer, .doc = "Longest run.", .min = 1}; }
 
 std::vector<Key> axis_keys() {
@@ -51,7 +73,15 @@ std::vector<Key> axis_keys() {
                   text("key", "The key of the scene that is raised; absent where changes hold the value as <a>, <a^p> or <a^p round>."),
                   positive("low", "Where it begins.", true),
                   positive("high", "How far it is tried.", true),
+                  {.name = "kind",
+                  .type = Type::choice,
+                  .doc = "limit: pushed until something breaks; units: dimensionally similar, so a check of units; guard: a check of what "
+                         "takes over or refuses.",
+                  .required = true,
+                  .choices = {"limit", "units", "guard"}},
                   text("hard_because", "Why this is hard.", true),
+                  proof_key(),
+                  unbroken_key(),
                   positive("theory", "The limit that theory gives."),
                   text("theory_source", "Where that limit comes from."),
                   positive("floor", "The least that must be stable."),
@@ -98,12 +128,57 @@ std::vector<Key> make_keys() {
     return keys;
 }
 
+std::optional<real> optional_number(const Table& t, std::string_view key) {
+    return t.has(key) ? std::optional<real>(t.number(key)) : std::nullopt;
+}
+
+/// Whether an entry is for this method: it is for all that it does not tell apart.
+bool is_for(const Table& entry, const std::string& method) {
+    if (!entry.has("methods")) return true;
+    const auto& of = entry.texts("methods");
+    return std::find(of.begin(), of.end(), method) != of.end();
+}
+
+std::vector<Proof> proofs(const Table& axis, const std::string& method, VariantReader& reader) {
+    std::vector<Proof> list;
+    for (const Table& p : axis.tables("proof")) {
+        if (!is_for(p, method)) continue;
+        list.push_back({.when = p.text("when") == "start"  ? Proof::When::start
+                                : p.text("when") == "most" ? Proof::When::most
+                                                           : Proof::When::end,
+                        .quantity = reader.said(p, "quantity"),
+                        .at_least = optional_number(p, "at_least"),
+                        .at_most = optional_number(p, "at_most"),
+                        .power = p.number("power"),
+                        .why = reader.said(p, "why")});
+        if (!list.back().at_least && !list.back().at_most)
+            reader.problem(p.place("quantity"), fmt::format("\"{}\" needs one of: at_least, at_most", list.back().quantity));
+    }
+    if (list.empty())
+        reader.problem(axis.place("name"),
+                       fmt::format("\"{}\" proves nothing of its hardship{}{}", axis.text("name"), method.empty() ? "" : " for ", method));
+    return list;
+}
+
+std::string why_unbroken(const Table& axis, const std::string& method, AxisKind kind, VariantReader& reader) {
+    for (const Table& u : axis.tables("unbroken")) {
+        if (kind != AxisKind::limit) reader.problem(u.place("why"), "only an axis of kind \"limit\" says why it is not reached");
+        if (is_for(u, method)) return reader.said(u, "why");
+    }
+    return {};
+}
+
+AxisKind kind_of(const Table& axis) {
+    for (const AxisKind kind : {AxisKind::units, AxisKind::guard})
+        if (axis.text("kind") == name(kind)) return kind;
+    return AxisKind::limit;
+}
+
 /// What a table watches of one method.
 std::vector<Invariant> invariants(const Table& t, const std::string& method, VariantReader& reader) {
     std::vector<Invariant> list;
     for (const Table& w : t.tables("watch")) {
-        const std::vector<std::string> of = w.has("methods") ? w.texts("methods") : std::vector<std::string>{method};
-        if (std::find(of.begin(), of.end(), method) == of.end()) continue;
+        if (!is_for(w, method)) continue;
         Invariant invariant{.series = reader.said(w, "series"), .power = w.number("power"), .why = reader.said(w, "why")};
         int given = 0;
         for (std::size_t i = 0; i < tests.size(); ++i)
@@ -114,13 +189,10 @@ std::vector<Invariant> invariants(const Table& t, const std::string& method, Var
     return list;
 }
 
-std::optional<real> optional_number(const Table& t, std::string_view key) {
-    return t.has(key) ? std::optional<real>(t.number(key)) : std::nullopt;
-}
-
 Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader) {
     Stress s{.name = reader.said(axis, "name"),
              .method = method.name,
+             .kind = kind_of(axis),
              .solver = {},
              .key = axis.text_or("key", ""),
              .low = axis.number("low"),
@@ -135,6 +207,8 @@ Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader
     if (s.low >= s.high) reader.problem(axis.place("low"), "\"low\" must be less than \"high\"");
     if (s.floor && s.floor_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
     if (s.theory && s.theory_source.empty()) reader.problem(axis.place("theory"), "\"theory\" needs a \"theory_source\"");
+    s.proof = proofs(axis, method.name, reader);
+    s.unbroken = why_unbroken(axis, method.name, s.kind, reader);
     reader.lay_over(s.base, axis);
     const auto holds_value = [](const scene::Override& change) { return change.value.find('<') != std::string::npos; };
     if (s.key.empty() && std::none_of(s.base.overrides.begin(), s.base.overrides.end(), holds_value))

@@ -24,8 +24,15 @@ std::string number(const std::optional<real>& value) { return value ? fmt::forma
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 std::string what_broke(const Limit& l) {
-    if (!l.first_unstable) return "nothing";
+    if (!l.first_unstable) return l.stress.unbroken.empty() ? "nothing" : "nothing: " + l.stress.unbroken;
     return fmt::format("at {:.3g}, step {}, t = {:.3g} s: {}", *l.first_unstable, l.broke.step, l.broke.time, first_line(l.broke.what));
+}
+
+/// "wet_cells 32, film 0.5"
+std::string hardship_of(const Limit& l) {
+    std::string s;
+    for (const Shown& h : l.hardship) s += fmt::format("{}{} {:.4g}", s.empty() ? "" : ", ", h.quantity, h.value);
+    return s;
 }
 
 }  // namespace
@@ -34,11 +41,14 @@ std::string limits_table(const StressStudy& study, const std::vector<Limit>& lim
     std::size_t width = 8;
     for (const Limit& l : limits) width = std::max(width, name_of(l.stress).size());
     std::string s = fmt::format("{}: {}\n", study.name, study.question);
-    s += fmt::format("        {:{}}  {:>11} {:>8} {:>8} {:>5} {:>8}  {}\n", "axis", width, "last stable", "theory", "floor", "runs",
-                     "seconds", "what broke first");
-    for (const Limit& l : limits)
-        s += fmt::format("  {:4}  {:{}}  {:>11} {:>8} {:>8} {:>5} {:>8.2f}  {}\n", l.guarded() ? "pass" : "FAIL", name_of(l.stress), width,
-                         last_stable(l), number(l.stress.theory), number(l.stress.floor), l.runs, l.seconds, what_broke(l));
+    s += fmt::format("        {:{}}  {:5} {:>11} {:>8} {:>8} {:>5} {:>8}  {}\n", "axis", width, "kind", "last stable", "theory", "floor",
+                     "runs", "seconds", "what broke first");
+    for (const Limit& l : limits) {
+        s += fmt::format("  {:4}  {:{}}  {:5} {:>11} {:>8} {:>8} {:>5} {:>8.2f}  {}", l.passes() ? "pass" : "FAIL", name_of(l.stress),
+                         width, name(l.stress.kind), last_stable(l), number(l.stress.theory), number(l.stress.floor), l.runs, l.seconds,
+                         what_broke(l));
+        s += l.doubt().empty() ? "\n" : fmt::format(" ({})\n", l.doubt());
+    }
     return s;
 }
 
@@ -48,6 +58,9 @@ json limits_json(const StressStudy& study, const std::vector<Limit>& limits) {
         json entry = {{"axis", l.stress.name},
                       {"solver", l.stress.solver},
                       {"method", l.stress.method},
+                      {"kind", name(l.stress.kind)},
+                      {"hardship", hardship_of(l)},
+                      {"doubt", l.doubt()},
                       {"key", l.stress.key},
                       {"hard_because", l.stress.hard_because},
                       {"last_stable_text", last_stable(l)},
@@ -78,13 +91,15 @@ std::string key_text(const json& limit) { return text(limit, "key").empty() ? ""
 
 std::string limits_markdown(const json& study) {
     std::string s = fmt::format("## {}\n\n{}\n\n", text(study, "study"), text(study, "question"));
-    s += "| | axis | method | last stable | theory | floor | what broke first | hard because |\n|---|---|---|---|---|---|---|---|\n";
+    s += "| | axis | method | kind | last stable | there | theory | floor | what broke first | hard because |\n"
+         "|---|---|---|---|---|---|---|---|---|---|\n";
     for (const auto& l : study["limits"]) {
         std::string theory = number_at(l, "theory");
         if (!theory.empty()) theory += fmt::format(" ({})", text(l, "theory_source"));
-        s += fmt::format("| {} | {}{} | {} | {} | {} | {} | {} | {} |\n", l["guarded"].get<bool>() ? "" : "**below its floor**",
-                         text(l, "axis"), key_text(l), text(l, "method"), text(l, "last_stable_text"), theory, number_at(l, "floor"),
-                         text(l, "broke"), text(l, "hard_because"));
+        const std::string wrong = l["guarded"].get<bool>() ? text(l, "doubt") : "below its floor";
+        s += fmt::format("| {} | {}{} | {} | {} | {} | {} | {} | {} | {} | {} |\n", wrong.empty() ? "" : "**" + wrong + "**",
+                         text(l, "axis"), key_text(l), text(l, "method"), text(l, "kind"), text(l, "last_stable_text"), text(l, "hardship"),
+                         theory, number_at(l, "floor"), text(l, "broke"), text(l, "hard_because"));
     }
     if (study.contains("maps"))
         for (const auto& map : study["maps"])
@@ -98,14 +113,16 @@ std::string all_limits_markdown(const std::vector<json>& studies) {
         for (const auto& l : study["limits"]) {
             const std::string solver = text(l, "solver");
             const std::string method = text(l, "method");
-            rows.push_back({solver, fmt::format("| {} | {} | {} | {} | {} | {} | [{}](#{}) |\n", solver, text(l, "axis"), method,
-                                                text(l, "last_stable_text"), number_at(l, "theory"), text(l, "broke"), text(study, "study"),
-                                                text(study, "study"))});
+            rows.push_back({solver, fmt::format("| {} | {} | {} | {} | {} | {} | {} | [{}](#{}) |\n", solver, text(l, "axis"), method,
+                                                text(l, "kind"), text(l, "last_stable_text"), number_at(l, "theory"), text(l, "broke"),
+                                                text(study, "study"), text(study, "study"))});
         }
     std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::string s =
-        "## All limits, by solver\n\n| solver | axis | method | last stable | theory | what broke first | case |\n"
-        "|---|---|---|---|---|---|---|\n";
+        "## All limits, by solver\n\nKinds: a limit is pushed until something breaks; the rungs of units are dimensionally similar, so "
+        "that only "
+        "an absolute number in the code could break them; a guard is checked, which takes over or refuses.\n\n"
+        "| solver | axis | method | kind | last stable | theory | what broke first | case |\n|---|---|---|---|---|---|---|---|\n";
     for (const auto& row : rows) s += row.second;
     return s + "\n";
 }

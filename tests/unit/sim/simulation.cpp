@@ -1,5 +1,6 @@
 #include "sim/simulation.hpp"
 
+#include "core/parallel.hpp"
 #include "sim/registry.hpp"
 #include "support/fake_solver.hpp"
 #include "support/test.hpp"
@@ -200,6 +201,38 @@ TEST_IN_2D_AND_3D("a restored simulation continues bit for bit: times, steps, fr
 TEST("a checkpoint of another scene is refused as bad input") {
     auto flat = fake_simulation("time = { end = 0.5 }");
     EXPECT_THROW(flat.restore(weir::Checkpoint{}), weir::BadInput);
+}
+
+/// The threads that a solver is made and stepped with.
+struct Counting : weir::test::FakeSolver {
+    explicit Counting(const weir::scene::Scene& scene) : FakeSolver(scene), seen({weir::threads()}) {}
+    weir::StepReport step(real dt) override {
+        seen.push_back(weir::threads());
+        return FakeSolver::step(dt);
+    }
+    std::vector<int> seen;
+};
+
+TEST("a small scene takes no more threads than it has work for, a large one all, and a number that was set is taken") {
+    auto kinds = weir::test::fake_kinds();
+    kinds[0].make = [](const weir::scene::Scene& scene) { return std::make_unique<Counting>(scene); };
+    const auto threads_of = [&](int cells) {
+        const std::string text =
+            "solver = \"fake\"\ndim = 2\ngrid = { cells = [" + std::to_string(cells) + ", 8], size = [1, 1] }\ntime = { end = 1 }";
+        weir::Simulation simulation(weir::scene::parse(text, "fake.toml", {kinds[0].schema}), kinds);
+        simulation.step();
+        return static_cast<const Counting&>(simulation.solver()).seen;
+    };
+    const int available = std::max(1, omp_get_max_threads()), grain = weir::ThreadsWorth::cells_a_thread / 8;
+    weir::set_threads(0);
+    EXPECT_EQ(weir::threads(), available);
+    EXPECT_EQ(threads_of(8), (std::vector<int>{1, 1}));
+    EXPECT_EQ(threads_of(2 * grain - 1), (std::vector<int>{1, 1}));
+    EXPECT_EQ(threads_of(available * grain), (std::vector<int>{available, available}));
+    EXPECT_EQ(weir::threads(), available);
+    weir::set_threads(3);
+    EXPECT_EQ(threads_of(8), (std::vector<int>{3, 3}));
+    weir::set_threads(0);
 }
 
 }  // namespace

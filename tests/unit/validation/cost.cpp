@@ -102,10 +102,14 @@ TEST("what the reference cannot tell is said, and no setting is called the most 
         }
     mark_front(result.points, result.study);
     const auto sentences = advice(result);
-    ASSERT_EQ(sentences.size(), 4u);
-    EXPECT_EQ(sentences[1], "6 of 6 settings run in real time, 6 of them as near to the reference as it is known itself.");
-    EXPECT_EQ(sentences[2], "a 1 is the cheapest, and as near to the reference as it is known.") << "not: a finer setting does not pay";
-    EXPECT_EQ(sentences[3],
+    ASSERT_EQ(sentences.size(), 5u);
+    EXPECT_EQ(
+        sentences[1],
+        "Read along each method's curve at e = 0.2, in units of the time of a (at most its cheapest setting's): b at most 3, c at most "
+        "3. Not told apart from a, for their errors differ by less than the 0.05 that the reference is known to: b, c.");
+    EXPECT_EQ(sentences[2], "6 of 6 settings run in real time, 6 of them as near to the reference as it is known itself.");
+    EXPECT_EQ(sentences[3], "a 1 is the cheapest, and as near to the reference as it is known.") << "not: a finer setting does not pay";
+    EXPECT_EQ(sentences[4],
               "6 of 6 settings lie within 0.05, where this reference cannot rank them (gates differ); the cheapest of them is a 1.");
 }
 
@@ -115,14 +119,15 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
     result.points[3].failure = "diverged";
     mark_front(result.points, result.study);
     const auto sentences = advice(result);
-    ASSERT_EQ(sentences.size(), 4u);
-    EXPECT_EQ(
-        sentences[0],
-        "For e <= 0.2 take fine: 33.3 ms of each 16.7 ms frame (0.5 times real time); the next method, other, costs 4 times as much.");
+    ASSERT_EQ(sentences.size(), 5u);
+    EXPECT_EQ(sentences[0], "For e <= 0.2 take fine: 33.3 ms of each 16.7 ms frame (0.5 times real time).");
     EXPECT_EQ(sentences[1],
+              "Read along each method's curve at e = 0.2, in units of the time of fine (at most its cheapest setting's): other at most 4. "
+              "Not reached by coarse.");
+    EXPECT_EQ(sentences[2],
               "1 of 3 settings run in real time; the most accurate of them is coarse: e = 0.5, for 8.33 ms of each 16.7 ms frame.");
-    EXPECT_EQ(sentences[2], "From coarse, the cheapest, to fine, the most accurate, the error falls 5 times for 4 times the time.");
-    EXPECT_EQ(sentences[3], "1 of 4 settings failed: see the table.");
+    EXPECT_EQ(sentences[3], "From coarse, the cheapest, to fine, the most accurate, the error falls 5 times for 4 times the time.");
+    EXPECT_EQ(sentences[4], "1 of 4 settings failed: see the table.");
     result.study.good_enough = 0.01;
     EXPECT_EQ(advice(result)[0],
               "No setting reaches e = 0.01; fine comes nearest with 0.1, for 33.3 ms of each 16.7 ms frame (0.5 times real time).");

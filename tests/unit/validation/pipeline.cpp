@@ -88,6 +88,38 @@ TEST("a claim that does not hold gives exit code 1 and stands in the verdicts as
     EXPECT_TRUE(verdicts[2]["pass"].get<bool>());
 }
 
+TEST("a bound that is asked for and not reached is listed with its figure and claims nothing; once it is reached the list is wrong") {
+    const Folder folder;
+    const std::string held = "{ metric = \"velocity.max\", at_most = 10, why = \"w\" }";
+    const auto open =
+        folder.add("open", head + "accept = [" + held +
+                               ", { metric = \"velocity.max\", at_most = 2.0, why = \"first asked\", not_reached = \"2.1\" }]");
+    EXPECT_EQ(run(folder, {open}), exit_success);
+    const std::string page = folder.read("results/index.md");
+    EXPECT_NE(page.find("1 of 1 claims hold"), std::string::npos);
+    EXPECT_NE(page.find("## Asked and not reached"), std::string::npos);
+    EXPECT_NE(page.find("| open | velocity.max | <= 2 | 2.1 | first asked | 2.1 |"), std::string::npos);
+    const auto stale =
+        folder.add("stale", head + "accept = [{ metric = \"velocity.max\", at_most = 10, why = \"w\", not_reached = \"no\" }]");
+    EXPECT_EQ(run(folder, {stale}), exit_claim_failed);
+    const auto broken = folder.add(
+        "broken", head + "accept = [{ metric = \"velocity.max\", at_most = 10, why = \"w\", not_reached = \"no\" }]", "fail_at = 3\n");
+    EXPECT_EQ(run(folder, {broken}), exit_claim_failed);
+}
+
+TEST("publishing some cases marks the others as older where they were measured at another commit") {
+    const Folder folder;
+    const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
+    const auto first = folder.add("first", head + claims), second = folder.add("second", head + claims);
+    EXPECT_EQ(run(folder, {first, second}), exit_success);
+    EXPECT_EQ(folder.read("results/index.md").find("older commit"), std::string::npos);
+    auto published = nlohmann::json::parse(folder.read("results/verdicts.json"));
+    for (auto& v : published) v["commit"] = "before";
+    std::ofstream(folder.path / "results/verdicts.json") << published.dump();
+    EXPECT_EQ(run(folder, {second}), exit_success);
+    EXPECT_NE(folder.read("results/index.md").find("Measured at an older commit than the others: first."), std::string::npos);
+}
+
 TEST("a numerical failure and an exceeded time limit fail every claim of the run with their message; other cases go on") {
     const Folder folder;
     const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace weir::validation {
 namespace {
@@ -45,8 +46,10 @@ TEST("of what is good enough and within the budget the cheapest is taken; where 
     const auto r = recommend(curves, Price::second, budget);
     ASSERT_TRUE(r.take);
     EXPECT_EQ(r.take->curve->method, "coarse");
-    EXPECT_LE(r.take->at.error, 0.06);
-    EXPECT_FALSE(r.take->measured) << "17 or 18 cells are enough, and cheaper than 20";
+    EXPECT_EQ(r.take->at.setting, 20) << "of what was measured";
+    ASSERT_TRUE(r.between) << "17 or 18 cells are enough, and cheaper than 20";
+    EXPECT_LE(r.between->at.error, 0.06);
+    EXPECT_LT(r.between->seconds, r.take->seconds);
     const auto none = recommend(curves, Price::second, {.seconds = 0.016, .error = 0.02, .frame = 1.0 / 60});
     EXPECT_FALSE(none.take) << "fine takes 33 ms a frame";
     ASSERT_EQ(none.nearest.size(), 2u);
@@ -55,10 +58,43 @@ TEST("of what is good enough and within the budget the cheapest is taken; where 
     EXPECT_NEAR(seconds_of({10, 0, 0.001, 50}, Price::second, budget), 0.05, 1e-12) << "a frame takes at least a step";
 }
 
+TEST("a budget alone buys the most accurate, an error alone is had as cheaply as can be; what the reference cannot tell is alike") {
+    const std::vector<CostCurve> curves{line("coarse", {{10, 0.1, 0.1, 1}, {20, 0.05, 0.4, 2}}), line("fine", {{10, 0.01, 2, 4}})};
+    const auto taken = [&](const Budget& budget) { return recommend(curves, Price::second, budget).take.value().at; };
+    EXPECT_EQ(taken({.seconds = 0.016}).error, 0.05);
+    EXPECT_EQ(taken({.seconds = 1}).error, 0.01);
+    EXPECT_EQ(taken({.error = 0.02}).error, 0.01);
+    EXPECT_EQ(taken({.error = 0.2}).error, 0.1);
+    EXPECT_EQ(taken({.seconds = 1, .known_to = 0.06}).error, 0.05) << "0.05 and 0.01 are alike to it, and the first is cheaper";
+    EXPECT_EQ(taken({.error = 0.001, .known_to = 0.06}).error, 0.05) << "nobody can tell that 0.05 is not as good as that";
+}
+
+TEST("what can be recommended is what recommend() names for some budget and some error, and nothing else") {
+    const std::vector<CostCurve> curves{line("a", {{1, 0.5, 1, 1}, {2, 0.3, 3, 1}, {3, 0.31, 4, 1}, {4, 0.001, 40, 1}}),
+                                        line("b", {{1, 0.4, 2, 1}, {2, 0.3, 3, 1}, {3, 0.2, 9, 1}, {4, 0.0005, 60, 1}})};
+    for (const real known_to : {0.0, 0.01, 0.35}) {
+        std::set<const Priced*> named, listed;
+        const auto entry = [&](const Choice& c) {
+            for (const Priced& p : c.curve->points)
+                if (p.setting == c.at.setting) return &p;
+            return static_cast<const Priced*>(nullptr);
+        };
+        const auto note = [&](const Recommendation& r) {
+            if (r.take) named.insert(entry(*r.take));
+            for (const Choice& c : r.nearest) named.insert(entry(c));
+        };
+        for (const double seconds : {0.001, 0.02, 0.04, 0.06, 0.1, 0.2, 0.7, 1.0, 2.0, double(infinity)})
+            for (const real error : {1e-4, 6e-4, 0.002, 0.25, 0.3, 0.305, 0.35, 0.45, 0.6, infinity})
+                note(recommend(curves, Price::second, {.seconds = seconds, .error = error, .known_to = known_to}));
+        for (const Choice& c : recommendable(curves, Price::second, {.known_to = known_to})) listed.insert(entry(c));
+        EXPECT_EQ(named, listed) << known_to;
+    }
+}
+
 TEST("what is recommended between two entries can be asked for: cells that keep a grid's proportions, time steps of two digits") {
     const auto taken = [](CostCurve curve, real grain, real error) {
         curve.grain = grain;
-        return recommend({curve}, Price::second, {.seconds = 1, .error = error, .frame = 1}).take->at.setting;
+        return recommend({curve}, Price::second, {.seconds = 1, .error = error, .frame = 1}).between.value().at.setting;
     };
     const real cells = taken(line("432 x 90", {{48, 0.16, 0.1, 1}, {72, 0.07, 0.2, 1}, {144, 0.01, 0.4, 1}}), 24, 0.03);
     EXPECT_TRUE(cells == 96 || cells == 120) << cells << ": of 432 x 90 only multiples of 24 are whole along both axes";

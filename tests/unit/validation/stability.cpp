@@ -20,7 +20,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The fake solver's step is at most 0.03 s; `stall_at` is the step after which its advised step is nothing.
-const std::string axis = "[[axes]]\nname = \"end\"\nkey = \"time.end\"\nlow = 0.05\nhigh = 2\nhard_because = \"it is long\"\n";
+const std::string bare_axis = "[[axes]]\nname = \"end\"\nkey = \"time.end\"\nlow = 0.05\nhigh = 2\nhard_because = \"it is long\"\n";
+const std::string proof = "proof = [{ quantity = \"mass\", at_least = 1, why = \"there is something\" }]\n";
+const std::string axis = bare_axis + "kind = \"limit\"\n" + proof;
 const std::string stalls = "question = \"q\"\nset = [\"stall_at = 10\"]\n";
 
 fs::path add(const fs::path& root, const std::string& text) {
@@ -103,9 +105,9 @@ TEST("an axis may set several keys by powers of its value; what cannot be read i
     EXPECT_EQ(pushed.overrides[3].key, "time.end");
     stress.base.overrides = {{"grid.size", "[<half>, 1]"}};
     EXPECT_THROW(pushed_to(stress, 3), BadInput);
-    EXPECT_NE(
-        refusal("question = \"q\"\n[[axes]]\nname = \"n\"\nlow = 1\nhigh = 2\nhard_because = \"h\"\n").find("an axis needs a \"key\""),
-        std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n[[axes]]\nname = \"n\"\nlow = 1\nhigh = 2\nhard_because = \"h\"\nkind = \"limit\"\n" + proof)
+                  .find("an axis needs a \"key\""),
+              std::string::npos);
 }
 
 TEST("an axis may be for some methods only and have steps of its own; a method that there is not is named") {
@@ -199,4 +201,113 @@ TEST("the command writes limits and page; a floor that does not hold is exit cod
     text << page.rdbuf();
     EXPECT_NE(text.str().find("below its floor"), std::string::npos);
     EXPECT_TRUE(fs::exists(folder.path() / "out/study.json"));
+}
+
+namespace {
+
+/// An axis over a real solver: a film that gets thinner than what the solver can hold.
+fs::path film(const fs::path& root, const std::string& solver, const std::string& proofs) {
+    const fs::path folder = root / "film";
+    fs::create_directories(folder);
+    std::ofstream(folder / "stability.toml")
+        << "question = \"q\"\nsteps = 3\n[[axes]]\nname = \"film\"\nlow = 1\nhigh = 4\nhard_because = \"h\"\nkind = \"limit\"\n"
+        << "set = [\"liquid = [{ shape = \\\"box\\\", min = [0, 0], max = [1, <0.5^-1>] }]\"]\n"
+        << proofs;
+    std::ofstream(folder / "scene.toml") << "solver = \"" << solver
+                                         << "\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 0.1, max_dt = 0.01 }\n";
+    return folder;
+}
+
+std::string study_error(const Stress& stress, real value) {
+    try {
+        push(stress, value, sim::registry());
+    } catch (const BadInput& wrong) {
+        return wrong.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST("an axis must prove its hardship and name its kind; a reason for not being reached belongs to a limit") {
+    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"limit\"\n").find("proof"), std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + proof).find("kind"), std::string::npos);
+    EXPECT_NE(
+        refusal("question = \"q\"\n" + bare_axis + "kind = \"units\"\n" + proof + "unbroken = [{ why = \"w\" }]\n").find("only an axis"),
+        std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"limit\"\nproof = [{ quantity = \"mass\", why = \"w\" }]\n")
+                  .find("needs one of: at_least"),
+              std::string::npos);
+}
+
+TEST("a rung without its hardship is an error of the study, not a limit that was not reached") {
+    const test::TemporaryFolder folder;
+    const std::string wet = "proof = [{ quantity = \"wet_cells\", at_least = 25, why = \"four layers\" }]\n";
+    for (const std::string solver : {"mac_water", "pbf", "sph"}) {
+        const Stress stress = only(film(folder.path(), solver, wet));
+        EXPECT_EQ(study_error(stress, 1), "") << solver;
+        EXPECT_NE(study_error(stress, 4).find("not as hard as it says: wet_cells is 8, not at least 25: four layers"), std::string::npos)
+            << solver << ' ' << study_error(stress, 4);
+        EXPECT_THROW(find_limit(stress, 1.5, sim::registry()), BadInput) << solver;
+    }
+}
+
+TEST("an empty tank is refused by the solver, which breaks the axis") {
+    const test::TemporaryFolder folder;
+    for (const std::string solver : {"mac_water", "pbf", "sph"}) {
+        const Stress stress =
+            only(film(folder.path(), solver, "proof = [{ quantity = \"wet_cells\", at_least = 1, why = \"there is liquid\" }]\n"));
+        const auto broke = push(stress, 100, sim::registry());
+        ASSERT_TRUE(broke) << solver;
+        EXPECT_EQ(broke->kind, "refused");
+    }
+}
+
+TEST("proofs are counted: film, bodies, pockets, gap, aspect, solids; of the start, the run and its end") {
+    const test::TemporaryFolder folder;
+    const auto shown = [&](const std::string& solver, const std::string& more) {
+        const std::string all =
+            "proof = [{ quantity = \"film\", at_least = 0, why = \"w\" }, { quantity = \"bodies\", at_least = 0, why = \"w\" }, "
+            "{ quantity = \"pockets\", at_least = 0, why = \"w\" }, { quantity = \"gap\", at_least = 0, why = \"w\" }, "
+            "{ quantity = \"aspect\", at_least = 0, why = \"w\" }, { quantity = \"solid_cells\", at_least = 0, why = \"w\" }, "
+            "{ quantity = \"solid_speed\", at_least = 0, why = \"w\" }, { quantity = \"dt\", when = \"most\", at_least = 0, why = \"w\" }, "
+            "{ quantity = \"steps\", when = \"end\", at_least = 0, why = \"w\" }]\n";
+        Stress stress = only(film(folder.path(), solver, all));
+        stress.base.overrides.push_back({"solids", more});
+        std::vector<Shown> list;
+        EXPECT_FALSE(push(stress, 2, sim::registry(), &list));
+        return list;
+    };
+    // A wall of one cell's width from 1/8 m over the floor to the lid, in a film of 1/4 m: the air above is cut in two.
+    const std::string wall =
+        "[{ shape = \"box\", min = [0.5, 0.125], max = [0.625, 1], motion = { kind = \"constant\", velocity = [0, 0.01] } }]";
+    for (const std::string solver : {"mac_water", "pbf"}) {
+        const auto list = shown(solver, wall);
+        ASSERT_EQ(list.size(), 9u) << solver;
+        const real layers = solver == "pbf" ? 15.0 / 8 : 2;  // the particle inside the wall is left out
+        EXPECT_NEAR(list[0].value, layers, 0.05) << solver << " film";
+        EXPECT_EQ(list[1].value, 1) << solver << " bodies, joined below the wall";
+        EXPECT_EQ(list[2].value, 2) << solver << " pockets";
+        EXPECT_NEAR(list[3].value, 1, 1.0 / 16) << solver << " gap";
+        EXPECT_NEAR(list[4].value, 1, 1e-12) << solver << " aspect";
+        EXPECT_EQ(list[5].value, 7) << solver << " solid cells";
+        EXPECT_NEAR(list[6].value, 0.01, 1e-12) << solver << " speed";
+        EXPECT_GT(list[7].value, 0) << solver << " dt";
+        EXPECT_EQ(list[8].value, 3) << solver << " steps";
+    }
+}
+
+TEST("a limit that ends unbroken without a reason, or breaks in spite of one, and units that differ, do not pass") {
+    Limit limit{.climbed = true, .last_stable = 1.0};
+    EXPECT_NE(limit.doubt(), "");
+    limit.stress.unbroken = "nothing can";
+    EXPECT_EQ(limit.doubt(), "");
+    limit.first_unstable = 2;
+    EXPECT_NE(limit.doubt(), "");
+    limit.stress.unbroken.clear();
+    EXPECT_EQ(limit.doubt(), "");
+    limit.stress.kind = AxisKind::units;
+    EXPECT_NE(limit.doubt(), "");
+    limit.climbed = false;  // a floor alone says nothing of the axis
+    EXPECT_EQ(limit.doubt(), "");
 }

@@ -68,8 +68,9 @@ real gradient(const Pool<D>& pool, int a, const Index<D>& I, real sigma, const G
 
 template <int D>
 void agrees_with_definition(const std::string& more, bool tension, const std::string& periodic = "[]") {
-    const std::string head = fmt::format("solver = \"mac_water\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime = {{ end = 1.0 }}\n",
-                                         D, test::list({"14", "12", "9"}, D), test::list({"1.4", "1.1", "0.9"}, D), periodic);
+    const std::string head =
+        fmt::format("solver = \"mac_water\"\ndim = {}\ngrid = {{ cells = {}, size = {}, periodic = {} }}\ntime = {{ end = 1.0 }}\n", D,
+                    test::list({"14", "12", "9"}, D), test::list({"1.4", "1.1", "0.9"}, D), periodic);
     const auto scene = test::water_scene(head + "liquid = [ { shape = \"plane\", point = " + test::list({"0.5", "0.5", "0.5"}, D) +
                                          ", normal = " + test::list({"0.0", "1.0", "0.0"}, D) + " } ]\n" + more);
     Pool<D> pool(scene);

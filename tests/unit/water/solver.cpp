@@ -71,6 +71,27 @@ TEST_IN_2D_AND_3D("a collapse keeps its volume to 1%, and gains no energy") {
     }
 }
 
+// A block that is thrown against a wall breaks into sheets and drops, from which the level set takes more than it gives back.
+TEST_IN_2D_AND_3D("volume control is an effect: named it holds the ledger's volume, and tells what it did; else it is not there") {
+    const auto broken = [](const std::vector<scene::Override>& changes) {
+        auto water = std::make_unique<water::Water<D>>(water_scene(dam_break<D>(), changes));
+        run(*water, 120);
+        return water;
+    };
+    const auto has_shift = [](const Solver& solver) {
+        const auto list = solver.integrals();
+        return std::any_of(list.begin(), list.end(), [](const Integral& i) { return i.name == "volume_shift"; });
+    };
+    const auto missing = [](const water::Water<D>& water) {
+        const real airborne = water.markers().volume * static_cast<real>(water.surface().count_airborne(water.markers()));
+        return std::abs(1 - (integral(water, "volume") + airborne) / integral(water, "volume_target"));
+    };
+    const auto without = broken({}), with = broken({{"effects.volume_control", "{}"}});
+    EXPECT_FALSE(has_shift(*without));
+    EXPECT_GT(integral(*with, "volume_shift"), 0);
+    EXPECT_LT(missing(*with), missing(*without));
+}
+
 TEST("a symmetric collapse stays symmetric to the tolerance of the pressure while it is smooth") {
     // The jitter is mirrored; red-black order and interpolation weights round differently on the two sides, so bits are not asked for.
     auto text = dam_break<2>();

@@ -1,0 +1,133 @@
+#include "validation/cost/plan.hpp"
+
+#include "core/error.hpp"
+#include "output/machine.hpp"
+#include "validation/cost/calibrate.hpp"
+#include "validation/report/command.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+
+namespace weir::validation {
+namespace {
+
+const Variant* method_of(const Study& study, const CostCurve& curve) {
+    for (const Variant& v : study.methods)
+        if (v.name == curve.method) return &v;
+    return nullptr;
+}
+
+/// A word for a POSIX shell.
+std::string shell_word(const std::string& text) {
+    static constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./=,:@%";
+    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+}
+
+std::string setting_text(const Choice& c, const Study& study) {
+    const Variant* method = method_of(study, *c.curve);
+    if (!method || !method->sweep) return c.curve->method.empty() ? "the only setting" : c.curve->method;
+    const std::string& key = method->sweep->key;
+    std::string also;
+    for (const auto& follower : method->sweep->also) also += fmt::format(" ({} goes with it)", follower.key);
+    return fmt::format("{}{}{} = {:g}{}{}", c.curve->method, c.curve->method.empty() ? "" : ", ", key, c.at.setting,
+                       key == "grid.cells" ? fmt::format(" along {}", "xyz"[method->sweep->axis]) : "", also);
+}
+
+std::string priced_text(const Choice& c, const Study& study) {
+    const bool by_step = study.price == Price::step;
+    const std::string step = fmt::format("{:.3g} ms a step", c.at.ms_per_step);
+    return fmt::format("{}: {} {:.4g}, {}, {} thread{}", setting_text(c, study), study.error, c.at.error,
+                       by_step ? step : fmt::format("{:.3g} ms a frame ({})", 1e3 * c.seconds, step), c.at.threads,
+                       c.at.threads == 1 ? "" : "s");
+}
+
+/// What stands beside a table: on what it was measured.
+nlohmann::json about_table(const PlanOptions& options, const std::string& name) {
+    for (const auto& file : {options.tables / "json" / (name + ".json"), options.tables / (name + ".json")}) {
+        std::ifstream in(file);
+        if (auto tables = nlohmann::json::parse(in, nullptr, false); tables.is_object()) return tables;
+    }
+    return nlohmann::json::object();
+}
+
+/// The curves as this machine would have them, and where their milliseconds come from, in words.
+struct PricedHere {
+    std::vector<CostCurve> curves;
+    std::string words;
+};
+PricedHere priced_here(const PlanOptions& options, const Study& study, std::vector<CostCurve> curves, const Solvers& solvers) {
+    const nlohmann::json about = about_table(options, study.name);
+    const std::string there = about.value("machine", "a machine that the table does not name"), here = output::this_machine().processor;
+    std::string words = fmt::format("measured on {}, commit {}", there, about.value("commit", "unknown"));
+    if (there.find(here) != std::string::npos) return {std::move(curves), words + "\n"};
+    if (options.as_measured) return {std::move(curves), words + fmt::format("; the milliseconds are not from here ({})\n", here)};
+    const Calibration c = calibrate(study, curves, solvers);
+    words +=
+        fmt::format("; this machine is {}\nits milliseconds are scaled by {:.2g} to {:.2g}: {} of {} methods run here again, in {:.2g} s\n",
+                    here, c.least, c.most, c.measured, curves.size(), c.seconds);
+    return {scaled(std::move(curves), c), words};
+}
+
+std::string asked_text(const Study& study, const Budget& budget) {
+    const std::string of = study.price == Price::step ? "step" : fmt::format("frame of {:.3g} ms", 1e3 * budget.frame);
+    const std::string error =
+        budget.error < infinity ? fmt::format("{} at most {:g}", study.error, budget.error) : fmt::format("the least {}", study.error);
+    std::string text = fmt::format("{}: {}", study.name, error);
+    text +=
+        budget.seconds < infinity ? fmt::format(" for {:g} ms of computing a {}\n", 1e3 * budget.seconds, of) : ", as cheap as can be\n";
+    if (budget.known_to > 0 && (budget.error < budget.known_to || budget.error == infinity))
+        text += fmt::format("the reference is known to {:g}: smaller errors cannot be told apart ({})\n", budget.known_to, study.known_why);
+    return text;
+}
+
+Budget budget_of(const PlanOptions& options, const Study& study) {
+    Budget budget{.known_to = study.known_to};
+    if (!options.budget.empty()) budget.seconds = parse_seconds(options.budget);
+    if (!options.error.empty()) budget.error = parse_error(options.error);
+    if (!options.frame.empty()) budget.frame = parse_seconds(options.frame);
+    return budget;
+}
+
+}  // namespace
+
+std::string run_line(const Study& study, const CostCurve& curve, const Priced& at, const Solvers& solvers) {
+    const Variant* method = method_of(study, curve);
+    if (!method) throw BadInput(fmt::format("{} has no method {}", study.name, curve.method));
+    const scene::Scene scene = scene_of(*method, at.index, scene::schemas_of(solvers));
+    std::string line = "weir run " + shell_word(scene.file());
+    for (const auto& change : scene.overrides()) line += " --set " + shell_word(change.key + "=" + change.value);
+    line += fmt::format(" --threads {} --measure {}", at.threads, shell_word(study.error));
+    if (!method->reference.empty()) line += " --reference " + shell_word(method->reference);
+    return line;
+}
+
+int plan_command(const PlanOptions& options, const Solvers& solvers) {
+    if (options.error.empty() && options.budget.empty())
+        throw BadInput("weir plan needs --error, how wrong the result may be (2%), or --budget, what a frame may cost (16ms), or both");
+    const auto folder = find_case(options.name);
+    const Study study = read_study(folder, size_of_table(folder.filename().string(), options.tables));
+    const Budget budget = budget_of(options, study);
+    const PricedHere here = priced_here(options, study, read_cost_table(study, options.tables), solvers);
+    const Recommendation r = recommend(here.curves, study.price, budget);
+    fmt::print("{}", asked_text(study, budget));
+    const auto show = [&](const char* before, const Choice& c) {
+        fmt::print("{}{}\n{}\n", before, priced_text(c, study), run_line(study, *c.curve, c.at, solvers));
+    };
+    if (r.take) {
+        show("take ", *r.take);
+    } else {
+        fmt::print("no setting of the table reaches it; the nearest:\n");
+        for (const Choice& c : r.nearest) show("", c);
+    }
+    if (r.between) fmt::print("perhaps {}: read between two settings, not measured\n", priced_text(*r.between, study));
+    fmt::print("{}", here.words);
+    return r.take ? exit_success : exit_claim_failed;
+}
+
+}  // namespace weir::validation

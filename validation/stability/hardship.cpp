@@ -1,0 +1,210 @@
+#include "validation/stability/hardship.hpp"
+
+#include "geometry/solids.hpp"
+#include "validation/metrics/samples.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace weir::validation {
+namespace {
+
+enum class Content : std::uint8_t { dry, wet, solid };
+
+template <int D>
+geometry::Solids<D> solids_at(const Simulation& simulation) {
+    geometry::Solids<D> solids(simulation.scene().root().tables("solids"));
+    solids.set_time(simulation.time());
+    return solids;
+}
+
+template <int D>
+Vec<D> in_dim(const Vec<3>& x) {
+    Vec<D> y;
+    for (int d = 0; d < D; ++d) y[d] = x[d];
+    return y;
+}
+
+real side(const GridView& g, int axis) { return g.spacing[static_cast<std::size_t>(axis)]; }
+
+/// The cells in which there is a particle.
+std::vector<bool> cells_with_particles(const GridView& g, const FieldView& position) {
+    std::vector<bool> there(static_cast<std::size_t>(g.cells[0]) * static_cast<std::size_t>(g.cells[1]) *
+                            static_cast<std::size_t>(g.cells[2]));
+    for (std::size_t p = 0; p < position.data[0].size(); ++p) {
+        std::size_t cell = 0, stride = 1;
+        for (int d = 0; d < g.dim; ++d) {
+            const auto at = static_cast<std::size_t>(d);
+            const auto i = static_cast<int>(std::floor((position.data[at][p] - g.origin[at]) / g.spacing[at]));
+            cell += stride * static_cast<std::size_t>(std::clamp(i, 0, g.cells[at] - 1));
+            stride *= static_cast<std::size_t>(g.cells[at]);
+        }
+        there[cell] = true;
+    }
+    return there;
+}
+
+/// What is in each cell. A level set says so at the cell's centre; without one the particles do.
+template <int D>
+std::vector<Content> contents(const Simulation& simulation) {
+    const FieldSet fields = simulation.fields();
+    const GridView& g = fields.grid;
+    const FieldView* phi = fields.find(level_set_name);
+    const FieldView* position = fields.find(particle_set_name, "position");
+    const std::vector<bool> held = !phi && position ? cells_with_particles(g, *position) : std::vector<bool>{};
+    const auto solids = solids_at<D>(simulation);
+    std::vector<Content> is;
+    for_each_sample(g, -1, [&](const Vec<3>& x, real, std::size_t i) {
+        const bool solid = !solids.empty() && solids.distance(in_dim<D>(x)) < 0;
+        const bool wet = phi ? phi->data[0][i] < 0 : !held.empty() && held[i];
+        is.push_back(solid ? Content::solid : wet ? Content::wet : Content::dry);
+    });
+    return is;
+}
+
+/// Connected parts, across faces, of the cells that hold `what`.
+int parts_of(std::vector<Content> is, const GridView& g, Content what) {
+    const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(g.cells[0]), static_cast<std::size_t>(g.cells[0] * g.cells[1])};
+    int parts = 0;
+    std::vector<std::size_t> open;
+    for (std::size_t first = 0; first < is.size(); ++first) {
+        if (is[first] != what) continue;
+        ++parts;
+        is[first] = Content::solid;  // counted
+        for (open.assign(1, first); !open.empty();) {
+            const std::size_t c = open.back();
+            open.pop_back();
+            for (std::size_t d = 0; d < static_cast<std::size_t>(g.dim); ++d) {
+                const auto n = static_cast<std::size_t>(g.cells[d]), at = c / stride[d] % n;
+                for (const bool up : {false, true}) {
+                    if (up ? at + 1 == n : at == 0) continue;
+                    const std::size_t next = up ? c + stride[d] : c - stride[d];
+                    if (is[next] == what) is[next] = Content::solid, open.push_back(next);
+                }
+            }
+        }
+    }
+    return parts;
+}
+
+/// The least free height over the floor, in cells: of every column, to a sixteenth of a cell.
+template <int D>
+real least_gap(const Simulation& simulation, const GridView& g) {
+    constexpr int samples = 16;
+    const auto solids = solids_at<D>(simulation);
+    real least = g.cells[1];
+    if (solids.empty()) return least;
+    for_each_sample(g, -1, [&](const Vec<3>& x, real, std::size_t) {
+        if (x[1] > g.origin[1] + side(g, 1)) return;  // one for each column
+        Vec<D> at = in_dim<D>(x);
+        for (int k = 0; k < samples * g.cells[1]; ++k) {
+            at[1] = g.origin[1] + (k + 0.5) * side(g, 1) / samples;
+            if (solids.distance(at) >= 0) continue;
+            least = std::min(least, static_cast<real>(k) / samples);
+            break;
+        }
+    });
+    return least;
+}
+
+template <int D>
+real solid_speed(const Simulation& simulation) {
+    const auto solids = solids_at<D>(simulation);
+    real fastest = 0;
+    for (std::size_t i = 0; i < solids.count(); ++i) fastest = std::max(fastest, norm(solids.pose(i).velocity));
+    return fastest;
+}
+
+real integral_of(const Simulation& simulation, const std::string& name) {
+    for (const Integral& i : simulation.solver().integrals())
+        if (i.name == name) return i.value;
+    throw BadInput(fmt::format("the solver shows no integral \"{}\"", name));
+}
+
+template <int D>
+std::optional<real> counted_in(const std::string& name, const Simulation& simulation, const StepReport& report) {
+    const GridView g = simulation.fields().grid;
+    const auto count = [&](Content what) {
+        const auto is = contents<D>(simulation);
+        return static_cast<real>(std::count(is.begin(), is.end(), what));
+    };
+    real shortest = side(g, 0), longest = side(g, 0);
+    for (int d = 1; d < D; ++d) shortest = std::min(shortest, side(g, d)), longest = std::max(longest, side(g, d));
+    if (name == "steps") return static_cast<real>(simulation.steps());
+    if (name == "fastest") return std::isnan(report.cfl) ? integral_of(simulation, "max_speed") : report.cfl * shortest / report.dt;
+    if (name == "wet_cells") return count(Content::wet);
+    if (name == "dry_cells") return count(Content::dry);
+    if (name == "solid_cells") return count(Content::solid);
+    if (name == "bodies") return parts_of(contents<D>(simulation), g, Content::wet);
+    if (name == "pockets") return parts_of(contents<D>(simulation), g, Content::dry);
+    if (name == "aspect") return longest / shortest;
+    if (name == "gap") return least_gap<D>(simulation, g);
+    if (name == "solid_speed") return solid_speed<D>(simulation);
+    if (name == "viscous_number") return simulation.scene().number("fluid.viscosity") * report.dt / (shortest * shortest);
+    if (name != "film") return std::nullopt;
+    real floor = 1;
+    for (int d = 0; d < D; ++d)
+        if (d != 1) floor *= side(g, d) * g.cells[static_cast<std::size_t>(d)];
+    return integral_of(simulation, "volume") / floor / side(g, 1);
+}
+
+}  // namespace
+
+std::optional<real> counted(const std::string& name, const Simulation& simulation, const StepReport& report) {
+    return simulation.scene().dim() == 2 ? counted_in<2>(name, simulation, report) : counted_in<3>(name, simulation, report);
+}
+
+real value_of(const std::string& name, const Simulation& simulation, const StepReport& report) {
+    if (const auto plus = name.find('+'); plus != std::string::npos)
+        return value_of(name.substr(0, plus), simulation, report) + value_of(name.substr(plus + 1), simulation, report);
+    if (name == "divergence") return report.max_divergence;
+    if (name == "iterations") return static_cast<real>(report.iterations);
+    if (name == "density_error") return report.density_error;
+    if (name == "dt") return report.dt;
+    if (name == "cfl") return report.cfl;
+    for (const Integral& i : simulation.solver().integrals())
+        if (i.name == name) return i.value;
+    if (const auto value = counted(name, simulation, report)) return *value;
+    throw BadInput(fmt::format("no integral or step report is called \"{}\"", name));
+}
+
+void Hardship::start(const Simulation& simulation) {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        if ((*proofs_)[i].when == Proof::When::start) values_[i] = value_of((*proofs_)[i].quantity, simulation, {});
+}
+
+void Hardship::step(const Simulation& simulation, const StepReport& report) {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        if ((*proofs_)[i].when == Proof::When::most)
+            values_[i] = std::max(values_[i], value_of((*proofs_)[i].quantity, simulation, report));
+}
+
+void Hardship::end(const Simulation& simulation, const StepReport& report) {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        if ((*proofs_)[i].when == Proof::When::end) values_[i] = value_of((*proofs_)[i].quantity, simulation, report);
+}
+
+std::vector<Shown> Hardship::shown() const {
+    std::vector<Shown> list;
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        if (values_[i] > -infinity) list.push_back({(*proofs_)[i].quantity, values_[i]});
+    return list;
+}
+
+std::string Hardship::missing(bool at_start) const {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+        const Proof& p = (*proofs_)[i];
+        if (at_start && p.when != Proof::When::start) continue;
+        const real grown = std::pow(pushed_, p.power), value = values_[i];
+        if (p.at_least && !(value >= *p.at_least * grown))
+            return fmt::format("{} is {:.4g}, not at least {:.4g}: {}", p.quantity, value, *p.at_least * grown, p.why);
+        if (p.at_most && !(value <= *p.at_most * grown))
+            return fmt::format("{} is {:.4g}, not at most {:.4g}: {}", p.quantity, value, *p.at_most * grown, p.why);
+    }
+    return {};
+}
+
+}  // namespace weir::validation
