@@ -4,10 +4,12 @@
 #include "app/interrupt.hpp"
 #include "app/measured.hpp"
 #include "app/progress.hpp"
+#include "app/space.hpp"
 #include "core/parallel.hpp"
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
+#include "sim/foretold.hpp"
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
@@ -30,7 +32,7 @@ struct RunArguments {
     std::string reference;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
-    bool quiet = false, explain = false;
+    bool quiet = false, explain = false, any_size = false;
 };
 
 output::FrameOptions frame_options(const scene::Scene& scene) {
@@ -151,6 +153,14 @@ std::filesystem::path output_folder(const RunArguments& arguments, const scene::
     return std::filesystem::path("out") / scene_name(scene);
 }
 
+/// A metric may look at every step, so a run is measured whole or not at all.
+std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& simulation) {
+    if (arguments.measure.empty() && arguments.reference.empty()) return std::nullopt;
+    if (arguments.measure.empty()) throw BadInput("--reference says what a run is compared with: it needs --measure");
+    if (!arguments.restart.empty()) throw BadInput("--measure looks at a run from its start: it does not go with --restart");
+    return std::optional<Measured>(std::in_place, simulation, arguments.measure, arguments.reference);
+}
+
 /// What was written, and how to see it.
 void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder) {
     for (const auto& path : series) std::printf("%s\n", path.string().c_str());
@@ -172,14 +182,6 @@ std::filesystem::path find_scene(const std::string& name) {
     return is_path || std::filesystem::exists(name) ? std::filesystem::path(name) : validation::find_case_scene(name);
 }
 
-/// A metric may look at every step, so a run is measured whole or not at all.
-std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& simulation) {
-    if (arguments.measure.empty() && arguments.reference.empty()) return std::nullopt;
-    if (arguments.measure.empty()) throw BadInput("--reference says what a run is compared with: it needs --measure");
-    if (!arguments.restart.empty()) throw BadInput("--measure looks at a run from its start: it does not go with --restart");
-    return std::optional<Measured>(std::in_place, simulation, arguments.measure, arguments.reference);
-}
-
 int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
@@ -190,20 +192,26 @@ int simulate(const RunArguments& arguments) {
     if (arguments.scene.empty() && !checkpoint)
         throw BadInput("weir run needs a scene (a file, a folder with a scene.toml, or the name of a case), or --restart");
 
-    Simulation simulation(arguments.scene.empty() ? scene_of(*checkpoint, overrides)
-                                                  : scene::read(find_scene(arguments.scene), sim::schemas(), overrides));
+    scene::Scene scene =
+        arguments.scene.empty() ? scene_of(*checkpoint, overrides) : scene::read(find_scene(arguments.scene), sim::schemas(), overrides);
+    if (!arguments.explain)
+        sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run);
+    Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
     for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
         std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it may cost, and does nothing\n", simulation.scene().file().c_str(),
                      effect.c_str());
     if (arguments.explain) {
-        std::fputs(explain(simulation).c_str(), stdout);
+        const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
+        std::fputs((explain(simulation) + "a run writes " + space).c_str(), stdout);
         return exit_success;
     }
     if (checkpoint && simulation.finished()) return tell_finished(simulation);
     output::check(frame_options(simulation.scene()), simulation.fields());
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     output::require_writable(folder);
+    const std::string space = check_space(simulation, folder, arguments.any_size);
+    if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
     Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
@@ -223,10 +231,10 @@ int simulate(const RunArguments& arguments) {
         recorder.fail(failure.what());
         throw;
     }
-    const bool finished = ending == sim::Ending::finished;
     if (simulation.steady())
         std::fprintf(stderr, "steady at t = %.6g s: no velocity changes faster than time.stop_when_steady\n", simulation.time());
     if (!arguments.quiet) tell_results(recorder.series(), folder);
+    const bool finished = ending == sim::Ending::finished;
     if (finished && measured) std::fputs(measured->text().c_str(), stdout);
     if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
@@ -254,6 +262,7 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");
+    run->add_flag("--any-size", arguments->any_size, "Begin though the frames may not fit on the disk");
     run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files");
     run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }

@@ -4,6 +4,7 @@
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "sim/finite.hpp"
+#include "sim/foretold.hpp"
 #include "sim/registry.hpp"
 #include "sim/steadiness.hpp"
 
@@ -44,6 +45,12 @@ std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const std::vector
     return sim::kind_named(scene.solver(), kinds).make(scene);
 }
 
+/// Looked at before anything of it is built.
+scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
+    sim::require_memory(scene, kinds);
+    return scene;
+}
+
 void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
     if (!scene.has("output.fields")) return;
     std::vector<std::string> known;
@@ -69,7 +76,7 @@ Simulation::Simulation(const std::filesystem::path& scene, const std::vector<sce
 Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::registry()) {}
 
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
-    : scene_(unread(std::move(scene))),
+    : scene_(unread(fitting(std::move(scene), kinds))),
       solver_(make_solver(scene_, kinds)),
       probes_(scene_, *solver_),
       end_(scene_.number("time.end")),

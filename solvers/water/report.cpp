@@ -62,11 +62,12 @@ Vec<D> Water<D>::momentum() const {
     return sum;
 }
 
-/// −Σ ρ g·x over liquid; a part-filled cell counts at its centre.
+/// −Σ ρ g·(x − origin) over liquid; a part-filled cell counts at its centre.
 template <int D>
 real Water<D>::potential_energy() const {
-    return -state_.rho * frame_.cell_volume() *
-           sum_over(frame_.cells, [&](const Index<D>& I) { return liquid_part(surface_, closed_, I) * dot(gravity_, frame_.centre(I)); });
+    return -state_.rho * frame_.cell_volume() * sum_over(frame_.cells, [&](const Index<D>& I) {
+        return liquid_part(surface_, closed_, I) * dot(gravity_, frame_.centre(I) - frame_.origin);
+    });
 }
 
 /// Coordinate along the axis where the surface leaves liquid cell I upwards, or −infinity if its upper neighbour is liquid too.

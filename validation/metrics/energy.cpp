@@ -1,8 +1,9 @@
-// Kinetic energy of the whole flow, and the rate at which it is lost.
+// Kinetic energy of the whole flow, and the rate at which it is lost; energy that water has won out of nothing.
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace weir::validation {
 namespace {
@@ -24,10 +25,59 @@ std::size_t peak(const Curve& c) {
 
 real observe_energy(const FieldSet& fields, const scene::Scene&, real) { return mean_kinetic_energy(fields); }
 
+/// What does work that no integral counts: of gravity the potential energy tells.
+void refuse_uncounted_work(const scene::Scene& scene) {
+    const auto refuse = [](const std::string& what) {
+        throw BadInput("energy_gain counts the work of gravity alone; " + what + " do work that no integral tells of");
+    };
+    if (scene.has("emitters") && !scene.root().tables("emitters").empty()) refuse("emitters");
+    if (scene.has("solids"))
+        for (const scene::Table& solid : scene.root().tables("solids"))
+            if (solid.has("motion")) refuse("moving solids");
+    for (const char* side : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}) {
+        const std::string path = std::string("sides.") + side;
+        const std::string kind = scene.root().text_or(path + ".kind", "wall");
+        if (scene.has(path + ".velocity") || (kind != "wall" && kind != "periodic")) refuse("sides that move or are open");
+    }
+}
+
+/// The least potential energy that the fluid's mass could have in the domain, as if it all lay in the lowest corner.
+real lowest_energy(const RunRecord& run) {
+    const auto* gravity = run.scene->effect("gravity");
+    if (!gravity) return 0;
+    const GridView& grid = run.fields.grid;
+    const auto g = gravity->numbers("g");
+    real lowest = 0;
+    for (std::size_t d = 0; d < g.size(); ++d) lowest += std::min(0.0, -g[d] * grid.spacing[d] * grid.cells[d]);
+    const real mass =
+        run.has_integral("mass") ? run.series("mass").y.front() : run.scene->number("fluid.density") * run.series("volume").y.front();
+    return mass * lowest;
+}
+
+/// Energy that is won after it was lost counts: dissipation does not pay for it.
+real energy_gain(const RunRecord& run, const Reference&) {
+    refuse_uncounted_work(*run.scene);
+    const Curve kinetic = run.series("kinetic_energy"), potential = run.series("potential_energy");
+    real least = infinity, gain = 0;
+    for (std::size_t i = 0; i < kinetic.size(); ++i) {
+        const real energy = kinetic.y[i] + potential.y[i];
+        if (std::isnan(energy)) return energy;
+        least = std::min(least, energy);
+        gain = std::max(gain, energy - least);
+    }
+    return gain / (kinetic.y.front() + potential.y.front() - lowest_energy(run));
+}
+
 }  // namespace
 
 std::vector<Metric> energy_metrics() {
     return {
+        {.name = "energy_gain",
+         .unit = "",
+         .doc =
+             "Largest rise of kinetic and potential energy above the least they were before, over what they were first (potential: above "
+             "the lowest corner of the domain).",
+         .measure = energy_gain},
         {.name = "flow.energy",
          .unit = "m^2/s^2",
          .doc = "Mean over the domain of |u|^2 / 2.",

@@ -1,4 +1,4 @@
-// What particles did: columns at rest, drops and patches by their moments, Laplace's pressure, momentum and energy that nothing put in.
+// What particles did: columns at rest, drops and patches by their moments, Laplace's pressure, momentum that nothing put in.
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/signal.hpp"
 
@@ -114,15 +114,6 @@ real momentum_drift(const RunRecord& run, const Reference&) {
     return worst / (run.series("mass").y.front() * largest(run.series("max_speed")));
 }
 
-/// Largest rise of kinetic and potential energy above their first sum, over that sum's distance from what lies lowest (all at the floor).
-real energy_gain(const RunRecord& run, const Reference&) {
-    const Curve kinetic = run.series("kinetic_energy"), potential = run.series("potential_energy");
-    const real first = kinetic.y.front() + potential.y.front();
-    real most = 0;
-    for (std::size_t i = 0; i < kinetic.size(); ++i) most = std::max(most, kinetic.y[i] + potential.y[i] - first);
-    return most / first;
-}
-
 std::vector<Metric> of_columns() {
     return {
         {.name = "column.speed",
@@ -199,11 +190,6 @@ std::vector<Metric> particle_metrics() {
                     .unit = "",
                     .doc = "Largest change of momentum along x or y over mass times the largest speed of the run.",
                     .measure = momentum_drift});
-    list.push_back(
-        {.name = "particles.energy_gain",
-         .unit = "",
-         .doc = "Largest rise of kinetic and potential energy above their first sum, relative to it (potential: above the floor).",
-         .measure = energy_gain});
     return list;
 }
 

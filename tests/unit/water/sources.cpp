@@ -41,7 +41,7 @@ TEST_IN_2D_AND_3D("an emitter fills, an open side drains, and surface and marker
     for (const std::string& transfer : D == 2 ? std::vector<std::string>{"flip", "apic"} : std::vector<std::string>{"flip"}) {
         const std::string layer =
             "{ shape = \"box\", min = " + list({"0.0", "0.0", "0.0"}, D) + ", max = " + list({"1.5", "0.1", "1.0"}, D) + " }";
-        water::Water<D> water(water_scene(poured_tank<D>(transfer, "x_max", layer)));
+        water::Water<D> water(water_scene(poured_tank<D>(transfer, "x_max", layer), {{"effects.volume_control", "{}"}}));
         real last = most, worst = 0;
         while (water.time() < 3) {
             water.step(water.advised_dt());
