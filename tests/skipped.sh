@@ -22,6 +22,7 @@ explained() { # REASON
         *"no Xvfb"*) ! has_display ;;
         *"no chromium"*) ! has_browser ;;
         *"no valgrind"*) ! has valgrind ;;
+        *"valgrind does not know this build's instructions"*) grep -q avx512f /proc/cpuinfo ;;
         *"oclgrind is not installed"*) ! has oclgrind ;;
         *"built without OpenCL"* | *"no OpenCL device here"*) ! has_opencl ;;
         *) false ;;
