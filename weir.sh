@@ -1,6 +1,19 @@
 #!/usr/bin/env bash
-# weir's front door: ./weir.sh build | run SCENE [...] | validate [...] | cost [...] | plan CASE --budget 16ms --error 2% | stability [...] | report | picture RESULT [...] | view RESULT [...] | list ... | describe ... | test [...] | install DIR
-# Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
+# weir's front door: ./weir.sh COMMAND [...]
+#   build               everything, with tests and benchmarks
+#   run SCENE [...]     simulate a scene, or a case by its name
+#   view RESULT         the frames of a run in a window
+#   picture RESULT      the frames of a run as a PNG
+#   validate [...]      the claims of the cases
+#   cost [...]          error against computing time; --plan SCENE: what a scene will cost
+#   plan CASE [...]     which setting to take: --budget 16ms --error 2%
+#   stability [...]     where solvers break
+#   report              the page of published results
+#   list WHAT           solvers, effects, cases or devices
+#   describe [WHAT]     what a scene may say
+#   test [...]          all tests; more words go to ctest
+#   install DIR         the program, its cases and the library
+# `./weir.sh COMMAND --help` tells more. Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
 # second call re-does only what changed. The executable is build/release/weir.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
@@ -46,9 +59,20 @@ build_all() {
     cmake --build "$here/build/release"
 }
 
+# run_tests [CTEST ARGUMENT...]: ctest; before its last line, how many tests were skipped and why. A skip that the machine does not explain
+# is a failure.
+run_tests() {
+    local code=0 log
+    log="$(mktemp)"
+    ctest --output-on-failure --output-junit "$here/build/release/tests.xml" "$@" | tee "$log" || code=$?
+    "$here/tests/skipped.sh" "$here/build/release/tests.xml" "$here/build/release/weir" || code=$((code > 0 ? code : 1))
+    grep '% tests passed' "$log" || true
+    rm -f "$log"
+    return "$code"
+}
+
 usage() {
-    sed -n '2,4s/^# //p' "$0" >&2
-    exit 2
+    sed -n '2,/--help` tells more/{s/^# \{0,1\}//;s/ Each call.*//;p}' "$0"
 }
 
 case "${1:-}" in
@@ -60,7 +84,8 @@ case "${1:-}" in
     view) install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec "$here/build/release/weir" "$@" ;;
     test) # threads that wait sleep: tests share the machine with other work, and spinning starves the thread that is waited for
         export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
-        build_all && cd "$here/build/release" && exec ctest --output-on-failure "${@:2}" ;;
-    install) [ $# -eq 2 ] || usage; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
-    *) usage ;;
+        build_all && cd "$here/build/release" && run_tests "${@:2}" ;;
+    install) [ $# -eq 2 ] || { usage >&2; exit 2; }; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
+    help | --help | -h) usage ;;
+    *) usage >&2; exit 2 ;;
 esac

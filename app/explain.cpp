@@ -1,5 +1,6 @@
 #include "app/explain.hpp"
 
+#include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "sim/registry.hpp"
 
@@ -75,7 +76,13 @@ std::string effects_text(const Simulation& simulation, const std::vector<Pass>& 
     for (const EffectPlan& effect : simulation.solver().effects()) {
         const auto own = std::find_if(passes.begin(), passes.end(), [&](const Pass& p) { return p.name == effect.pass; });
         const bool timed = own != passes.end();
-        const double share = timed ? own->seconds / total : share_by_difference(simulation.scene(), effect.name);
+        double share = 0;
+        try {
+            share = timed ? own->seconds / total : share_by_difference(simulation.scene(), effect.name);
+        } catch (const BadInput&) {  // what else the scene says needs it: no-slip sides, a viscosity
+            text += fmt::format("  {:22} the scene is not valid without it\n", effect.name);
+            continue;
+        }
         text += fmt::format("  {:22} {:9.3f} ms {:5.1f}%{}  {}\n", effect.name, 1e3 * share * total / steps, 100 * share,
                             timed ? "" : " by difference", called(effect));
     }

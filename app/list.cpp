@@ -3,6 +3,7 @@
 #include "backend/device.hpp"
 #include "core/error.hpp"
 #include "sim/registry.hpp"
+#include "validation/report/command.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -51,7 +52,7 @@ void list_devices() {
 
 void add_list(CLI::App& app, int& exit_code) {
     auto what = std::make_shared<std::string>();
-    auto folder = std::make_shared<std::string>("cases");
+    auto folder = std::make_shared<std::string>(validation::case_root().string());
     CLI::App* list =
         app.add_subcommand("list", "List the solvers, the effects of each, the cases (* where they are validated), or the devices");
     list->add_option("what", *what, "solvers, effects, cases or devices")

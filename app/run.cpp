@@ -4,13 +4,17 @@
 #include "app/interrupt.hpp"
 #include "app/measured.hpp"
 #include "app/progress.hpp"
+#include "app/space.hpp"
 #include "core/parallel.hpp"
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
+#include "sim/foretold.hpp"
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
+#include "sim/solid_cells.hpp"
+#include "validation/report/command.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -28,7 +32,7 @@ struct RunArguments {
     std::string reference;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
-    bool quiet = false, explain = false;
+    bool quiet = false, explain = false, any_size = false;
 };
 
 output::FrameOptions frame_options(const scene::Scene& scene) {
@@ -40,6 +44,7 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
     options.compression = compression == "none"  ? output::Compression::none
                           : compression == "lz4" ? output::Compression::lz4
                                                  : output::Compression::zlib;
+    options.solid = sim::solid_cells(scene);
     return options;
 }
 
@@ -63,6 +68,7 @@ public:
           progress_(simulation.time(), simulation.end_time(), quiet) {
         log_.set_solver_bytes(simulation.solver().bytes());
         if (restarted) log_.resume(simulation.steps());
+        write_log("running");  // where the disk fills later, there is a file that can still say so
     }
     /// What is to be measured of the run: told in run.json at its end.
     void measure(Measured& measured) { measured_ = &measured; }
@@ -89,6 +95,15 @@ public:
         log_.set_solver_bytes(simulation.solver().bytes());
         if (measured_) log_.set_measured(measured_->values());
         write_log(status);
+    }
+    /// The run broke off: that is said if nothing else can be written any more.
+    void fail(const std::string& why) noexcept {
+        progress_.end();
+        try {
+            write_log("failed: " + why);
+        } catch (const std::exception&) {
+            log_.overwrite_status("failed: " + why);
+        }
     }
     std::vector<std::filesystem::path> series() const { return frames_ ? frames_->series() : std::vector<std::filesystem::path>{}; }
 
@@ -124,8 +139,11 @@ std::string scene_name(const scene::Scene& scene) {
 
 std::filesystem::path find_checkpoint(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return path;
-    const auto newest = sim::checkpoint_file(path);
-    return std::filesystem::exists(newest) ? newest : sim::last_good_file(path);
+    for (const auto& file : {sim::checkpoint_file(path), sim::last_good_file(path)})
+        if (std::filesystem::exists(file)) return file;
+    throw BadInput(path.string() +
+                   " has no checkpoint to continue from: one is written when a run is interrupted or fails, and with "
+                   "--checkpoint-every N; a finished run without one has nothing left to do");
 }
 
 /// Where --out says; else beside the checkpoint that is continued; else out/<name of the scene>.
@@ -143,6 +161,27 @@ std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& s
     return std::optional<Measured>(std::in_place, simulation, arguments.measure, arguments.reference);
 }
 
+/// What was written, and how to see it.
+void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder) {
+    for (const auto& path : series) std::printf("%s\n", path.string().c_str());
+    if (!series.empty())
+        std::printf("to see it: weir view %s (a window), weir picture %s (a PNG), or open the .pvd in ParaView\n", folder.c_str(),
+                    folder.c_str());
+}
+
+/// A checkpoint at the end of its scene: there is nothing to continue.
+int tell_finished(const Simulation& simulation) {
+    std::fprintf(stderr, "nothing is left to do: the run has reached its end at t = %.6g s; to go on: --set time.end=%.6g\n",
+                 simulation.time(), 2 * simulation.time());
+    return exit_success;
+}
+
+/// What the user names: a path; or, where nothing stands there, a case.
+std::filesystem::path find_scene(const std::string& name) {
+    const bool is_path = name.find_first_of("./") != std::string::npos;
+    return is_path || std::filesystem::exists(name) ? std::filesystem::path(name) : validation::find_case_scene(name);
+}
+
 int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
@@ -151,21 +190,28 @@ int simulate(const RunArguments& arguments) {
     std::optional<Checkpoint> checkpoint;
     if (!arguments.restart.empty()) checkpoint = Checkpoint::read(find_checkpoint(arguments.restart));
     if (arguments.scene.empty() && !checkpoint)
-        throw BadInput("weir run needs a scene (a file, or a folder with a scene.toml), or --restart");
+        throw BadInput("weir run needs a scene (a file, a folder with a scene.toml, or the name of a case), or --restart");
 
-    Simulation simulation(arguments.scene.empty() ? scene_of(*checkpoint, overrides)
-                                                  : scene::read(arguments.scene, sim::schemas(), overrides));
+    scene::Scene scene =
+        arguments.scene.empty() ? scene_of(*checkpoint, overrides) : scene::read(find_scene(arguments.scene), sim::schemas(), overrides);
+    if (!arguments.explain)
+        sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run);
+    Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
     for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
         std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it may cost, and does nothing\n", simulation.scene().file().c_str(),
                      effect.c_str());
     if (arguments.explain) {
-        std::fputs(explain(simulation).c_str(), stdout);
+        const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
+        std::fputs((explain(simulation) + "a run writes " + space).c_str(), stdout);
         return exit_success;
     }
+    if (checkpoint && simulation.finished()) return tell_finished(simulation);
     output::check(frame_options(simulation.scene()), simulation.fields());
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     output::require_writable(folder);
+    const std::string space = check_space(simulation, folder, arguments.any_size);
+    if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
     Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
@@ -179,14 +225,16 @@ int simulate(const RunArguments& arguments) {
     sim::Ending ending;
     try {
         ending = sim::run(simulation, recorder, options);
-    } catch (const NumericalFailure& failure) {
-        recorder.end(simulation, std::string("failed: ") + failure.what());
+        recorder.end(simulation,
+                     ending == sim::Ending::finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
+    } catch (const std::exception& failure) {
+        recorder.fail(failure.what());
         throw;
     }
+    if (simulation.steady())
+        std::fprintf(stderr, "steady at t = %.6g s: no velocity changes faster than time.stop_when_steady\n", simulation.time());
+    if (!arguments.quiet) tell_results(recorder.series(), folder);
     const bool finished = ending == sim::Ending::finished;
-    recorder.end(simulation, finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
-    if (!arguments.quiet)
-        for (const auto& series : recorder.series()) std::printf("%s\n", series.string().c_str());
     if (finished && measured) std::fputs(measured->text().c_str(), stdout);
     if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
@@ -199,7 +247,7 @@ int simulate(const RunArguments& arguments) {
 void add_run(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<RunArguments>();
     CLI::App* run = app.add_subcommand("run", "Simulate a scene: frames (.pvd), probes (.csv) and run.json");
-    run->add_option("scene", arguments->scene, "A scene file, or a folder with a scene.toml");
+    run->add_option("scene", arguments->scene, "A scene file, a folder with a scene.toml, or the name of a case (weir list cases)");
     run->add_option("--out", arguments->out, "Output folder (default: out/<name of the scene>)");
     run->add_option("--set", arguments->set, "Override a key: --set grid.cells=[64,64]; may be repeated")
         ->type_name("KEY=VALUE")
@@ -214,6 +262,7 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");
+    run->add_flag("--any-size", arguments->any_size, "Begin though the frames may not fit on the disk");
     run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files");
     run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -65,8 +64,14 @@ int main(int argc, char** argv) {
     bool csv = false;
     int threads = 1;
     for (int i = 1; i < argc; ++i) {
-        csv = csv || std::strcmp(argv[i], "--csv") == 0;
-        if (std::strcmp(argv[i], "--threads") == 0 && i + 1 < argc) threads = std::max(1, std::atoi(argv[i + 1]));
+        const std::string argument = argv[i];
+        if (argument == "--csv")
+            csv = true;
+        else if (argument == "--threads" && i + 1 < argc)
+            threads = std::max(1, std::atoi(argv[++i]));
+        else
+            return fmt::print(argument == "--help" ? stdout : stderr, "usage: bench_flow [--csv] [--threads N]\n"),
+                   argument == "--help" ? 0 : 2;
     }
     set_threads(threads);
     if (csv) fmt::print("case,cells,threads,median_ms,fastest_ms,ns_per_cell,iterations\n");

@@ -1,15 +1,16 @@
 // bench_poisson: our pressure methods against hypre's PFMG-CG, CHOLMOD, Eigen's ICCG and FFTW's DCT on the same numbers.
 //
-//     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] [--csv
-//     FILE]
+//     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] [--csv]
 //
-// Times are the least of K runs; a peer that would take minutes or more memory than there is says "skipped" and why.
+// --csv: comma-separated values in place of the table. // Times are the least of K runs; a peer that would take minutes or more memory than
+// there is says "skipped" and why.
 #include "core/error.hpp"
 #include "pfmg.hpp"
 #include "problems.hpp"
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -24,7 +25,7 @@ struct Choice {
     std::vector<int> dims, threads;
     int n = 0, repeat = 5;
     bool quick = false, obstacles = false, pfmg_process = false;
-    std::string csv;
+    bool csv = false;
 };
 
 struct Row {
@@ -36,6 +37,10 @@ struct Row {
     std::string skipped;
 };
 
+constexpr const char* usage =
+    "usage: bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] "
+    "[--csv]";
+
 Choice read_options(int argc, char** argv) {
     Choice c;
     for (int i = 1; i < argc; ++i) {
@@ -44,7 +49,10 @@ Choice read_options(int argc, char** argv) {
             if (i + 1 == argc) throw BadInput(key + " needs a value");
             return argv[++i];
         };
-        if (key == "--case")
+        if (key == "--help") {
+            std::puts(usage);
+            std::exit(0);
+        } else if (key == "--case")
             c.cases.push_back(value());
         else if (key == "--solver")
             c.solvers.push_back(value());
@@ -57,7 +65,7 @@ Choice read_options(int argc, char** argv) {
         else if (key == "--repeat")
             c.repeat = std::stoi(value());
         else if (key == "--csv")
-            c.csv = value();
+            c.csv = true;
         else if (key == "--quick")
             c.quick = true;
         else if (key == "--obstacles")
@@ -65,7 +73,7 @@ Choice read_options(int argc, char** argv) {
         else if (key == "--pfmg-process")
             c.pfmg_process = true;
         else
-            throw BadInput("unknown option " + key + "; known: --case --dim --n --threads --solver --repeat --quick --obstacles --csv");
+            throw BadInput("unknown option " + key + "\n" + usage);
     }
     if (c.cases.empty()) c.cases = {"box", "wavy", "box_weights", "wavy_weights"};
     if (c.obstacles) c.cases = {"rooms", "slits", "blocks", "fractions", "magnitudes", "bands"};
@@ -132,6 +140,14 @@ void print_head() {
                 "iter", "residual", "ns/unk", "B/unk", "/PFMG");
 }
 
+void print_csv(const Row& r) {
+    const auto unknowns = static_cast<double>(r.unknowns);
+    if (r.skipped.empty())
+        std::printf("%s,%d,%d,%d,%s,%g,%g,%d,%g,%g,%g\n", r.name.c_str(), r.dim, r.n, r.threads, r.solver.c_str(), r.setup_ms, r.solve_ms,
+                    r.iterations, r.residual, 1e6 * r.solve_ms / unknowns, r.bytes / unknowns);
+    std::fflush(stdout);
+}
+
 void print(const Row& r, double pfmg_ms) {
     std::printf("%-13s %3d %5d %2d %-11s ", r.name.c_str(), r.dim, r.n, r.threads, r.solver.c_str());
     if (!r.skipped.empty()) {
@@ -145,16 +161,9 @@ void print(const Row& r, double pfmg_ms) {
     std::fflush(stdout);
 }
 
-void write(std::ofstream& csv, const Row& r) {
-    if (!csv.is_open() || !r.skipped.empty()) return;
-    const auto unknowns = static_cast<double>(r.unknowns);
-    csv << r.name << ',' << r.dim << ',' << r.n << ',' << r.threads << ',' << r.solver << ',' << r.setup_ms << ',' << r.solve_ms << ','
-        << r.iterations << ',' << r.residual << ',' << 1e6 * r.solve_ms / unknowns << ',' << r.bytes / unknowns << std::endl;
-}
-
 /// PFMG-CG first, so that every other line can be compared with it; CHOLMOD's answer, where there is one, against the others'.
 template <int D>
-void run_case(const std::string& name, int n, int threads, const Choice& choice, std::ofstream& csv) {
+void run_case(const std::string& name, int n, int threads, const Choice& choice) {
     std::vector<std::string> solvers = choice.solvers;
     if (solvers.empty()) {
         solvers = {"pfmg_cg", "multigrid", "cholmod"};
@@ -168,11 +177,10 @@ void run_case(const std::string& name, int n, int threads, const Choice& choice,
         Grid<real, D> p(problem.b.extent());
         const Row row = measure<D>(solver, name, problem, threads, choice, p);
         if (solver == "pfmg_cg") pfmg_ms = row.solve_ms;
-        print(row, pfmg_ms);
-        write(csv, row);
+        choice.csv ? print_csv(row) : print(row, pfmg_ms);
         if (row.skipped.empty() && solver != "pfmg_cg") answers.emplace(solver, std::move(p));
     }
-    if (!answers.contains("cholmod")) return;
+    if (choice.csv || !answers.contains("cholmod")) return;
     const auto& exact = answers.at("cholmod");
     const real scale = max_over<D>(exact.extent(), [&](const Index<D>& I) { return std::abs(exact(I)); });
     for (const auto& [solver, p] : answers)
@@ -182,20 +190,17 @@ void run_case(const std::string& name, int n, int threads, const Choice& choice,
 }
 
 int run(const Choice& choice) {
-    std::ofstream csv;
-    if (!choice.csv.empty()) {
-        csv.open(choice.csv);
-        if (!csv) throw BadInput("cannot write " + choice.csv);
-        csv << "case,dim,n,threads,solver,setup_ms,solve_ms,iterations,true_residual,ns_per_unknown,bytes_per_unknown" << std::endl;
-    }
-    print_head();
+    if (choice.csv)
+        std::puts("case,dim,n,threads,solver,setup_ms,solve_ms,iterations,true_residual,ns_per_unknown,bytes_per_unknown");
+    else
+        print_head();
     for (const auto& name : choice.cases)
         for (const int dim : choice.dims)
             for (const int t : choice.threads) {
                 const bool obstacle = is_obstacle(name);
                 const int full = dim == 2 ? (obstacle ? 512 : 1024) : (obstacle ? 96 : 128);
                 const int n = choice.n > 0 ? choice.n : choice.quick ? full / 2 : full;
-                dim == 2 ? run_case<2>(name, n, t, choice, csv) : run_case<3>(name, n, t, choice, csv);
+                dim == 2 ? run_case<2>(name, n, t, choice) : run_case<3>(name, n, t, choice);
             }
     return 0;
 }

@@ -92,7 +92,8 @@ int main(int argc, char** argv) {
         else if (argument == "--dim" && i + 1 < argc)
             dim = std::atoi(argv[++i]);
         else
-            return fmt::print(stderr, "usage: bench_water [--csv] [--steps N] [--threads N] [--dim 2|3]\n"), 2;
+            return fmt::print(argument == "--help" ? stdout : stderr, "usage: bench_water [--csv] [--steps N] [--threads N] [--dim 2|3]\n"),
+                   argument == "--help" ? 0 : 2;
     }
     if (csv) fmt::print("case,threads,markers,pass,median_ms,least_ms\n");
     for (const auto& problem : problems())

@@ -12,10 +12,11 @@
 
 namespace weir {
 
-/// The places in a step where physics may act: source (emitters, heaters), force (explicit rates, u += dt f), implicit (linear solves
-/// after all explicit rates are in), finish (after the projection).
-enum class Stage { source, force, implicit, finish };
-inline constexpr int stage_count = 4;
+/// The places in a step where physics may act: source (emitters, heaters), force (explicit rates, u += dt f), carried (what becomes of
+/// fields that the flow carried, before they push it), implicit (linear solves after all explicit rates are in), finish (after the
+/// projection).
+enum class Stage { source, force, carried, implicit, finish };
+inline constexpr int stage_count = 5;
 
 /// The fields that effects asked for, by name. Two effects that need the same field share it.
 class FieldPlan {
@@ -53,8 +54,12 @@ template <class State>
 struct Effect {
     virtual ~Effect() = default;
     virtual Stage stage() const = 0;
-    virtual void needs(FieldPlan&) const {}                       // names fields; allocates nothing
-    virtual void apply(State& s, real dt) = 0;                    // one pass: one virtual call a pass, none a cell
+    virtual void needs(FieldPlan&) const {}     // names fields; allocates nothing
+    virtual void apply(State& s, real dt) = 0;  // one pass: one virtual call a pass, none a cell
+    /// Of a step along paths by the trapezoidal rule, the half (dt of it) that acts where the paths begin. The rest is apply's.
+    virtual void depart(State& s, real dt) {
+        if (stage() == Stage::force) apply(s, dt);
+    }
     virtual real max_dt(const State&) const { return infinity; }  // its own stability limit [s]
     virtual std::size_t bytes() const { return 0; }               // that it holds for itself, beyond the fields it needs
 };
@@ -100,6 +105,14 @@ public:
         for (const Entry& e : at_[static_cast<std::size_t>(stage)]) {
             const auto timed = passes.time(e.pass);
             e.effect->apply(s, dt);
+        }
+    }
+    /// In the reverse order, which makes a step that departs and applies the same from both of its ends.
+    void depart(Stage stage, State& s, real dt, Passes& passes) const {
+        const auto& list = at_[static_cast<std::size_t>(stage)];
+        for (auto e = list.rbegin(); e != list.rend(); ++e) {
+            const auto timed = passes.time(e->pass);
+            e->effect->depart(s, dt);
         }
     }
     real max_dt(const State& s) const {

@@ -17,10 +17,30 @@ struct Confinement final : MacEffect<D> {
         plan.scratch("vorticity_magnitude");
         for (int a = 0; a < D; ++a) plan.scratch(force[static_cast<std::size_t>(a)]);
     }
+    /// Of the velocity before the step, at both ends of a path.
+    void depart(MacState<D>& s, real dt) override {
+        find_force(s);
+        push(s, dt);
+        departed_ = true;
+    }
     void apply(MacState<D>& s, real dt) override {
-        auto& magnitude = s.scratch_field("vorticity_magnitude");
-        std::array<Grid<real, D>*, D> f;  // first ω, then the force
+        if (!departed_) find_force(s);
+        push(s, dt);
+        departed_ = false;
+    }
+
+private:
+    struct alignas(64) Row : std::array<real, row_block> {};
+    bool departed_ = false;  // the force of this step stands in the scratch fields
+
+    std::array<Grid<real, D>*, D> force_fields(MacState<D>& s) const {
+        std::array<Grid<real, D>*, D> f;
         for (std::size_t a = 0; a < D; ++a) f[a] = &s.scratch_field(force[a]);
+        return f;
+    }
+    void find_force(MacState<D>& s) const {
+        auto& magnitude = s.scratch_field("vorticity_magnitude");
+        const auto f = force_fields(s);  // first ω, then the force
         for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
             vorticity(s, first, count, f);
             find_magnitude(f, first, count, &magnitude(first));
@@ -32,6 +52,9 @@ struct Confinement final : MacEffect<D> {
             normalise(n, count);
             cross(n, &s.cells(first), strength, first, count, f);
         });
+    }
+    void push(MacState<D>& s, real dt) const {
+        const auto f = force_fields(s);
         for (int a = 0; a < D; ++a)
             for_each_row(e<D>(a), s.extent(), [&](const Index<D>& first, int count) {  // inner faces
                 real* u = &s.u[a](first);
@@ -41,9 +64,6 @@ struct Confinement final : MacEffect<D> {
                 for (int i = 0; i < count; ++i) u[i] += dt * (0.5 * (below[i] + here[i]));
             });
     }
-
-private:
-    struct alignas(64) Row : std::array<real, row_block> {};
 
     /// ω at the centres of a row of cells by central differences of the velocity at the centres around them; 2D has only the third
     /// component, which stands in the first field.

@@ -3,7 +3,7 @@
 namespace weir::flow {
 
 const EffectKinds& effect_kinds() {
-    static const EffectKinds kinds{gravity(), buoyancy(), confinement(), diffusion(), cooling(), decay(), viscosity()};
+    static const EffectKinds kinds{gravity(), buoyancy(), confinement(), cooling(), decay(), diffusion(), viscosity()};
     return kinds;
 }
 

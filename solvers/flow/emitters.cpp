@@ -82,13 +82,18 @@ Emitters<D>::Emitters(const scene::Scene& scene, const MacState<D>& state) : cfl
 
 template <int D>
 void Emitters<D>::apply(MacState<D>& s, real) {
+    for (auto& field : s.fields) field.held.clear();
     for (const auto& emitter : emitters_) {
         if (before(s.time, emitter.start) || !before(s.time, emitter.end)) continue;
-        for (const auto& set : emitter.sets) {
-            auto& values = set.axis < 0 ? s[set.field] : s.u[set.axis];
-            for (const std::size_t i : set.entries) values[i] = set.value;
-        }
+        for (const auto& set : emitter.sets)
+            if (set.axis < 0) {
+                auto& held = s.field(set.field).held;
+                for (const std::size_t i : set.entries) held.push_back({i, set.value});
+            } else {
+                for (const std::size_t i : set.entries) s.u[set.axis][i] = set.value;
+            }
     }
+    for (auto& field : s.fields) field.hold();
 }
 
 /// No step crosses the moment at which an emitter opens: what it will heat and push is not known before.

@@ -50,8 +50,9 @@ real Helmholtz<D>::dot(const Grid<real, D>& x, const Grid<real, D>& y) const {
 }
 
 template <int D>
-int Helmholtz<D>::solve(Grid<real, D>& r, real a, const Mask<D>& mask, const char* what) {
+int Helmholtz<D>::solve(Grid<real, D>& r, real a, const Mask<D>& mask, std::span<const Held> held, const char* what) {
     solution_.fill(0);
+    for (const Held& h : held) r[h.cell] = 0;
     real rr = dot(r, r);
     const real goal = tolerance * tolerance * rr;
     fill(direction_, r, boundary_);
@@ -61,6 +62,7 @@ int Helmholtz<D>::solve(Grid<real, D>& r, real a, const Mask<D>& mask, const cha
             throw NumericalFailure(what, "the implicit solve for " + std::string(what) + " did not converge");
         laplacian(direction_, h_, nodes_, mask, beyond_, image_);  // image_ stays 0 outside the nodes
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) { image_(I) = direction_(I) - a * image_(I); });
+        for (const Held& h : held) image_[h.cell] = 0;
         const real pAp = sum_over(image_.extent(), [&](const Index<D>& I) { return image_(I) * direction_(I); });
         const real alpha = rr / pAp;
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {

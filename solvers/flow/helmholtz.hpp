@@ -5,6 +5,8 @@
 #include "flow/effects.hpp"
 #include "staggered/ghosts.hpp"
 
+#include <span>
+
 namespace weir::flow {
 
 /// What a node next to one that does not take part sees there.
@@ -22,9 +24,9 @@ template <int D>
 class Helmholtz {
 public:
     Helmholtz(const Nodes<D>& nodes, const Vec<D>& h, const Boundary<D>& boundary, Beyond beyond, const Index<D>& extent);
-    /// r on entry the right-hand side (zero outside nodes and mask), on return δ, to ‖residual‖₂ ≤ tolerance ‖r‖₂.
+    /// r on entry the right-hand side (zero outside nodes and mask), on return δ, to ‖residual‖₂ ≤ tolerance ‖r‖₂. δ = 0 in held cells.
     /// Throws NumericalFailure when that is not reached; `what` names the quantity.
-    int solve(Grid<real, D>& r, real a, const Mask<D>& mask, const char* what);
+    int solve(Grid<real, D>& r, real a, const Mask<D>& mask, std::span<const Held> held, const char* what);
     std::size_t bytes() const { return direction_.bytes() + (image_.size() + solution_.size()) * sizeof(real); }
 
 private:

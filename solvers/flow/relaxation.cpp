@@ -1,4 +1,5 @@
-// Fields that fade by themselves: heat lost to the surroundings, smoke that settles. Exact over any step.
+// Fields that fade by themselves: heat lost to the surroundings, smoke that settles. Exact over any step along paths; with fluxes a rate
+// like the others, because what fades apart from what flows in leaves a steady state that depends on the step.
 #include "flow/effects.hpp"
 
 namespace weir::flow {
@@ -7,32 +8,44 @@ namespace {
 
 using scene::Type;
 
+/// dq/dt = −rate (q − ambient)
+template <int D>
+struct Relaxation : MacEffect<D> {
+    std::string field;
+    real rate, ambient;
+    Scheme scheme;
+    Relaxation(const char* name, real rate_, real ambient_, Scheme scheme_)
+        : field(name), rate(rate_), ambient(ambient_), scheme(scheme_) {}
+    Stage stage() const override { return scheme == Scheme::conservative ? Stage::force : Stage::carried; }
+    void needs(FieldPlan& plan) const override { plan.advected(field); }
+    void depart(MacState<D>& s, real dt) override { fade(s[field], dt); }
+    void apply(MacState<D>& s, real dt) override {
+        if (scheme != Scheme::conservative) return fade(s[field], scheme == Scheme::maccormack ? 0.5 * dt : dt);
+        auto& q = s.field(field);
+        const real lost = rate * dt;
+        for_each_cell(s.extent(), [&](const Index<D>& I) { q.values(I) -= lost * (q.before(I) - ambient); });
+    }
+    /// Where it is a rate, the step in which Euler's explicit scheme would take all.
+    real max_dt(const MacState<D>&) const override { return scheme == Scheme::conservative && rate > 0 ? 1 / rate : infinity; }
+
+private:
+    void fade(Grid<real, D>& q, real dt) const {
+        const real left = std::exp(-rate * dt);
+        for_each_cell(q.extent(), [&](const Index<D>& I) { q(I) = ambient + left * (q(I) - ambient); });
+    }
+};
+
 /// dT/dt = −rate (T − ambient)     Newton's law of cooling
 template <int D>
-struct Cooling final : MacEffect<D> {
-    real rate, ambient;
-    Cooling(const scene::Table& table, const scene::Scene&) : rate(table.number("rate")), ambient(table.number("ambient")) {}
-    Stage stage() const override { return Stage::finish; }
-    void needs(FieldPlan& plan) const override { plan.advected("temperature"); }
-    void apply(MacState<D>& s, real dt) override {
-        auto& T = s["temperature"];
-        const real left = std::exp(-rate * dt);
-        for_each_cell(T.extent(), [&](const Index<D>& I) { T(I) = ambient + left * (T(I) - ambient); });
-    }
+struct Cooling final : Relaxation<D> {
+    Cooling(const scene::Table& table, const scene::Scene& scene)
+        : Relaxation<D>("temperature", table.number("rate"), table.number("ambient"), scheme_of(scene)) {}
 };
 
 /// ds/dt = −rate s
 template <int D>
-struct Decay final : MacEffect<D> {
-    real rate;
-    Decay(const scene::Table& table, const scene::Scene&) : rate(table.number("rate")) {}
-    Stage stage() const override { return Stage::finish; }
-    void needs(FieldPlan& plan) const override { plan.advected("smoke"); }
-    void apply(MacState<D>& s, real dt) override {
-        auto& smoke = s["smoke"];
-        const real left = std::exp(-rate * dt);
-        for_each_cell(smoke.extent(), [&](const Index<D>& I) { smoke(I) *= left; });
-    }
+struct Decay final : Relaxation<D> {
+    Decay(const scene::Table& table, const scene::Scene& scene) : Relaxation<D>("smoke", table.number("rate"), 0, scheme_of(scene)) {}
 };
 
 const scene::Key& rate_key() {

@@ -20,16 +20,18 @@ StepReport FlowSolver<D>::step(real dt) {
     for (const Substep& stage : substeps(options_.scheme)) {
         const real part = stage.fraction() * dt;
         remember();                    // uⁿ, qⁿ with their ghosts
+        depart(dt);                    // u += dt f(uⁿ, qⁿ): all of it with fluxes, half where paths are followed to second order
         advect_fields(dt);             // Dq/Dt = 0    only fields that an effect asked for
         advect_velocity(dt);           // Du/Dt = 0
-        apply(Stage::force, dt);       // u += dt f
         blend(stage);                  // γ and ζ of a Runge-Kutta stage
+        apply(Stage::carried, part);   // (I − dt κ∇²) q = ...
+        arrive(dt);                    // u += what is left of dt f(u, q)
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
         move_solids(t += part);        // u·n = u_solid·n
         project(part);                 // ∇·u = 0
+        hold();                        // what emitters and solids prescribe
     }
     apply(Stage::finish, dt);
-    clear_solids();
     state_.time += dt;
     return report(dt);
 }
@@ -143,11 +145,41 @@ void FlowSolver<D>::remember() {
         fluid = larger_or_nan(
             fluid, fill_and_measure(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]) / state_.u.h[a]);
     solids_.extend_velocity(state_);
+    remember_fields();
+    trace_.set_max_rate(rate(fluid));
+}
+
+template <int D>
+void FlowSolver<D>::remember_fields() {
     for (auto& field : state_.fields) {
         fill(field.before, field.values, field.boundary);
         solids_.extend_field(state_, field.before);
     }
-    trace_.set_max_rate(rate(fluid));
+}
+
+/// With fluxes all explicit rates are of the fields of before. The trapezoidal rule along paths takes half of every term where they begin:
+/// what is carried has it in.
+template <int D>
+void FlowSolver<D>::depart(real dt) {
+    if (options_.scheme == Scheme::conservative) return apply(Stage::force, dt);
+    if (options_.scheme != Scheme::maccormack) return;
+    for (const Stage stage : {Stage::implicit, Stage::force, Stage::carried}) effects_.depart(stage, state_, 0.5 * dt, passes_);
+    if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force)) {
+        sync_periodic(state_.u, state_.sides);
+        solids_.set_faces(state_);  // no force moves a solid
+    }
+    if (effects_.empty(Stage::carried)) return;
+    const auto timed = passes_.time("ghosts");
+    for (auto& field : state_.fields) field.hold();
+    remember_fields();
+}
+
+/// The fields are whole here, so that a force is of the temperature that the step ends with.
+template <int D>
+void FlowSolver<D>::arrive(real dt) {
+    if (options_.scheme == Scheme::conservative) return;
+    apply(Stage::force, options_.scheme == Scheme::maccormack ? 0.5 * dt : dt);
+    sync_periodic(state_.u, state_.sides);
 }
 
 template <int D>
@@ -213,6 +245,13 @@ void FlowSolver<D>::project(real dt) {
     const auto timed = passes_.time("project");
     report_ = &projection_.project(state_, dt);
     impulse_ += dt * pressure_force(state_);
+}
+
+/// Emitted values stand where they are emitted, after each (sub)step: what flows from there in the next does not depend on its length.
+template <int D>
+void FlowSolver<D>::hold() {
+    for (auto& field : state_.fields) field.hold();
+    clear_solids();
 }
 
 /// No smoke stands inside a solid.

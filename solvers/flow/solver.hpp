@@ -48,11 +48,15 @@ public:
 private:
     void apply(Stage stage, real dt);
     void remember();
+    void remember_fields();
+    void depart(real dt);
+    void arrive(real dt);
     void advect_fields(real dt);
     void advect_velocity(real dt);
     void blend(const Substep& stage);
     void move_solids(real t);
     void project(real dt);
+    void hold();
     void clear_solids();
     real rate(real fluid) const;
     real last_rate() const;

@@ -3,6 +3,7 @@
 // Crank-Nicolson is solved for the correction to the field as the step found it, with the old pressure gradient inside the solve, so
 // that the tangential velocity at walls is right to second order in dt (van Kan 1986):
 //     (I − dt/2 ν∇²)(u* − uⁿ) = (ũ − uⁿ) + dt ν∇²uⁿ − (dt/ρ)∇pⁿ,      u = u* + (dt/ρ)∇pⁿ,      ũ: all explicit rates are in.
+// Along paths to second order (MacCormack) ũ brings half of dt ν∇²uⁿ from where the path begins, and half is left to be added here.
 #include "flow/effects.hpp"
 #include "flow/helmholtz.hpp"
 #include "staggered/projection.hpp"
@@ -26,8 +27,17 @@ scene::Key time_key() {
             .fallback = std::string("crank-nicolson"),
             .choices = {"explicit", "crank-nicolson", "implicit"}};
 }
-/// Share of the Laplacian that is taken at the end of the step.
-real implicit_share(Time time) { return time == Time::implicit ? 1 : 0.5; }
+
+/// A scheme in time, and whether half of what it takes from before the step is taken where paths begin.
+struct TimeRule {
+    Time time;
+    bool departs;
+    TimeRule(const scene::Table& table, const scene::Scene& scene)
+        : time(time_named(table.text("scheme"))), departs(scheme_of(scene) == Scheme::maccormack && time != Time::implicit) {}
+    /// Share of the Laplacian of before that is taken where paths end, and that of the Laplacian at the end of the step.
+    real before_share() const { return departs ? 0.5 : 1; }
+    real implicit_share() const { return time == Time::implicit ? 1 : 0.5; }
+};
 
 /// Euler's explicit scheme neither oscillates nor grows below dt = 1 / (2 ν Σ 1/h²).
 template <int D>
@@ -50,13 +60,14 @@ public:
         laplacian(before, h_, nodes_, mask_, beyond_, rhs_);
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) { q(I) += dt_nu * rhs_(I); });
     }
-    void solve(const Padded<D>& before, real dt_nu, Time time, Grid<real, D>& q, const char* what) {
+    void solve(const Padded<D>& before, real dt_nu, const TimeRule& rule, std::span<const Held> held, Grid<real, D>& q, const char* what) {
         laplacian(before, h_, nodes_, mask_, beyond_, rhs_);
+        const real explicit_part = rule.before_share() * dt_nu;
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {
             const real takes_part = mask_.empty() ? 1 : mask_(I);
-            rhs_(I) = takes_part * (q(I) - before(I) + dt_nu * rhs_(I));
+            rhs_(I) = takes_part * (q(I) - before(I) + explicit_part * rhs_(I));
         });
-        solver_.solve(rhs_, implicit_share(time) * dt_nu, mask_, what);
+        solver_.solve(rhs_, rule.implicit_share() * dt_nu, mask_, held, what);
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {
             if (mask_.empty() || mask_(I) != 0) q(I) = before(I) + rhs_(I);
         });
@@ -82,25 +93,23 @@ void set_mask(Mask<D>& mask, const Index<D>& extent, Weight weight) {
 /// du/dt = ν ∇²u
 template <int D>
 struct Viscosity final : MacEffect<D> {
-    Time time;
+    TimeRule rule;
     std::vector<Diffuser<D>> axes;
-    Viscosity(const scene::Table& table, const scene::Scene&) : time(time_named(table.text("scheme"))) {}
-    Stage stage() const override { return time == Time::explicit_ ? Stage::force : Stage::implicit; }
+    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) {}
+    Stage stage() const override { return rule.time == Time::explicit_ ? Stage::force : Stage::implicit; }
+    void depart(MacState<D>& s, real dt) override {
+        if (rule.departs) add(s, dt);
+    }
     void apply(MacState<D>& s, real dt) override {
         if (s.nu == 0) return;
+        if (rule.time == Time::explicit_) return add(s, dt);
         prepare(s);
-        if (time != Time::explicit_) add_gradient(s.u, s, -dt / s.rho);
-        for (int a = 0; a < D; ++a) {
-            auto& axis = axes[static_cast<std::size_t>(a)];
-            if (time == Time::explicit_)
-                axis.add(s.before[a], dt * s.nu, s.u[a]);
-            else
-                axis.solve(s.before[a], dt * s.nu, time, s.u[a], "velocity");
-        }
+        add_gradient(s.u, s, -dt / s.rho);
+        for (int a = 0; a < D; ++a) axes[static_cast<std::size_t>(a)].solve(s.before[a], dt * s.nu, rule, {}, s.u[a], "velocity");
         sync_periodic(s.u, s.sides);
-        if (time != Time::explicit_) add_gradient(s.u, s, dt / s.rho);
+        add_gradient(s.u, s, dt / s.rho);
     }
-    real max_dt(const MacState<D>& s) const override { return time == Time::explicit_ ? explicit_limit<D>(s.nu, s.u.h) : infinity; }
+    real max_dt(const MacState<D>& s) const override { return rule.time == Time::explicit_ ? explicit_limit<D>(s.nu, s.u.h) : infinity; }
     std::size_t bytes() const override {
         std::size_t total = 0;
         for (const auto& axis : axes) total += axis.bytes();
@@ -108,6 +117,12 @@ struct Viscosity final : MacEffect<D> {
     }
 
 private:
+    void add(MacState<D>& s, real dt) {
+        if (s.nu == 0) return;
+        prepare(s);
+        for (int a = 0; a < D; ++a) axes[static_cast<std::size_t>(a)].add(s.before[a], dt * s.nu, s.u[a]);
+        sync_periodic(s.u, s.sides);
+    }
     void prepare(const MacState<D>& s) {
         for (int a = static_cast<int>(axes.size()); a < D; ++a)
             axes.emplace_back(free_faces(s.u, s.sides, a), s, s.boundary[static_cast<std::size_t>(a)], Beyond::value, s.u[a].extent());
@@ -125,38 +140,53 @@ struct Diffusion final : MacEffect<D> {
         real kappa;
         std::optional<Diffuser<D>> diffuser;
     };
-    Time time;
+    TimeRule rule;
+    Stage at;
     std::vector<Carried> list;
-    Diffusion(const scene::Table& table, const scene::Scene&) : time(time_named(table.text("scheme"))) {
+    Diffusion(const scene::Table& table, const scene::Scene& scene)
+        : rule(table, scene), at(rule.time == Time::explicit_ && scheme_of(scene) == Scheme::conservative ? Stage::force : Stage::carried) {
         for (const char* name : {"temperature", "smoke"})
             if (table.has(name) && table.number(name) > 0) list.push_back({name, table.number(name), {}});
     }
-    Stage stage() const override { return time == Time::explicit_ ? Stage::force : Stage::implicit; }
+    Stage stage() const override { return at; }
     void needs(FieldPlan& plan) const override {
         for (const auto& carried : list) plan.advected(carried.name);
     }
+    void depart(MacState<D>& s, real dt) override {
+        if (!rule.departs) return;
+        for (auto& carried : list) {
+            auto& field = prepare(s, carried);
+            carried.diffuser->add(field.before, dt * carried.kappa, field.values);
+        }
+    }
     void apply(MacState<D>& s, real dt) override {
         for (auto& carried : list) {
-            const auto field = std::find_if(s.fields.begin(), s.fields.end(), [&](const auto& f) { return f.name == carried.name; });
-            if (!carried.diffuser) carried.diffuser.emplace(all_cells<D>(s.extent()), s, field->boundary, Beyond::no_flux, s.extent());
-            if (s.solid.any())
-                set_mask(carried.diffuser->mask(), s.extent(), [&](const Index<D>& I) { return s.cells(I) == poisson::Cell::fluid; });
-            if (time == Time::explicit_)
-                carried.diffuser->add(field->before, dt * carried.kappa, field->values);
+            auto& field = prepare(s, carried);
+            if (rule.time == Time::explicit_)
+                carried.diffuser->add(field.before, rule.before_share() * dt * carried.kappa, field.values);
             else
-                carried.diffuser->solve(field->before, dt * carried.kappa, time, field->values, carried.name.c_str());
+                carried.diffuser->solve(field.before, dt * carried.kappa, rule, field.held, field.values, carried.name.c_str());
         }
     }
     real max_dt(const MacState<D>& s) const override {
         real limit = infinity;
         for (const auto& carried : list)
-            if (time == Time::explicit_) limit = std::min(limit, explicit_limit<D>(carried.kappa, s.u.h));
+            if (rule.time == Time::explicit_) limit = std::min(limit, explicit_limit<D>(carried.kappa, s.u.h));
         return limit;
     }
     std::size_t bytes() const override {
         std::size_t total = 0;
         for (const auto& carried : list) total += carried.diffuser ? carried.diffuser->bytes() : 0;
         return total;
+    }
+
+private:
+    NamedField<D>& prepare(MacState<D>& s, Carried& carried) const {
+        auto& field = s.field(carried.name);
+        if (!carried.diffuser) carried.diffuser.emplace(all_cells<D>(s.extent()), s, field.boundary, Beyond::no_flux, s.extent());
+        if (s.solid.any())
+            set_mask(carried.diffuser->mask(), s.extent(), [&](const Index<D>& I) { return s.cells(I) == poisson::Cell::fluid; });
+        return field;
     }
 };
 

@@ -5,6 +5,7 @@
 #include "core/types.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -19,6 +20,8 @@ struct FrameOptions {
     bool faces = false;                    // also an image for each axis with the face components as they are, at the faces' centres
     Compression compression = Compression::zlib;
     bool single_precision = false;
+    /// 1 for each cell that a solid takes at a time: ParaView draws nothing there. Empty: there are no solids.
+    std::function<std::vector<std::uint8_t>(const GridView& grid, real t)> solid = {};
 };
 
 /// Whether this build can write frames at all (WEIR_VTK).

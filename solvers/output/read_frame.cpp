@@ -60,7 +60,7 @@ void read_image(const std::filesystem::path& file, int dim, FrameData& frame) {
     }
     for (int i = 0; i < image->GetCellData()->GetNumberOfArrays(); ++i) {
         vtkDataArray* array = image->GetCellData()->GetArray(i);
-        frame.cells[array->GetName()] = components_of(*array);
+        if (array != image->GetCellGhostArray()) frame.cells[array->GetName()] = components_of(*array);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -13,6 +14,10 @@ namespace weir::output {
 namespace {
 
 using json = nlohmann::ordered_json;
+
+const std::string status_key = ",\n \"status\": ";
+constexpr std::size_t status_room = 400;  // characters, blanks included
+constexpr auto replace_bad_text = json::error_handler_t::replace;
 
 json scene_json(const scene::Scene& scene) {
     json overrides = json::array();
@@ -81,8 +86,19 @@ void RunLog::resume(std::int64_t last) {
         if (step.is_object() && step.value("step", std::int64_t{0}) <= last) steps_.push_back(step.dump());
 }
 
+bool RunLog::overwrite_status(const std::string& status) const {
+    const std::string text = json(status.substr(0, std::min(status.find('\n'), status_room / 2))).dump(-1, ' ', true, replace_bad_text);
+    if (text.size() > status_room) return false;
+    std::fstream file(file_, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(head_.size() + status_key.size()));
+    file << text << std::string(status_room - text.size(), ' ') << std::flush;
+    return file.good();
+}
+
 void RunLog::write() const {
-    std::string text = head_ + ",\n \"status\": " + json(status_).dump() + ",\n \"series\": " + json(series_).dump() +
+    std::string status = json(status_).dump();
+    status.resize(std::max(status.size(), status_room), ' ');
+    std::string text = head_ + status_key + status + ",\n \"series\": " + json(series_).dump() +
                        ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);
     json measured = json::object();
     for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);

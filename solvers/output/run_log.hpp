@@ -29,6 +29,9 @@ public:
     void resume(std::int64_t last);
     /// Replaces the file. Throws OutputError.
     void write() const;
+    /// Sets the status in the file as it stands, which takes no room: what a full disk still allows. Its first line only, cut to the room
+    /// that is kept for it. False where even that fails.
+    bool overwrite_status(const std::string& status) const;
 
 private:
     std::filesystem::path file_;

@@ -7,6 +7,7 @@
 #ifdef WEIR_HAS_VTK
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
@@ -16,6 +17,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 #endif
@@ -80,6 +82,14 @@ void stamp(vtkDataObject& data, real t) {
     data.GetFieldData()->AddArray(time);
 }
 
+/// Cells that VTK's filters leave out.
+vtkSmartPointer<vtkUnsignedCharArray> hidden(const std::vector<std::uint8_t>& solid) {
+    auto array = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    array->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (const std::uint8_t one : solid) array->InsertNextValue(one ? vtkDataSetAttributes::HIDDENCELL : 0);
+    return array;
+}
+
 template <class Writer>
 std::string bytes_of(vtkDataObject* data, const FrameOptions& options) {
     vtkNew<Writer> writer;
@@ -117,6 +127,7 @@ std::string image_bytes(const FieldSet& fields, real t, const FrameOptions& opti
         if (field.where == Where::particle || !chosen(options, field)) continue;
         data->GetCellData()->AddArray(field.where == Where::face ? at_centres(field, fields.grid, options) : as_it_is(field, options));
     }
+    if (options.solid) data->GetCellData()->AddArray(hidden(options.solid(fields.grid, t)));
     stamp(*data, t);
     return bytes_of<vtkXMLImageDataWriter>(data, options);
 }

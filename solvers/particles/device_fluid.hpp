@@ -138,6 +138,7 @@ public:
 
     Memory x, v, x_star, density, carried;            // state, double precision
     Memory order, a, b, neighbours, list;             // sorted particles: owners, float4, their neighbours
+    Memory clamps;                                    // how often walls and solids put a particle back, and from how far
     Memory near_solid, terms, poses;                  // of solids: sorted particles near one, what they add there; where they are
     Memory state_params, wall_params, kernel_params;  // constants
     const Memory& parts() const { return parts_; }
@@ -151,6 +152,7 @@ private:
     void exclusive_sums(int count, const Memory& in, const Memory& out);
     void build_list(const CellGrid& grid);
     void grow_list(int needed);
+    void count_clamps();
     void reorder();
     void cross_sides();
     void place_solids();
@@ -169,6 +171,7 @@ private:
     real support_ = 0;
     DeviceEffects<D> effects_;
     real speed_ = 0;
+    std::uint32_t clamps_seen_ = 0;
     Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;
     Memory start_, members_, blocks_, parts_, needed_;
     std::size_t cells_room_ = 0;

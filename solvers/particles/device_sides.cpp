@@ -18,7 +18,7 @@ void DeviceFluid<D>::let_in(real dt) {
     if (emitters.empty()) return;
     std::array<std::vector<real>, D> places, velocities;
     emitters.emit(host_.time, dt, [&](const Vec<D>& at, const Vec<D>& velocity) {
-        const Vec<D> kept = host_.domain.kept(at);
+        const Vec<D> kept = host_.domain.kept(at, host_.clamps);
         for (std::size_t axis = 0; axis < D; ++axis) places[axis].push_back(kept[axis]), velocities[axis].push_back(velocity[axis]);
     });
     append(places, velocities);

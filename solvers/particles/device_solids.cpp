@@ -63,7 +63,7 @@ void DeviceFluid<D>::pass_time(real dt) {
 
 template <int D>
 void DeviceFluid<D>::meet_solids() {
-    if (solid_) run("meet_solids", {count(), state_params, wall_params, poses, a, near_solid, terms});
+    if (solid_) run("meet_solids", {count(), state_params, wall_params, poses, clamps, a, near_solid, terms});
 }
 
 template <int D>

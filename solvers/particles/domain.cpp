@@ -9,7 +9,7 @@ Domain<D>::Domain(const scene::Scene& scene) : sides(scene), solids(scene.root()
     lo = scene.vec<D>("grid.origin");
     hi = lo + size;
     spacing = size[0] / cells[0];
-    margin = 1e-3 * spacing;
+    margin = wall_margin * spacing;
     for (int a = 0; a < D; ++a) {
         keep_lo[a] = walled(a, 0) ? lo[a] + margin : -infinity;
         keep_hi[a] = walled(a, 1) ? hi[a] - margin : infinity;

@@ -2,6 +2,7 @@
 #pragma once
 #include "geometry/sides.hpp"
 #include "geometry/solids.hpp"
+#include "particles/clamps.hpp"
 #include "particles/kernels.hpp"
 #include "particles/pairs.hpp"
 #include "particles/passes.hpp"
@@ -37,6 +38,12 @@ struct Domain {
         if (!solids.empty()) x = solids.push_out(x, margin, 1e-3 * spacing);
         for (int a = 0; a < D; ++a) x[a] = std::min(std::max(x[a], keep_lo[a]), keep_hi[a]);
         return x;
+    }
+    /// The same, and what that corrected.
+    Vec<D> kept(const Vec<D>& x, Clamps& clamps) const {
+        const Vec<D> y = kept(x);
+        if (const real by = norm(y - x); by > least_clamp * spacing) clamps.add(1, by);
+        return y;
     }
     Vec<D> wrapped(Vec<D> x) const;
     /// Beyond an open side (where it is taken out), or, which must never be, beyond a wall or inside a solid.

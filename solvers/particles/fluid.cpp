@@ -124,6 +124,8 @@ std::vector<Integral> Fluid<D>::integrals() const {
                     })});
     list.push_back({"max_speed", "m/s", max_speed()});
     list.push_back({"outside", "1", block_sum(n, [&](int i) { return domain.outside(position(i)) ? 1.0 : 0.0; })});
+    list.push_back({"clamped", "1", static_cast<real>(clamps.count)});
+    list.push_back({"clamp_depth", "1", clamps.farthest / domain.spacing});
     list.push_back({"mean_height", "m", n ? block_sum(n, [&](int i) { return position(i)[1] - domain.lo[1]; }) / n : 0});
     list.push_back({"mean_density", "kg/m^3", n ? block_sum(n, [&](int i) { return density[static_cast<std::size_t>(i)]; }) / n : 0});
     return list;
@@ -140,6 +142,7 @@ void Fluid<D>::save(Checkpoint& to) const {
     to.put("particles.carried", carried);
     to.put("particles.clock", std::vector<real>{time, next_id});
     to.put_value("particles.steps", steps);
+    to.put_value("particles.clamps", clamps);
 }
 
 template <int D>
@@ -156,6 +159,7 @@ void Fluid<D>::restore(const Checkpoint& from) {
     time = clock.at(0);
     next_id = clock.at(1);
     steps = from.get_value<std::int64_t>("particles.steps");
+    if (from.has("particles.clamps")) clamps = from.get_value<Clamps>("particles.clamps");
     if (!domain.solids.empty()) domain.solids.set_time(time);
 }
 

@@ -8,8 +8,8 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
     own.keys.push_back(std::move(initial));
     own.keys.push_back(sinks_key());
     const auto shared = effect_schemas();
-    for (const char* key : {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters.temperature", "emitters.smoke",
-                            "initial.temperature", "initial.smoke"})
+    for (const char* key : {"time.stop_when_steady", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters.temperature",
+                            "emitters.smoke", "initial.temperature", "initial.smoke"})
         own.without.push_back(key);
     own.effects.insert(own.effects.begin(), shared.begin(), shared.end());
     return own;

@@ -33,6 +33,25 @@ inline void store_numbers(float* to, int first, int count, vf value) {
 }
 inline vf kept(vf x, const WallParams* w, int axis) { return lower(higher(x, broadcast(w->keep_lo[axis])), broadcast(w->keep_hi[axis])); }
 
+/// Adds the lanes that walls put back. Squares of floats that are not negative are ordered as their bits are.
+inline void tally_clamps(ClampTally& tally, vf distance2, int count, const int* order, int particles) {
+    if (!any_below(-distance2, -tally.least2)) return;
+    long long times = 0;
+    float farthest2 = 0;
+    for (int l = 0; l < count; ++l) {
+        if (!(distance2[l] > tally.least2) || order[l] >= particles) continue;
+        ++times;
+        farthest2 = distance2[l] > farthest2 ? distance2[l] : farthest2;
+    }
+    if (times == 0) return;
+    __atomic_fetch_add(&tally.count, times, __ATOMIC_RELAXED);
+    float before;
+    __atomic_load(&tally.farthest2, &before, __ATOMIC_RELAXED);
+    while (farthest2 > before &&
+           !__atomic_compare_exchange(&tally.farthest2, &before, &farthest2, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+    }
+}
+
 /// Walls and solids at the particles of one slice (walls_combined). Most slices have none near; one near a wall is near one or two.
 inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int first) {
     const vf zero = broadcast(0);

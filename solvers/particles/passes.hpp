@@ -46,6 +46,12 @@ struct ListJob {
     int* neighbours = nullptr;     // of each particle
 };
 
+/// How often walls put a particle back, and the square of the largest distance; a square of less than least2 is rounding.
+struct ClampTally {
+    long long count = 0;
+    float farthest2 = 0, least2 = 0;
+};
+
 /// What the passes of PBF read and write. Null pointers: not wanted.
 struct PbfPass {
     const single::PbfParams* p = nullptr;
@@ -58,6 +64,9 @@ struct PbfPass {
     float* multiplier = nullptr;   // sum of lambda over the iterations; null: not kept
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
+    ClampTally* clamps = nullptr;  // of the corrections
+    const int* order = nullptr;    // sorted particles from `particles` on are images, which are not counted
+    int particles = 0;
 };
 
 /// What the passes over velocities read and write: float4 arrays.

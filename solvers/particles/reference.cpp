@@ -143,7 +143,7 @@ std::vector<double> ReferencePbf::lambdas(const std::vector<Point>& x, std::vect
     return lambda;
 }
 
-std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const std::vector<double>& lambda) const {
+std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const std::vector<double>& lambda, Clamps* clamps) const {
     std::vector<Point> to = x;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
@@ -152,7 +152,13 @@ std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const st
             const double factor = functions[kernel].correction(r2, lambda[i] + lambda[j], &p);
             for (std::size_t a = 0; a < 3; ++a) move[a] += factor * d[a];
         });
-        for (std::size_t a = 0; a < 3; ++a) to[i][a] = std::clamp(x[i][a] + move[a], walls.keep_lo[a], walls.keep_hi[a]);
+        double back2 = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double free = x[i][a] + move[a];
+            to[i][a] = std::clamp(free, walls.keep_lo[a], walls.keep_hi[a]);
+            back2 += (to[i][a] - free) * (to[i][a] - free);
+        }
+        if (clamps && back2 > least_back * least_back) clamps->add(1, std::sqrt(back2));
     }
     return to;
 }

@@ -26,6 +26,7 @@ struct ReferencePairs {
 /// The pair physics of PBF over all pairs.
 struct ReferencePbf : ReferencePairs {
     plain::PbfParams p{};
+    double least_back = 0;
 
     /// Lines 5-7 of algorithm 1: all pairs closer than the support at the predicted positions; kept through the iterations.
     void find_neighbours(const std::vector<Point>& x);
@@ -33,8 +34,8 @@ struct ReferencePbf : ReferencePairs {
     std::vector<double> densities(const std::vector<Point>& x) const;
     /// What this iteration adds to lambda. multiplier: the sums so far, updated; nullptr: every iteration starts from none.
     std::vector<double> lambdas(const std::vector<Point>& x, std::vector<double>* multiplier = nullptr) const;
-    /// x + correction, kept inside the walls.
-    std::vector<Point> corrected(const std::vector<Point>& x, const std::vector<double>& lambda) const;
+    /// x + correction, kept inside the walls; what those put back by more than least_back is counted.
+    std::vector<Point> corrected(const std::vector<Point>& x, const std::vector<double>& lambda, Clamps* clamps = nullptr) const;
 };
 
 /// The pair physics of SPH over all pairs.

@@ -7,6 +7,17 @@
 
 namespace weir::particles {
 
+namespace {
+
+/// So many and no more: a vector that only resizes takes twice what it had.
+template <class T>
+void resize_exactly(std::vector<T>& v, std::size_t count) {
+    v.reserve(count);
+    v.resize(count);
+}
+
+}  // namespace
+
 void SlicedList::prepare(Chunk& chunk, int t, int slices, int lanes) {
     const int chunks = static_cast<int>(chunks_.size());
     ListChunk& v = chunk.view;
@@ -30,7 +41,7 @@ void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
         throw NumericalFailure("neighbours", "the neighbour list needs more than " + std::to_string(max_bytes >> 20) +
                                                  " MiB: too many particles are closer than the support");
     if (why == Built::needs_entries) {
-        chunk.entries.resize(room);
+        resize_exactly(chunk.entries, room);
         v.entries = chunk.entries.data();
         v.capacity = room;
         return;
@@ -48,7 +59,7 @@ void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
 void SlicedList::make_room_ahead(Chunk& chunk) const {
     ListChunk& v = chunk.view;
     if (v.used + v.used / 4 <= v.capacity) return;
-    chunk.entries.resize(v.used + 3 * v.used / 8);
+    resize_exactly(chunk.entries, v.used + 3 * v.used / 8);
     v.entries = chunk.entries.data();
     v.capacity = chunk.entries.size();
 }

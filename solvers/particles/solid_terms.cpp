@@ -45,13 +45,13 @@ const float* SolidTerms<D>::at(const Pairs&, const float* positions) {
 }
 
 template <int D>
-void SolidTerms<D>::push_out(const Pairs& pairs, float* positions) const {
+void SolidTerms<D>::push_out(const Pairs& pairs, float* positions, Clamps& clamps) const {
     if (domain_.solids.empty()) return;
     parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
         const int k = near_[static_cast<std::size_t>(i)];
         const Vec<D> x = world(positions + 4 * k);
         if (domain_.solids.distance(x) >= domain_.margin) return;
-        const Vec<D> y = domain_.kept(x);
+        const Vec<D> y = pairs.is_image(k) ? domain_.kept(x) : domain_.kept(x, clamps);
         for (int a = 0; a < D; ++a) positions[4 * k + a] = pairs.local(y[a], a);
     });
 }

@@ -23,7 +23,7 @@ public:
         for (const int k : near_) f(k, world(positions + 4 * k), terms_.data() + 4 * k);
     }
     /// Moves marked particles out of solids.
-    void push_out(const Pairs& pairs, float* positions) const;
+    void push_out(const Pairs& pairs, float* positions, Clamps& clamps) const;
 
 private:
     Vec<D> world(const float* four) const {

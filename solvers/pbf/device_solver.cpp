@@ -97,7 +97,8 @@ void DevicePbfSolver<D>::find_lambdas() {
 template <int D>
 void DevicePbfSolver<D>::correct() {
     const auto& f = fluid_;
-    fluid_.run("correct", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.b, f.neighbours, f.list, f.a});
+    fluid_.run("correct",
+               {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.clamps, f.b, f.neighbours, f.list, f.a});
     fluid_.leave_solids();
 }
 

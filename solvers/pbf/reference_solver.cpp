@@ -32,6 +32,7 @@ ReferencePbfSolver<D>::ReferencePbfSolver(const scene::Scene& scene) : Reference
 template <int D>
 ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start) : Base(options, std::move(start)) {
     reference_.p = pbf_params<particles::plain::PbfParams, D>(options_, fluid_.domain.spacing);
+    reference_.least_back = particles::least_clamp * fluid_.domain.spacing;
     this->settle();
 }
 
@@ -75,7 +76,7 @@ void ReferencePbfSolver<D>::predict(real dt) {
         predicted_.clear(), x_star_.clear();
         for (int i = 0; i < fluid_.count(); ++i) {
             Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * fluid_.gravity);
-            predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i)));
+            predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
             x_star_.push_back(particles::point_of(predicted_.back() - fluid_.domain.centre()));
         }
     }
@@ -108,10 +109,10 @@ void ReferencePbfSolver<D>::find_lambdas() {
 template <int D>
 void ReferencePbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
-    x_star_ = reference_.corrected(x_star_, lambda_);
+    x_star_ = reference_.corrected(x_star_, lambda_, &fluid_.clamps);
     const Vec<D> centre = fluid_.domain.centre();
     if (!fluid_.domain.solids.empty())
-        for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x)) - centre);
+        for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x), fluid_.clamps) - centre);
 }
 
 /// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone. slow: see PbfSolver.

@@ -61,8 +61,9 @@ void PbfSolver<D>::predict(real dt) {
     fluid_.time += dt;
     if (!fluid_.domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
     for (auto& axis : x_star_) axis.resize(fluid_.id.size());
-    parallel_for(0, fluid_.count(),
-                 [&](int i) { particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i))); });
+    parallel_for(0, fluid_.count(), [&](int i) {
+        particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
+    });
 }
 
 template <int D>
@@ -134,13 +135,18 @@ void PbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const auto run = options_.pressure_k > 0 ? table.correct_with_pressure : table.correct;
-    const PbfPass job = pass(pairs_.b(), pairs_.a());
+    particles::ClampTally tally{.least2 = static_cast<float>(std::pow(particles::least_clamp * fluid_.domain.spacing, 2))};
+    PbfPass job = pass(pairs_.b(), pairs_.a());
+    job.clamps = &tally;
+    job.order = pairs_.cells().order().data();
+    job.particles = pairs_.particles();
     pairs_.list().each_chunk([&](const ListChunk& chunk) { run(job, chunk); });
+    if (tally.count > 0) fluid_.clamps.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
 }
 
 template <int D>
 void PbfSolver<D>::collide() {
-    solids_.push_out(pairs_, pairs_.a());
+    solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
     pairs_.refresh_images(pairs_.a(), true);
 }
 

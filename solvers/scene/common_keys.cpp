@@ -54,7 +54,7 @@ Key grid() {
             .required = true,
             .keys = {{.name = "cells",
                       .type = Type::integers,
-                      .doc = "Number of cells along each axis. They need not be cubes.",
+                      .doc = "Number of cells along each axis. They need not be cubes, but for particles, whose spacing is their width.",
                       .required = true,
                       .min = 1,
                       .length = -1,
@@ -108,6 +108,13 @@ Key time() {
                       .min = 0,
                       .min_open = true},
                      {.name = "max_dt", .type = Type::number, .doc = "No step is longer.", .unit = "s", .min = 0, .min_open = true},
+                     {.name = "stop_when_steady",
+                      .type = Type::number,
+                      .doc = "End the run after the first step in which no component of the velocity on the grid changed faster than this. "
+                             "A flow that still waits for something to begin is steady too.",
+                      .unit = "m/s^2",
+                      .min = 0,
+                      .min_open = true},
                      {.name = "guard",
                       .type = Type::choice,
                       .doc = "What happens to a step, from `dt` or `cfl`, that is longer than the solver is stable for. substep: it is "

@@ -27,6 +27,7 @@ std::string rows(const std::vector<Key>& keys, const std::string& path) {
         const bool only_nested = key.type == Type::table && key.selector.empty() && !key.keys.empty();
         if (!only_nested) out += row(key, full);
         if (key.type == Type::table && key.selector.empty()) out += rows(key.keys, full);
+        if (key.type == Type::tables && key.selector.empty()) out += rows(key.keys, full + "[]");
     }
     return out;
 }

@@ -4,16 +4,12 @@
 
 #include <fmt/format.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace weir::scene {
 namespace {
-
-double physical_memory() { return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)); }
 
 Domain domain_of(const Table& root) {
     if (!root.has("grid.size") || !root.has("grid.origin")) return {};
@@ -24,20 +20,14 @@ Domain domain_of(const Table& root) {
     return domain;
 }
 
-/// Cells are indexed by int, and the smallest solver keeps about ten numbers a cell.
+/// Cells are indexed by int. Whether they fit into memory only their solver knows (sim/foretold.hpp).
 void check_cells(const Table& root, const Report& report) {
-    constexpr double most = std::numeric_limits<std::int32_t>::max(), bytes_a_cell = 80;
+    constexpr double most = std::numeric_limits<std::int32_t>::max();
     if (!root.has("grid.cells")) return;
     double cells = 1;
     for (const double n : root.numbers("grid.cells")) cells *= n;
-    const double needed = cells * bytes_a_cell, there = physical_memory();
-    constexpr double gigabyte = 1e9;
     if (cells > most)
         report(root.place("grid.cells"), fmt::format("grid.cells makes {:.3g} cells; at most {:.0f} can be numbered", cells, most));
-    else if (needed > there)
-        report(root.place("grid.cells"),
-               fmt::format("grid.cells makes {:.3g} cells, which need at least {:.3g} GB of memory; this machine has {:.3g} GB", cells,
-                           needed / gigabyte, there / gigabyte));
 }
 
 /// A cell must be wider than the rounding of its own coordinates, with three digits to spare.

@@ -1,4 +1,4 @@
-// Rules that tie several keys of a scene together: both ends of a periodic axis, corners of a box, the size of memory.
+// Rules that tie several keys of a scene together: both ends of a periodic axis, corners of a box, the number of cells.
 #pragma once
 #include "scene/scene.hpp"
 

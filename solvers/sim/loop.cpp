@@ -74,7 +74,8 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
         watcher.on_step(simulation, report, std::chrono::duration<double>(clock::now() - start).count());
         if (simulation.at_frame()) watcher.on_frame(simulation);
         if (simulation.at_frame() || simulation.steps() % good_state_every == 0) good.keep(simulation);
-        const bool asked = options.checkpoint_every > 0 && simulation.steps() % options.checkpoint_every == 0;
+        const bool asked = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 ||
+                                                            simulation.finished());  // so that a later end can be asked for
         const int stops = options.stop_requests();
         const bool stop = !simulation.finished() && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
         if (asked || stop) save(simulation, options.folder);

@@ -4,7 +4,9 @@
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "sim/finite.hpp"
+#include "sim/foretold.hpp"
 #include "sim/registry.hpp"
+#include "sim/steadiness.hpp"
 
 #include <fmt/format.h>
 
@@ -43,6 +45,12 @@ std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const std::vector
     return sim::kind_named(scene.solver(), kinds).make(scene);
 }
 
+/// Looked at before anything of it is built.
+scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
+    sim::require_memory(scene, kinds);
+    return scene;
+}
+
 void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
     if (!scene.has("output.fields")) return;
     std::vector<std::string> known;
@@ -68,18 +76,20 @@ Simulation::Simulation(const std::filesystem::path& scene, const std::vector<sce
 Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::registry()) {}
 
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
-    : scene_(unread(std::move(scene))),
+    : scene_(unread(fitting(std::move(scene), kinds))),
       solver_(make_solver(scene_, kinds)),
       probes_(scene_, *solver_),
       end_(scene_.number("time.end")),
       every_(scene_.root().number_or("output.every", infinity)),
       fixed_dt_(scene_.root().number_or("time.dt", 0)),
       max_dt_(scene_.root().number_or("time.max_dt", infinity)),
-      guard_(scene_.text("time.guard") != "off") {
+      guard_(scene_.text("time.guard") != "off"),
+      steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)) {
     check_output_fields(scene_, solver_->fields());
     if (auto ignored = scene::ignored_keys(scene_, sim::kind_named(scene_.solver(), kinds).schema); !ignored.empty())
         scene_.refuse(std::move(ignored));
     probes_.sample(*solver_);
+    if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }
 
 StepReport Simulation::step() { return step_towards(next_target()); }
@@ -105,11 +115,12 @@ StepReport Simulation::step_towards(real target) {
         throw;
     }
     ++steps_;
+    if (steady_rate_ > 0) steady_ = sim::change_and_keep(fields(), last_velocity_) <= steady_rate_ * report.dt;
     if (std::string concern = concerned_ ? std::string() : solver_->concern(); !concern.empty()) {
         concerned_ = true;
         warnings_.push_back(scene_.file() + ": " + concern);
     }
-    at_frame_ = reached(frame_target);
+    at_frame_ = reached(frame_target) || steady_;
     if (at_frame_) ++frame_;
     probes_.sample(*solver_);
     return report;
@@ -175,6 +186,7 @@ void Simulation::restore(const Checkpoint& from) {
         steps_ = from.get_value<std::int64_t>("sim.steps");
         frame_ = from.get_value<std::int64_t>("sim.frame");
         at_frame_ = from.get_value<bool>("sim.at_frame");
+        if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
     } catch (const BadInput&) {
         throw;
     } catch (const std::runtime_error& error) {

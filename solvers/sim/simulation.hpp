@@ -37,7 +37,9 @@ public:
     /// limit and why; the solver's own concern about the state.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
-    bool finished() const { return reached(end_); }
+    bool finished() const { return reached(end_) || steady_; }
+    /// The run ended because nothing changed any more (time.stop_when_steady).
+    bool steady() const { return steady_; }
     real time() const { return solver_->time(); }  // [s]
     real end_time() const { return end_; }         // [s]
     std::int64_t steps() const { return steps_; }
@@ -73,8 +75,10 @@ private:
     sim::Probes probes_;
     real end_ = 0, every_ = infinity, fixed_dt_ = 0, max_dt_ = infinity;  // fixed_dt_ 0: the solver advises
     std::int64_t steps_ = 0, frame_ = 0;
-    bool at_frame_ = true, guard_ = true;
-    bool split_ = false, concerned_ = false;  // whether a step was taken in parts, or the solver had a concern
+    bool at_frame_ = true, guard_ = true, steady_ = false;
+    real steady_rate_ = 0;                          // [m/s^2]; 0: not asked for
+    std::vector<std::vector<real>> last_velocity_;  // where it is, that of the last step
+    bool split_ = false, concerned_ = false;        // whether a step was taken in parts, or the solver had a concern
     std::vector<std::string> warnings_;
 };
 

@@ -104,7 +104,7 @@ void drift(particles::Fluid<D>& fluid, real dt) {
     const auto& domain = fluid.domain;
     if (!domain.solids.empty()) fluid.domain.solids.set_time(fluid.time);
     parallel_for(0, fluid.count(), [&](int i) {
-        const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = domain.kept(free);
+        const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = domain.kept(free, fluid.clamps);
         Vec<D> kept = u;
         for (int a = 0; a < D; ++a)
             if (x[a] != free[a]) kept[a] = (x[a] - fluid.position(i)[a]) / dt;

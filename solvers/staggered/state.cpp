@@ -59,8 +59,9 @@ const Grid<real, D>* MacState<D>::find(std::string_view name) const {
 }
 
 template <int D>
-Grid<real, D>& MacState<D>::operator[](std::string_view name) {
-    if (auto* field = find(name)) return *field;
+NamedField<D>& MacState<D>::field(std::string_view name) {
+    for (auto& field : fields)
+        if (field.name == name) return field;
     throw std::logic_error("no effect asked for the field \"" + std::string(name) + "\"");
 }
 
@@ -100,7 +101,7 @@ template <int D>
 std::size_t MacState<D>::bytes() const {
     std::size_t total = u.bytes() + p.size() * sizeof(real) + cells.size();
     for (const auto& grid : solid.open) total += 2 * grid.size() * sizeof(real);
-    for (const auto& field : fields) total += field.values.size() * sizeof(real) + field.before.bytes();
+    for (const auto& field : fields) total += field.values.size() * sizeof(real) + field.before.bytes() + field.held.size() * sizeof(Held);
     for (const auto& component : before.face) total += component.bytes();
     for (const auto& field : scratch) total += field.values.size() * sizeof(real);
     return total;

@@ -15,12 +15,23 @@
 
 namespace weir::staggered {
 
+/// A cell whose value a source holds.
+struct Held {
+    std::size_t cell;
+    real value;
+};
+
 template <int D>
 struct NamedField {
     std::string name;
     Grid<real, D> values;
-    Padded<D> before;      // as it was when the (sub)step began, with ghosts; allocated by solvers that use it
-    Boundary<D> boundary;  // what the sides do to it
+    Padded<D> before;          // as it was when the (sub)step began, with ghosts; allocated by solvers that use it
+    Boundary<D> boundary;      // what the sides do to it
+    std::vector<Held> held{};  // throughout this step, in the order in which they are set
+
+    void hold() {
+        for (const Held& h : held) values[h.cell] = h.value;
+    }
 };
 
 /// The solids as the faces see them (Batty, Bertails & Bridson 2007; Ng, Min & Gibou 2009). Empty grids without solids.
@@ -55,7 +66,8 @@ struct MacState {
     Grid<real, D>* find(std::string_view name);
     const Grid<real, D>* find(std::string_view name) const;
     /// The carried field; asking for one that does not exist is a programming error.
-    Grid<real, D>& operator[](std::string_view name);
+    Grid<real, D>& operator[](std::string_view name) { return field(name).values; }
+    NamedField<D>& field(std::string_view name);
     Grid<real, D>& scratch_field(std::string_view name);
     void allocate_solids();
 

@@ -15,7 +15,7 @@ scene::SolverKind transport_kind() {
     schema.name = "transport";
     schema.doc = "Cell fields carried by a prescribed velocity, to measure advection schemes.";
     schema.keys = {scheme_key(AdvectionOptions::keys()), PrescribedFlow<2>::key(), initial_keys({"level_set", "tracer"})};
-    schema.without = {"fluid", "solids", "emitters", "initial.velocity"};
+    schema.without = {"time.stop_when_steady", "fluid", "solids", "emitters", "initial.velocity"};
     return {schema, make_without_surface<TransportSolver>};
 }
 
@@ -28,7 +28,7 @@ scene::SolverKind poisson_kind() {
     schema.name = "poisson";
     schema.doc = "One manufactured pressure problem on the unit square or cube, solved in one step.";
     schema.keys = {scheme_key({PoissonChoice::key()}), problem};
-    schema.without = {"grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial"};
+    schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial"};
     return {schema, make_without_surface<PoissonProblemSolver>};
 }
 

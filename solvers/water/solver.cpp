@@ -14,7 +14,7 @@ StepReport Water<D>::step(real dt) {
     redistribute_markers();                       // no holes, no heaps
     correct_surface(dt);                          // φ joins escaped markers, and is a distance again
     momentum_to_faces(dt);                        // u* = what the markers carry, or D u/Dt = 0 on the grid
-    forces(dt);                                   // u* += dt f
+    forces(dt);                                   // (I − dt ν∇²) u* = ..., u* += dt f
     const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
@@ -68,16 +68,17 @@ void Water<D>::momentum_to_faces(real dt) {
     }
 }
 
+/// Friction acts on the motion as it was; forces come after it and meet the pressure that holds them, so that water at rest feels none.
+/// A steady flow is then that of the forces plus θ dt times them (Lie's splitting, first order).
 template <int D>
 void Water<D>::forces(real dt) {
-    effects_.apply(Stage::force, state_, dt, passes_);
-    {
-        const auto timed = passes_.time("walls");
-        set_fixed_faces();
+    if (viscosity_) {
+        const auto timed = passes_.time("effect viscosity");
+        viscosity_->apply(state_, surface_, closed_, dt);
     }
-    if (!viscosity_) return;
-    const auto timed = passes_.time("effect viscosity");
-    viscosity_->apply(state_, surface_, closed_, dt);
+    effects_.apply(Stage::force, state_, dt, passes_);
+    const auto timed = passes_.time("walls");
+    set_fixed_faces();
 }
 
 template <int D>

@@ -84,6 +84,13 @@ TEST("--backend runs particles on the reference; what it has not got, and an unk
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out"));
 }
 
+TEST("--explain says so where a scene is not valid without an effect, whose cost is then no difference of two runs") {
+    const std::string drop = std::string(WEIR_SOURCE_DIR) + "/cases/couette/sph.toml";
+    const auto answer = weir_says({"run", drop, "--explain", "--set", "grid.cells=[8, 16]"});
+    EXPECT_EQ(answer.code, 0) << answer.text;
+    EXPECT_NE(answer.text.find("the scene is not valid without it"), std::string::npos) << answer.text;
+}
+
 TEST("--explain tells what was called for, what was built and what was left out, and writes nothing") {
     TemporaryFolder folder;
     const auto answer = weir_says({"run", smoke, "--explain", "--out", folder.path() / "out"});
@@ -118,7 +125,8 @@ TEST("run.json times each effect by its name") {
 TEST("weir cost --plan tells what a scene will cost and writes nothing; weir plan chooses, or says that nothing reaches it") {
     const auto forecast = weir_says({"cost", "--plan", smoke});
     EXPECT_EQ(forecast.code, 0) << forecast.text;
-    for (const char* what : {"temperature [K]", "bytes as it starts", "effect buoyancy", "all", "ns a cell", "rates measured now"})
+    for (const char* what :
+         {"temperature [K]", "bytes a cell", "frames", " steps", "effect buoyancy", "all", "ns a cell", "rates measured now"})
         EXPECT_NE(forecast.text.find(what), std::string::npos) << what << "\n" << forecast.text;
     const std::string tables = std::string(WEIR_SOURCE_DIR) + "/results/cost", study = std::string(WEIR_SOURCE_DIR) + "/cases/taylor_green";
     const auto chosen = weir_says({"plan", study, "--tables", tables, "--as-measured", "--error", "20%", "--budget", "10s"});

@@ -32,3 +32,22 @@ message("${said}")
 if(failed OR NOT said MATCHES "t = 0.6 s, [0-9]+ steps, max p = [0-9.e+-]+ Pa")
   message(FATAL_ERROR "the example did not answer as it should")
 endif()
+
+execute_process(COMMAND ${BUILD}/example/example ${PARTICLES} OUTPUT_VARIABLE said RESULT_VARIABLE failed)
+message("${said}")
+if(failed OR NOT said MATCHES "t = [0-9.]+ s, [0-9]+ steps, max .u. = [0-9.e+-]+ m/s of [0-9]+ particles")
+  message(FATAL_ERROR "the example did not answer a scene of particles as it should")
+endif()
+execute_process(COMMAND ${BUILD}/example/example nowhere.toml ERROR_VARIABLE said RESULT_VARIABLE failed)
+if(NOT failed EQUAL 2 OR NOT said MATCHES "nowhere.toml: there is no such file")
+  message(FATAL_ERROR "the example said of a scene that is not there: ${said}")
+endif()
+
+# The installed executable runs a case by its name, outside the clone.
+file(MAKE_DIRECTORY ${BUILD}/installed/elsewhere)
+execute_process(COMMAND ${BUILD}/installed/bin/weir run smoke_obstacle_2d --set time.end=0.01 --set grid.cells=[16,32] --quiet
+  WORKING_DIRECTORY ${BUILD}/installed/elsewhere RESULT_VARIABLE failed)
+if(failed OR NOT EXISTS ${BUILD}/installed/share/weir/cases/smoke_obstacle_2d/scene.toml
+   OR NOT EXISTS ${BUILD}/installed/elsewhere/out/smoke_obstacle_2d/run.json)
+  message(FATAL_ERROR "the installed weir did not run a case by its name")
+endif()

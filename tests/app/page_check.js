@@ -50,6 +50,25 @@ const checkLayout = () => {
     if (size < 9) wrong.push('letters of ' + size.toFixed(1) + ' px in a figure');
   }
 };
+const checkContents = () => {
+  const contents = document.querySelector('.contents');
+  const studies = document.querySelectorAll('article[id] > h3').length;
+  if (contents.querySelectorAll('a').length < studies) wrong.push('the contents leave studies out');
+  scrollTo({top: 3000, behavior: 'instant'});
+  const top = contents.getBoundingClientRect().top;
+  if (Math.abs(top) > 1) wrong.push('the contents are out of sight: ' + top + ' px');
+  scrollTo({top: 0, behavior: 'instant'});
+  for (const figure of document.querySelectorAll('figure svg'))
+    if (figure.getBoundingClientRect().right > innerWidth + 1) { wrong.push('a figure is cut'); break; }
+  const large = document.getElementById('large');
+  for (const one of [document.querySelector('img.opens'), document.querySelector('figure svg')]) {
+    if (!one) continue;
+    one.dispatchEvent(new MouseEvent('click', {bubbles: true}));
+    if (!large.open || !large.querySelector('div > *')) wrong.push('a click on a picture does not open it');
+    large.close();
+    large.querySelector('div').replaceChildren();  // the page does it a moment later
+  }
+};
 const checkCases = () => {
   const cases = [...document.querySelectorAll('details.case')];
   if (cases.length === 0) { wrong.push('no cases'); return; }
@@ -67,7 +86,7 @@ const checkCases = () => {
   if (cases.some(one => one.hidden)) wrong.push('an empty filter hides cases');
 };
 addEventListener('load', () => {
-  for (const check of [checkLayout, checkTables, checkLinks, checkCases, checkLayout]) try {
+  for (const check of [checkLayout, checkTables, checkLinks, checkContents, checkCases, checkLayout]) try {
     check();
   } catch (e) {
     wrong.push(check.name + ': ' + e);

@@ -52,7 +52,7 @@ public:
     }
     /// Its exit code; 128 + the signal that killed it.
     int wait() {
-        if (pid_ > 0) waitpid(pid_, &status_, 0);
+        if (rusage usage{}; pid_ > 0 && wait4(pid_, &status_, 0, &usage) == pid_) most_kilobytes_ = usage.ru_maxrss;
         pid_ = 0;
         return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
     }
@@ -63,12 +63,15 @@ public:
             usleep(1000);
         }
     }
+    /// The most memory that it had at a time, once it was waited for [bytes].
+    double most_memory() const { return 1024.0 * static_cast<double>(most_kilobytes_); }
     std::string said() const { return text_of(log_); }
 
 private:
     std::filesystem::path log_;
     pid_t pid_ = -1;
     int status_ = 0;
+    long most_kilobytes_ = 0;
 };
 
 /// Every file below `a` but run.json (it holds milliseconds) and checkpoints has a twin below `b` with the same bytes, and none is missing.

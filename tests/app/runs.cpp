@@ -111,6 +111,41 @@ TEST("a disk that fills is a clear error with exit 2, and the earlier frames sta
     EXPECT_NE(process.said().find("cannot write"), std::string::npos) << process.said();
     EXPECT_NE(process.said().find("File too large"), std::string::npos) << process.said();
     EXPECT_GE(weir::test::read_whole_series(out / "grid.pvd"), 2);
+    const auto status = nlohmann::json::parse(text_of(out / "run.json"))["status"].get<std::string>();
+    EXPECT_TRUE(status.starts_with("failed: cannot write")) << status;
+}
+
+TEST("a finished run says how to see it; to restart it finds nothing left to do, and goes on to a later end") {
+    TemporaryFolder folder;
+    const auto out = folder.path() / "out";
+    Process first({"run", scene("smoke"), "--out", out, "--threads", "1", "--set", "time.end=0.1", "--checkpoint-every", "1000"},
+                  folder.path() / "log");
+    EXPECT_EQ(first.wait(), 0);
+    EXPECT_NE(first.said().find("weir view " + out.string()), std::string::npos) << first.said();
+    EXPECT_NE(first.said().find("weir picture " + out.string()), std::string::npos) << first.said();
+    const auto before = text_of(out / "run.json");
+    Process second({"run", "--restart", out}, folder.path() / "log");
+    EXPECT_EQ(second.wait(), 0);
+    EXPECT_NE(second.said().find("nothing is left to do"), std::string::npos) << second.said();
+    EXPECT_NE(second.said().find("--set time.end="), std::string::npos) << second.said();
+    EXPECT_EQ(text_of(out / "run.json"), before);
+    run({"run", "--restart", out, "--threads", "1", "--set", "time.end=0.6"}, folder.path() / "log");
+    EXPECT_EQ(weir::test::read_whole_series(out / "grid.pvd"), weir::test::read_whole_series(whole_run("smoke") / "grid.pvd"));
+    fs::remove(out / "checkpoint.weir");
+    Process third({"run", "--restart", out}, folder.path() / "log");
+    EXPECT_EQ(third.wait(), 2);
+    EXPECT_NE(third.said().find("has no checkpoint to continue from"), std::string::npos) << third.said();
+}
+
+TEST("a case is run by its name from anywhere; another name is refused with where was looked") {
+    TemporaryFolder folder;
+    const auto out = folder.path() / "out";
+    run({"run", "smoke_obstacle_2d", "--out", out, "--set", "time.end=0.01", "--set", "grid.cells=[16,24]"}, folder.path() / "log");
+    EXPECT_TRUE(fs::exists(out / "run.json"));
+    Process unknown({"run", "smoke_obstacle_2", "--out", out}, folder.path() / "log");
+    EXPECT_EQ(unknown.wait(), 2);
+    EXPECT_NE(unknown.said().find("did you mean \"smoke_obstacle_2d\"?"), std::string::npos) << unknown.said();
+    EXPECT_NE(unknown.said().find("looked in "), std::string::npos) << unknown.said();
 }
 
 }  // namespace

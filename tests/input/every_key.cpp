@@ -116,8 +116,8 @@ std::map<std::string, Said> everything() {
             of_field("smoke", true), walls, open_sides,
             Lines{inflow + ", profile = \"parabolic\" }, x_max = \"outflow\" }", emitter + ", smoke = 1, temperature = 1 } ]",
                   "scheme = { advection = \"maccormack\", interpolation = \"linear\", trace = \"rk2\", limiter = \"clamp\" }",
-                  "scheme = { advection = \"conservative\", flux = \"central\" }", "time.cfl = 0.4", "fluid.density = 2",
-                  "effects.gravity.g = [0, -1]", "effects.buoyancy = { alpha = 1, beta = 1, ambient = 0 }",
+                  "scheme = { advection = \"conservative\", flux = \"central\" }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
+                  "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.buoyancy = { alpha = 1, beta = 1, ambient = 0 }",
                   "effects.confinement = { epsilon = 0.1 }", "effects.diffusion = { scheme = \"explicit\", temperature = 1, smoke = 1 }",
                   "effects.cooling = { rate = 1, ambient = 0 }", "effects.decay = { rate = 1 }",
                   "effects.viscosity = { scheme = \"explicit\" }\nfluid.viscosity = 1"}),
@@ -131,8 +131,8 @@ std::map<std::string, Said> everything() {
         liquid, all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, poisson, grid_velocities, walls, open_sides,
                     Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
                     Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }",
-                          "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "fluid.density = 2", "effects.gravity.g = [0, -1]",
-                          "effects.surface_tension.sigma = 1", "effects.volume_control = {}",
+                          "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "time.stop_when_steady = 0.1", "fluid.density = 2",
+                          "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1", "effects.volume_control = {}",
                           "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"})};
     const Lines flows{"flow = { name = \"constant\", value = [1, 0] }", "flow = { name = \"rotation\", centre = [0, 0], rate = 1 }",
                       "flow = { name = \"single_vortex\", period = 1 }"};

@@ -143,6 +143,46 @@ TEST_IN_2D_AND_3D("a single particle falls like one and ends on the floor") {
     EXPECT_NEAR(solver->fluid().position(0)[1], solver->fluid().domain.margin, 1e-6);
 }
 
+TEST_IN_2D_AND_3D("what walls put back is counted, with how far; what never meets one is not") {
+    NEEDS_BACKEND;
+    auto solver = on_backend<D>(test::box<D>(0.125, 0.125, 0.125), "settle = 0");
+    auto& fluid = solver->fluid();
+    ASSERT_EQ(fluid.count(), 1);
+    const real dt = 0.008, spacing = fluid.domain.spacing, margin = fluid.domain.margin;
+    Fluid<D>::put(fluid.x, 0, Vec<D>::constant(0.5));
+    solver->step(dt);
+    EXPECT_EQ(test::integral(*solver, "clamped"), 0);
+    EXPECT_EQ(test::integral(*solver, "clamp_depth"), 0);
+    auto& again = solver->fluid();
+    Fluid<D>::put(again.x, 0, 0.1 * Vec<D>::unit(1) + 0.5 * (Vec<D>::constant(1) - Vec<D>::unit(1)));
+    Fluid<D>::put(again.v, 0, -20 * Vec<D>::unit(1));
+    solver->step(dt);
+    EXPECT_EQ(test::integral(*solver, "clamped"), 1);
+    // The prediction ends below the floor by this much; a particle alone is not corrected any further.
+    const real below = dt * (20 + 9.81 * dt) - (0.1 - margin);
+    EXPECT_NEAR(test::integral(*solver, "clamp_depth"), below / spacing, 1e-6);  // the device keeps it in single precision
+}
+
+TEST_IN_2D_AND_3D("a block at rest meets no wall; one thrown at a corner is put back as often and as far as SSE2 says") {
+    NEEDS_BACKEND;
+    auto still = on_backend<D>(test::box<D>(1, 0.5, 1));
+    for (int s = 0; s < 20; ++s) still->step(0.004);
+    EXPECT_EQ(test::integral(*still, "clamped"), 0) << "half a spacing is left to every wall";
+    const auto thrown = [](auto& solver) {
+        auto& fluid = solver.fluid();
+        for (int i = 0; i < fluid.count(); ++i) Fluid<D>::put(fluid.v, i, Vec<D>::constant(-10));
+        for (int s = 0; s < 3; ++s) solver.step(0.008);
+    };
+    const std::string liquid = test::box<D>(0.5, 0.5, 0.5), scheme = "settle = 0";
+    auto here = on_backend<D>(liquid, scheme);
+    auto there = test::on_sse2<D>(liquid, scheme);
+    thrown(*here), thrown(*there);
+    const real count = test::integral(*there, "clamped"), depth = test::integral(*there, "clamp_depth");
+    EXPECT_GT(count, here->fluid().count() / 4);
+    EXPECT_NEAR(test::integral(*here, "clamped"), count, 0.02 * count) << "one that only touches the wall may fall on either side";
+    EXPECT_NEAR(test::integral(*here, "clamp_depth"), depth, 1e-3 * depth);
+}
+
 TEST_IN_2D_AND_3D("a tank that has run empty steps and reports nothing; one that is empty from the start is refused") {
     NEEDS_BACKEND;
     auto solver = on_backend<D>(test::box<D>(0.5, 0.5, 0.5));

@@ -112,6 +112,30 @@ TEST_IN_2D_AND_3D("every particle in one cell: the list grows, nothing leaves; a
     EXPECT_THROW(solver->step(1e-5), NumericalFailure);
 }
 
+TEST_IN_2D_AND_3D("what walls put back is counted, with how far; what never meets one is not") {
+    NEEDS_BACKEND;
+    auto solver = on_backend<D>("density = \"summation\"", "");
+    auto& fluid = solver->fluid();
+    fluid.remove_if([](int i) { return i > 0; });
+    const real dt = 0.002, spacing = fluid.domain.spacing, margin = fluid.domain.margin;
+    Fluid<D>::put(fluid.x, 0, Vec<D>::constant(0.5));
+    solver->step(dt);
+    EXPECT_EQ(test::integral(*solver, "clamped"), 0);
+    EXPECT_EQ(test::integral(*solver, "clamp_depth"), 0);
+    auto& again = solver->fluid();
+    const real above = 0.9 * spacing;  // the whole kernel less what the wall holds of it: no density that would push
+    Fluid<D>::put(again.x, 0, above * Vec<D>::unit(1) + 0.5 * (Vec<D>::constant(1) - Vec<D>::unit(1)));
+    Fluid<D>::put(again.v, 0, -100 * Vec<D>::unit(1));
+    solver->step(dt);
+    EXPECT_EQ(test::integral(*solver, "clamped"), 1);
+    EXPECT_NEAR(test::integral(*solver, "clamp_depth"), (100 * dt - (above - margin)) / spacing, 1e-2);  // gravity and the wall's push
+    Checkpoint saved;
+    solver->save(saved);
+    auto other = on_backend<D>("density = \"summation\"", "");
+    other->restore(saved);
+    EXPECT_EQ(test::integral(*other, "clamped"), 1);
+}
+
 TEST_IN_2D_AND_3D("no particle, and one: steps that report nothing, a fall like a stone's") {
     NEEDS_BACKEND;
     const std::string gravity = D == 2 ? "effects.gravity = { g = [0, -9.81] }" : "effects.gravity = { g = [0, -9.81, 0] }";

@@ -16,8 +16,9 @@
 namespace weir::validation {
 namespace {
 
-constexpr int untimed_steps = 2, most_steps = 25, fewest_steps = 5;
+constexpr int untimed_steps = 2, most_steps = 400, fewest_steps = 5;
 constexpr double enough = 0.6;        // seconds for one copy
+constexpr double largest = 65536;     // units of a copy, or of a scene that is measured itself: some tenths of a second to build
 constexpr double fewest_units = 100;  // of a copy: with fewer, what a step costs whatever its size says too much
 
 std::string cells_text(const scene::Scene& scene) { return fmt::format("{}", fmt::join(scene.root().numbers("grid.cells"), " x ")); }
@@ -39,7 +40,7 @@ double median(std::vector<double> list) {
 }
 
 /// The scene with each axis divided by `by`, where that leaves whole numbers of cells.
-std::optional<scene::Scene> coarser(const scene::Scene& scene, int by, const std::vector<scene::SolverSchema>& schemas) {
+std::optional<scene::Scene> divided(const scene::Scene& scene, int by, const std::vector<scene::SolverSchema>& schemas) {
     std::vector<std::string> cells;
     for (const double n : scene.root().numbers("grid.cells")) {
         if (std::fmod(n, by) != 0 || n / by < 4) return std::nullopt;
@@ -54,22 +55,34 @@ std::optional<scene::Scene> coarser(const scene::Scene& scene, int by, const std
     }
 }
 
-/// The finest copies first, each at least a factor 1.5 coarser than the one before.
-std::vector<Rates> measure_copies(const scene::Scene& scene, double units, const std::vector<scene::SolverKind>& kinds) {
-    std::vector<Rates> list;
-    const auto schemas = scene::schemas_of(kinds);
-    double last = 1;
-    for (int by = 2; list.size() < 2 && units / std::pow(by, scene.dim()) >= fewest_units; ++by) {
-        if (by < 1.5 * last) continue;
-        const auto copy = coarser(scene, by, schemas);
-        if (!copy) continue;
-        try {
-            list.push_back(measure_rates(*copy, kinds, enough));
-            last = by;
-        } catch (const std::runtime_error&) {  // what fits the scene may not fit its copy: no liquid in so few cells, say
-        }
+/// Measures a copy, or does not: what fits the scene may not fit its copy (no liquid in so few cells, say).
+bool measure_copy(const scene::Scene& copy, const std::vector<scene::SolverKind>& kinds, std::vector<Rates>& list) {
+    try {
+        list.push_back(measure_rates(copy, kinds, enough));
+        return true;
+    } catch (const std::runtime_error&) {
+        return false;
     }
-    if (list.size() < 2) list = {measure_rates(scene, kinds, enough)};
+}
+
+/// The finest copies first, each at least a factor 1.5 coarser than the one before; none with more units than `largest`.
+std::vector<Rates> measure_copies(const scene::Scene& scene, double units, const std::vector<scene::SolverKind>& kinds) {
+    const auto schemas = scene::schemas_of(kinds);
+    const auto part = [&](double by) { return units / std::pow(by, scene.dim()); };
+    std::vector<Rates> list;
+    double last = 1;
+    for (int by = 2; list.size() < 2 && part(by) >= fewest_units; ++by) {
+        if (by < 1.5 * last || part(by) > largest) continue;
+        const auto copy = divided(scene, by, schemas);
+        if (copy && measure_copy(*copy, kinds, list)) last = by;
+    }
+    if (list.size() == 2 || units <= largest) return list.size() == 2 ? list : std::vector<Rates>{measure_rates(scene, kinds, enough)};
+    list.clear();  // cells that no number divides: copies in about these proportions
+    double cells = 1;
+    for (const double n : scene.root().numbers("grid.cells")) cells *= n;
+    for (const double share : {1.0, 0.25})
+        measure_copy(sim::small_copy(scene, kinds, share * largest * cells / units, sim::Copy::similar), kinds, list);
+    if (list.empty()) throw NumericalFailure("time", "no small copy of this scene makes a step, so that none can be measured");
     return list;
 }
 
@@ -102,6 +115,7 @@ Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKi
         if (i < 0) continue;
         on_the_wall += wall_seconds() - wall;
         seconds.push_back(took);
+        r.least_dt = seconds.size() == 1 ? dt : std::min(r.least_dt, dt), r.most_dt = std::max(r.most_dt, dt);
         spent += took, simulated += dt;
     }
     if (seconds.empty()) throw NumericalFailure("time", "the scene ends before a step can be measured");
@@ -116,26 +130,17 @@ Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKi
 }
 
 Forecast forecast(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
-    static constexpr const char* places[] = {"cells", "faces", "particles"};
-    Simulation simulation(scene, kinds);
-    Forecast f{.solver = scene.solver(), .dim = scene.dim(), .cells = cells_text(scene)};
-    const FieldSet set = simulation.fields();  // as the scene starts
-    for (const FieldView& field : set.fields) {
-        std::size_t values = 0;
-        for (const auto& component : field.data) values += component.size();
-        f.fields.push_back({field.name, field.unit, places[static_cast<std::size_t>(field.where)], values * sizeof(real)});
-    }
-    std::tie(f.count, f.particles) = count_of(scene, set);
-    f.effects = simulation.solver().effects();
-    f.bytes = simulation.solver().bytes();
-    simulation.step();
-    f.bytes_moving = simulation.solver().bytes();
+    Forecast f{.solver = scene.solver(), .dim = scene.dim(), .cells = cells_text(scene), .held = sim::foretell(scene, kinds)};
+    f.particles = f.held.particle_solver;
+    f.count = f.particles ? f.held.particles : f.held.cells;
+    f.output = sim::foretell_output(scene, f.held);
     f.measured = measure_copies(scene, f.count, kinds);
     const auto& at = f.measured;
     const Rates &fine = at.front(), &coarse = at.back();
     // a step looks at everything once, and a solve may take more iterations on more cells; small steps have costs of their own
     f.ms = scaled(f.count, at, fine.ms, coarse.ms, 0.5, 1.4);
     f.dt = scaled(f.count, at, fine.dt, coarse.dt, -2.0 / f.dim, 0);
+    f.least_dt = f.dt * fine.least_dt / fine.dt, f.most_dt = f.dt * fine.most_dt / fine.dt;
     double total = 0;
     for (const Pass& p : fine.passes) {
         f.passes.push_back({p.name, 0, scaled(f.count, at, p.seconds, seconds_of(coarse, p.name), 0.3, 1.6)});
@@ -145,31 +150,46 @@ Forecast forecast(const scene::Scene& scene, const std::vector<scene::SolverKind
     return f;
 }
 
+namespace {
+
+/// A scene that prescribes its step takes so many; else as many as between the longest and the shortest steps that the small runs took.
+std::string steps_text(const Forecast& f, const scene::Scene& scene) {
+    const double end = scene.number("time.end"), longest = scene.root().number_or("time.max_dt", infinity);
+    const auto steps = [&](double dt) { return std::ceil(end / std::min(dt, longest) * (1 - 1e-9)); };
+    const bool fixed = scene.has("time.dt");
+    const double few = fixed ? steps(scene.number("time.dt")) : steps(f.most_dt), many = fixed ? few : steps(f.least_dt);
+    const std::string heading = "the whole scene, if it went on as it begins\n";
+    const double seconds = 1e-3 * f.ms;
+    if (few == many) return heading + fmt::format("  {:.0f} steps, {:.3g} s of computing\n", few, few * seconds);
+    return heading + fmt::format("  {:.0f} to {:.0f} steps, {:.3g} to {:.3g} s of computing\n", few, many, few * seconds, many * seconds);
+}
+
+}  // namespace
+
 std::string forecast_text(const Forecast& f, const scene::Scene& scene) {
     const auto megabytes = [](double bytes) { return fmt::format("{:.4g} MB", bytes / 1e6); };
     const char* unit = f.particles ? "particle" : "cell";
     std::string s = fmt::format("{}, {}D, {} cells", f.solver, f.dim, f.cells);
     if (f.particles) s += fmt::format(", {:.0f} particles", f.count);
     s += "\nfields\n";
-    for (const PlannedField& field : f.fields)
-        s += fmt::format("  {:22} {:9} {:>10}\n", field.unit.empty() ? field.name : field.name + " [" + field.unit + "]", field.where,
-                         megabytes(static_cast<double>(field.bytes)));
-    const auto each = [&](std::size_t bytes) { return static_cast<double>(bytes) / f.count; };
-    s += fmt::format("memory\n  {} bytes as it starts, {:.1f} a {}\n", f.bytes, each(f.bytes), unit);
-    s += fmt::format("  {} bytes after its first step, {:.1f} a {}; lists grow with what moves\neffects\n", f.bytes_moving,
-                     each(f.bytes_moving), unit);
-    for (const EffectPlan& e : f.effects)
+    static constexpr const char* places[] = {"cells", "faces", "particles"};
+    for (const sim::ForetoldField& field : f.held.fields)
+        s += fmt::format("  {:22} {:9} {:>10}\n", field.unit.empty() ? field.name : field.name + " [" + field.unit + "]",
+                         places[static_cast<std::size_t>(field.where)], megabytes(field.values * sizeof(real)));
+    s += fmt::format("memory\n  {} after its first step, {:.1f} bytes a {}{}\n", megabytes(f.held.bytes), f.held.bytes / f.count, unit,
+                     f.held.exact ? ", as it is built; lists grow with what moves" : ", within a tenth, from small copies of the scene");
+    s += fmt::format("  {} of a run that writes frames\n", megabytes(sim::bytes_of_run(scene, f.held, true)));
+    s += fmt::format("frames\n  {:.0f} of {}, {} without compression\neffects\n", f.output.frames, megabytes(f.output.bytes_of_frame),
+                     megabytes(f.output.bytes()));
+    for (const EffectPlan& e : f.held.effects)
         s += fmt::format("  {:22} {}\n", e.name, e.pass.empty() ? "a term of \"" + e.inside + "\"" : "\"" + e.pass + "\"");
-    if (f.effects.empty()) s += "  none\n";
+    if (f.held.effects.empty()) s += "  none\n";
     s += fmt::format("a step, {} thread(s)\n", threads());
     for (const Pass& p : f.passes)
         if (p.seconds > 0)
             s += fmt::format("  {:22} {:9.3f} ms  {:8.2f} ns a {}\n", p.name, 1e3 * p.seconds, 1e9 * p.seconds / f.count, unit);
     s += fmt::format("  {:22} {:9.3f} ms  {:8.2f} ns a {}\n", "all", f.ms, 1e6 * f.ms / f.count, unit);
-    const double dt = scene.has("time.dt") ? scene.number("time.dt") : std::min(f.dt, scene.root().number_or("time.max_dt", infinity));
-    const double steps = std::ceil(scene.number("time.end") / dt);
-    s += fmt::format("the whole scene, if it went on as it begins\n  {:.0f} steps of {:.3g} s, {:.3g} s of computing\n", steps, dt,
-                     1e-3 * steps * f.ms);
+    s += steps_text(f, scene);
     s += "rates measured now, in the first steps of";
     for (const Rates& r : f.measured) s += fmt::format("{} {} cells ({:.3g} ms)", &r == &f.measured.front() ? "" : " and", r.cells, r.ms);
     return s + (f.measured.size() < 2 ? ": the scene itself, which has no coarser copies\n" : ": coarser copies of the scene\n");

@@ -1,7 +1,8 @@
-// What a scene will cost, before it runs: memory as it is built, milliseconds from rates that coarser copies of the scene show on this
-// machine now. Of the scene itself one step is taken, to count what it allocates; it is not timed. Blind to what comes later in a run: it
-// speaks of the scene as it begins.
+// What a scene will cost, before it runs and without building it: memory from small copies of it (sim/foretold.hpp), milliseconds from
+// rates that coarser copies show on this machine now, a number of steps from the lengths that their steps had. Blind to what comes later
+// in a run: it speaks of the scene as it begins.
 #pragma once
+#include "sim/foretold.hpp"
 #include "sim/registry.hpp"
 
 #include <string>
@@ -16,11 +17,7 @@ struct Rates {
     double ms = 0;               // a step: the median
     std::vector<Pass> passes{};  // seconds: of that median, by their shares
     double dt = 0;               // [s] the mean
-};
-
-struct PlannedField {
-    std::string name, unit, where;
-    std::size_t bytes = 0;
+    double least_dt = 0, most_dt = 0;
 };
 
 struct Forecast {
@@ -29,13 +26,12 @@ struct Forecast {
     std::string cells{};
     double count = 0;
     bool particles = false;  // count is of particles
-    std::vector<PlannedField> fields{};
-    std::vector<EffectPlan> effects{};
-    std::size_t bytes = 0;          // that the solver holds as it starts: exactly
-    std::size_t bytes_moving = 0;   // and after its first step, in which lists and solves take what they need: exactly
-    double ms = 0, dt = 0;          // a step
-    std::vector<Pass> passes{};     // seconds a step
-    std::vector<Rates> measured{};  // at which sizes
+    sim::Foretold held{};
+    sim::ForetoldOutput output{};
+    double ms = 0;                             // a step
+    double dt = 0, least_dt = 0, most_dt = 0;  // a step: mean, shortest and longest of the small runs, on this scene's cells
+    std::vector<Pass> passes{};                // seconds a step
+    std::vector<Rates> measured{};             // at which sizes
 };
 
 /// The first steps of a scene, timed.

@@ -108,7 +108,10 @@ std::string report_table(const json& t) {
         table.row({word(text_at(row, "what")), raw(escaped(text_at(row, "theirs")), number_at(row, "their_value")),
                    word(text_at(row, "on")), value(number_at(row, "ours")), word(text_at(row, "unit")), value(number_at(row, "times"))});
     return fmt::format(
-        "<article id=\"report-table\"><h3>{}</h3><p>{}</p>{}<p class=\"fine\"><code>./weir.sh cost --report-table</code> · the "
+        "<article id=\"report-table\"><h3>{}</h3><p>Before weir there was a report that measured such methods in "
+        "programs of its own, on one PC. Its figures stand here as it gives them: nobody can measure them again, so they compare with "
+        "weir's in their order of magnitude only.</p><p>{}</p>{}<p class=\"fine\"><code>./weir.sh cost "
+        "--report-table</code> · the "
         "report: {} · weir: commit {}, {}</p></article>\n",
         escaped(text_at(t, "question")), escaped(text_at(t, "reading")), table.html(), escaped(text_at(t, "their_machine")),
         escaped(text_at(t, "commit")), escaped(text_at(t, "machine")));

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace weir::validation {
 
@@ -53,6 +55,33 @@ std::string card(const char* to, const char* title, const std::string& html) {
     return fmt::format("<section class=\"card\"><h2><a href=\"#{}\">{}</a></h2>{}</section>\n", to, title, html);
 }
 
+/// The headings with a place of their own, `<article id="...">` or `<h3 id="...">`, as links.
+std::string headings_in(const std::string& html) {
+    std::string list;
+    for (std::size_t at = 0; (at = html.find("<h3", at)) != std::string::npos; ++at) {
+        const std::size_t begin = html.find('>', at) + 1, end = html.find("</h3>", begin);
+        const std::size_t around = html.rfind("<article", at);
+        const bool own = html.compare(at, 7, "<h3 id=") == 0;
+        const bool of_article =
+            around != std::string::npos && html.find("<h3", around) == at && html.compare(around, 12, "<article id=") == 0;
+        if (end == std::string::npos || (!own && !of_article)) continue;
+        const std::size_t id = html.find('"', own ? at : around) + 1;
+        list += fmt::format("<li><a href=\"#{}\">{}</a></li>", html.substr(id, html.find('"', id) - id), html.substr(begin, end - begin));
+    }
+    return list.empty() ? list : "<ul>" + list + "</ul>";
+}
+
+/// What stays in sight: the parts of the page and the studies in them.
+std::string contents(const std::vector<std::pair<const char*, const std::string*>>& parts) {
+    std::string s = "<nav class=\"contents\"><details open><summary>Contents</summary><ul><li><a href=\"#top\">Top of the page</a></li>";
+    for (const auto& [id, html] : parts) {
+        std::string title = id;
+        title[0] = static_cast<char>(title[0] - 'a' + 'A');
+        if (!html->empty()) s += fmt::format("<li><a href=\"#{}\">{}</a>{}</li>", id, title, headings_in(*html));
+    }
+    return s + "</ul></details></nav>\n";
+}
+
 std::string part(const char* id, const char* title, const std::string& html) {
     return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, html);
 }
@@ -65,9 +94,10 @@ Section pictures_section(const std::filesystem::path& results) {
         const std::string name = file.stem().string(), scene = "../cases/" + name + "/scene.toml";
         const std::string caption =
             std::filesystem::exists(results / scene) ? fmt::format("<a href=\"{}\">{}</a>", escaped(scene), escaped(name)) : escaped(name);
-        section.html +=
-            fmt::format("<figure><img loading=\"lazy\" alt=\"{}\" src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
-                        escaped(name), base64(bytes_of(file)), caption);
+        section.html += fmt::format(
+            "<figure><img class=\"opens\" tabindex=\"0\" title=\"Show it large\" loading=\"lazy\" alt=\"{}\" "
+            "src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
+            escaped(name), base64(bytes_of(file)), caption);
     }
     if (!section.html.empty()) section.html = "<div class=\"pictures\">" + section.html + "</div>";
     return section;
@@ -86,16 +116,18 @@ std::string page_html(const std::filesystem::path& results) {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
         "<meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\n<style>{}</style></head><body>\n",
         page_style);
-    s += "<header><h1>weir</h1><p>Fluid simulation by the methods of real-time graphics: what is proved, what accuracy costs, and where it "
-         "breaks.</p><nav><a href=\"#claims\">Claims</a> <a href=\"#cost\">Cost</a> <a href=\"#limits\">Limits</a> "
-         "<a href=\"#pictures\">Pictures</a></nav></header>\n<main>\n";
+    s += "<header id=\"top\"><h1>weir</h1><p>Fluid simulation by the methods of real-time graphics: what is proved, what accuracy costs, "
+         "and where it "
+         "breaks.</p></header>\n<div class=\"page\">\n";
+    s += contents({{"pictures", &pictures.html}, {"cost", &cost.html}, {"limits", &limits.html}, {"claims", &claims.html}}) + "<main>\n";
     s += "<div class=\"cards\">" + card("claims", "What passed", claims.summary) + card("cost", "What accuracy costs", cost.summary) +
          card("limits", "Where it breaks", limits.summary) + "</div>\n";
     if (!pictures.html.empty()) s += part("pictures", "Pictures", pictures.html);
     s += part("cost", "What accuracy costs", cost.html);
     s += part("limits", "Where it breaks", limits.html);
     s += part("claims", "What passed", claims.html);
-    return s + "</main>\n" + footer(verdicts) + "<script>" + page_script + "</script></body></html>\n";
+    return s + "</main></div>\n<dialog id=\"large\"><form method=\"dialog\"><button>Close</button></form><div></div></dialog>\n" +
+           footer(verdicts) + "<script>" + page_script + "</script></body></html>\n";
 }
 
 std::filesystem::path write_page(const std::filesystem::path& results) {

@@ -22,6 +22,26 @@ for (const head of document.querySelectorAll('table.sortable th button')) {
     for (const [, , row] of rows) body.append(row);
   });
 }
+// On a narrow screen the contents lie above the text: closed until they are asked for, and again when a place is chosen.
+const list = document.querySelector('.contents details'), wide = matchMedia('(min-width:1200px)');
+if (list) {
+  const fit = () => { list.open = wide.matches; };
+  wide.addEventListener('change', fit);
+  list.addEventListener('click', event => { if (event.target.tagName === 'A') fit(); });
+  fit();
+}
+// A picture or a figure opens large, on a click or on Enter.
+const large = document.getElementById('large');
+const enlarge = event => {
+  const one = event.target.closest('.opens,figure svg');
+  if (!one || !large || large.contains(one) || (event.type === 'keydown' && event.key !== 'Enter')) return;
+  large.querySelector('div').replaceChildren(one.cloneNode(true));
+  large.showModal();
+};
+addEventListener('click', enlarge);
+addEventListener('keydown', enlarge);
+if (large) large.addEventListener('click', event => { if (event.target === large) large.close(); });
+if (large) large.addEventListener('close', () => large.querySelector('div').replaceChildren());
 // A link to a case opens it.
 const openTarget = () => {
   const target = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));

@@ -70,9 +70,28 @@ int list_cases(const std::vector<Case>& cases) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> case_roots() {
+    std::error_code unknown;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+    return {"cases", program.parent_path().parent_path() / WEIR_INSTALLED_CASES, WEIR_CASES_DIR};
+}
+
 std::filesystem::path case_root() {
-    if (std::filesystem::is_directory("cases")) return "cases";
-    return WEIR_CASES_DIR;
+    for (const auto& root : case_roots())
+        if (std::filesystem::is_directory(root)) return root;
+    return case_roots().back();
+}
+
+std::filesystem::path find_case_scene(const std::string& name) {
+    std::vector<std::string> known, looked;
+    for (const auto& root : case_roots()) {
+        if (std::filesystem::exists(root / name / "scene.toml")) return root / name;
+        looked.push_back(root.string());
+        if (!std::filesystem::is_directory(root)) continue;
+        for (const auto& entry : std::filesystem::directory_iterator(root)) known.push_back(entry.path().filename().string());
+    }
+    throw BadInput(fmt::format("{}: there is no such file, and no such case{}\n    looked in {}", name, scene::did_you_mean(name, known),
+                               fmt::join(looked, ", ")));
 }
 
 std::filesystem::path find_case(const std::string& name) {

@@ -22,8 +22,12 @@ struct ValidateOptions {
     std::string backend{};                       // for every scene that has scheme.backend; empty: its own
 };
 
-/// Where cases lie: ./cases if there is one, else those of the source tree that this program was built from.
+/// Where cases may lie: ./cases, those installed with this program, those of the source tree that it was built from.
+std::vector<std::filesystem::path> case_roots();
+/// The first of these that is there.
 std::filesystem::path case_root();
+/// The folder of a case that has a scene.toml, by its name. Throws BadInput with where was looked and the nearest known name.
+std::filesystem::path find_case_scene(const std::string& name);
 /// The folder of a case by its name, or a folder that holds a case.toml. Throws BadInput with the nearest known name.
 std::filesystem::path find_case(const std::string& name);
 /// The folders that a command works on: those named, or all that `find` gives. Throws BadInput where the choice is none or both.

@@ -53,8 +53,8 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
     density[i] = rho;
 }
 
-__kernel void correct(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
-                      __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to) {
+__kernel void correct(int count, int stride, __constant StateParams* s, __constant PbfParams* p, __constant WallParams* walls,
+                      __global const float4* terms, __global uint* clamps, __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = from[i];
@@ -72,9 +72,13 @@ __kernel void correct(int count, int stride, __constant PbfParams* p, __constant
         cz = FMA(factor, d.z, cz);
     }
     const float4 w = walls_at(me, walls, terms, i);
-    to[i] = (float4)(clamp(me.x + FMA(me.w, w.x, cx), walls->keep_lo[0], walls->keep_hi[0]),
-                     clamp(me.y + FMA(me.w, w.y, cy), walls->keep_lo[1], walls->keep_hi[1]),
-                     clamp(me.z + FMA(me.w, w.z, cz), walls->keep_lo[2], walls->keep_hi[2]), 0.0f);
+    const float4 free = (float4)(me.x + FMA(me.w, w.x, cx), me.y + FMA(me.w, w.y, cy), me.z + FMA(me.w, w.z, cz), 0.0f);
+    const float4 inside =
+        (float4)(clamp(free.x, walls->keep_lo[0], walls->keep_hi[0]), clamp(free.y, walls->keep_lo[1], walls->keep_hi[1]),
+                 clamp(free.z, walls->keep_lo[2], walls->keep_hi[2]), 0.0f);
+    const float4 back = inside - free;
+    count_clamp(dot3(back.x, back.y, back.z, back.x, back.y, back.z), s, clamps);
+    to[i] = inside;
 }
 
 /* Density over rest density at the final positions. */

@@ -59,8 +59,13 @@ static void correct(const PbfPass& a, const ListChunk& chunk) {
         cx = FMA(i.w, w.x, cx);
         cy = FMA(i.w, w.y, cy);
         cz = FMA(i.w, w.z, cz);
-        store(a.to, first, live(first, a.count),
-              {kept(i.x + cx, a.walls, 0), kept(i.y + cy, a.walls, 1), kept(i.z + cz, a.walls, 2), broadcast(0)});
+        const vf x = i.x + cx, y = i.y + cy, z = i.z + cz;
+        const Four inside{kept(x, a.walls, 0), kept(y, a.walls, 1), kept(z, a.walls, 2), broadcast(0)};
+        store(a.to, first, live(first, a.count), inside);
+        if (a.clamps) {
+            const vf back = square_length(inside.x - x, inside.y - y, inside.z - z);
+            tally_clamps(*a.clamps, back, live(first, a.count), a.order + first, a.particles);
+        }
     }
 }
 

@@ -222,8 +222,8 @@ __kernel void advance_densities(int count, int stride, __constant StateParams* s
 #endif
 
 /* x += dt v. What would enter a wall or a solid is put back and loses its speed into it. */
-__kernel void drift(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, __global double* x,
-                    __global double* v) {
+__kernel void drift(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, __global uint* clamps,
+                    __global double* x, __global double* v) {
     const int i = get_global_id(0);
     if (i >= count) return;
     double free[3], end[3];
@@ -231,7 +231,7 @@ __kernel void drift(int count, int stride, __constant StateParams* s, __global c
         const size_t at = (size_t)axis * stride + i;
         free[axis] = end[axis] = x[at] + dt * v[at];
     }
-    keep(end, s, poses);
+    keep_and_count(end, s, poses, clamps);
     for (int axis = 0; axis < WEIR_DIM; ++axis) {
         const size_t at = (size_t)axis * stride + i;
         if (end[axis] != free[axis]) v[at] = (end[axis] - x[at]) / dt;

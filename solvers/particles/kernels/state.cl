@@ -16,6 +16,21 @@ WEIR_FN void keep(double* x, __constant StateParams* s, __global const SolidPose
     for (int a = 0; a < WEIR_DIM; ++a) x[a] = kept_inside(x[a], s, a);
 }
 
+/* The same; clamps: how often it put something back by more than rounding, and the largest distance [m] as the bits of a float, which are
+   ordered as floats are that are not negative. */
+WEIR_FN void count_clamp(double by2, __constant StateParams* s, __global uint* clamps) {
+    if (!(by2 > s->least_back * s->least_back)) return;
+    atomic_inc(clamps);
+    atomic_max(clamps + 1, as_uint((float)sqrt(by2)));
+}
+WEIR_FN void keep_and_count(double* x, __constant StateParams* s, __global const SolidPose* poses, __global uint* clamps) {
+    const double before[3] = {x[0], x[1], WEIR_DIM == 3 ? x[2] : 0};
+    keep(x, s, poses);
+    double by2 = 0;
+    for (int a = 0; a < WEIR_DIM; ++a) by2 += (x[a] - before[a]) * (x[a] - before[a]);
+    count_clamp(by2, s, clamps);
+}
+
 /* The forces that the scene names: v + dt f. pull: dt omega^2 */
 WEIR_FN double forced(double u, double x, double dt, double pull, __constant StateParams* s, int axis) {
 #ifdef WEIR_GRAVITY
@@ -29,7 +44,7 @@ WEIR_FN double forced(double u, double x, double dt, double pull, __constant Sta
 
 /* v += dt f, x* = x + dt v                                                    Macklin & Mueller 2013, algorithm 1, lines 1-4 */
 __kernel void predict(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, double pull,
-                      __global const double* x, __global double* v, __global double* x_star) {
+                      __global uint* clamps, __global const double* x, __global double* v, __global double* x_star) {
     const int i = get_global_id(0);
     if (i >= count) return;
     double y[3];
@@ -38,7 +53,7 @@ __kernel void predict(int count, int stride, __constant StateParams* s, __global
         v[at] = forced(v[at], x[at], dt, pull, s, a);
         y[a] = x[at] + dt * v[at];
     }
-    keep(y, s, poses);
+    keep_and_count(y, s, poses, clamps);
     for (int a = 0; a < WEIR_DIM; ++a) x_star[(size_t)a * stride + i] = y[a];
 }
 

@@ -6,6 +6,7 @@ typedef struct {
     double exit_lo[3], exit_hi[3]; /* beyond these a particle has left [m] */
     double gravity[3];             /* of the effect "gravity" [m/s^2] */
     double field_centre[3];        /* of the effect "central_force" [m] */
+    double least_back;             /* what walls put back by less is rounding [m] */
     double margin, feel, reach;    /* no particle comes closer to a solid; normals are felt over this; closer than this solids act [m] */
 } StateParams;
 

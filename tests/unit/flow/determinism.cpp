@@ -137,9 +137,11 @@ TEST_IN_2D_AND_3D("a step from a mirror-symmetric state is mirror-symmetric to t
         }
 }
 
+// Without a limiter: a clamp jumps where a path turns from one cell into the next, and on faces where fluid stands still at the block
+// it is round-off that decides which way it goes.
 TEST_IN_2D_AND_3D("over many steps the asymmetry is that of the pressure solver's round-off") {
     for (const char* method : {"\"cg_jacobi\"", "\"multigrid\""}) {
-        FlowSolver<D> flow(test::mac_scene(mirrored_plume(D, "maccormack", method)));
+        FlowSolver<D> flow(test::mac_scene(mirrored_plume(D, "maccormack\", limiter = \"none", method)));
         run(flow, 8);
         EXPECT_LE(largest_asymmetry(flow.state()), 1e-6) << method;  // tolerance 1e-8, 8 steps, speeds and pressures of order 1
         EXPECT_GT(max_rate(flow.state().u), 1) << "nothing moves";

@@ -1,11 +1,15 @@
 #include "output/frames.hpp"
 
 #include "core/error.hpp"
+#include "output/read_frame.hpp"
+#include "sim/registry.hpp"
+#include "sim/solid_cells.hpp"
 #include "support/fake_solver.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 #include "support/vtk_files.hpp"
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
 
@@ -47,6 +51,30 @@ TEST_IN_2D_AND_3D("a grid frame holds cell fields to the last bit, and the veloc
         }
     }
     EXPECT_EQ(image->GetFieldData()->GetArray("TimeValue")->GetTuple1(0), simulation.time());
+}
+
+TEST("cells whose centre a moving solid takes are hidden from VTK's filters, and are no field of the frame; without solids none is") {
+    TemporaryFolder folder;
+    const auto frame = [&](const std::string& solids, int number) {
+        const std::string text = "solver = \"mac\"\ndim = 2\ngrid = { cells = [16, 16], size = [1, 1] }\ntime = { end = 1 }\n" + solids;
+        weir::Simulation simulation(weir::scene::parse(text, "disc.toml", weir::sim::schemas()));
+        weir::output::FrameOptions options;
+        options.solid = weir::sim::solid_cells(simulation.scene());
+        const auto out = folder.path() / std::to_string(number);
+        Frames frames(out, options);
+        frames.write(simulation.fields(), 0.5);
+        EXPECT_EQ(weir::output::read_frame(out, 0, 2).cells.size(), 2u);  // velocity and pressure
+        return weir::test::read_image(out / "frames/grid_000000.vti");
+    };
+    const auto image = frame(
+        "solids = [ { shape = \"sphere\", centre = [0.3, 0.5], radius = 0.2, motion = { kind = \"constant\", velocity = "
+        "[0.4, 0.0] } } ]\n",
+        0);
+    for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i) {
+        const real x = (static_cast<real>(i % 16) + 0.5) / 16, y = (static_cast<real>(i / 16) + 0.5) / 16;
+        EXPECT_EQ(image->IsCellVisible(i) == 0, std::hypot(x - 0.5, y - 0.5) < 0.2) << x << ", " << y;
+    }
+    EXPECT_EQ(frame("", 1)->GetCellGhostArray(), nullptr);
 }
 
 TEST_IN_2D_AND_3D("with output.faces each face component stands at its face, to the last bit") {

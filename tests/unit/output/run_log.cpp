@@ -61,4 +61,19 @@ TEST("a resumed log keeps the steps up to the checkpoint and drops those after i
     EXPECT_EQ(j["steps"][2]["dt"], 0.15);
 }
 
+TEST("a file that cannot be replaced still says what happened: the status is set in place, and nothing else changes") {
+    weir::test::TemporaryFolder folder;
+    const auto path = folder.path() / "run.json";
+    weir::output::RunLog log(path, fake_simulation("time = { end = 0.1 }").scene());
+    log.write();
+    const auto size = std::filesystem::file_size(path);
+    EXPECT_TRUE(log.overwrite_status("failed: cannot write \"frame\": No space left\nand more"));
+    const auto j = read(path);
+    EXPECT_EQ(j["status"], "failed: cannot write \"frame\": No space left");
+    EXPECT_TRUE(j["steps"].empty());
+    EXPECT_EQ(std::filesystem::file_size(path), size);
+    EXPECT_TRUE(log.overwrite_status(std::string(1000, 'x')));
+    EXPECT_EQ(read(path)["status"], std::string(200, 'x'));
+}
+
 }  // namespace

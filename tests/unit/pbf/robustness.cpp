@@ -57,13 +57,12 @@ TEST_IN_2D_AND_3D("a single particle falls like one and ends on the floor") {
     EXPECT_NEAR(solver->fluid().position(0)[1], solver->fluid().domain.margin, 1e-6);
 }
 
-TEST_IN_2D_AND_3D("a scene without any liquid steps and reports nothing") {
-    auto solver =
-        test::pbf_solver<D>(test::pbf_scene<D>("{ shape = \"sphere\", centre = " + std::string(D == 2 ? "[0.5, 0.5]" : "[0.5, 0.5, 0.5]") +
-                                               ", radius = 0.01 }"));  // between the sites of the lattice
+TEST_IN_2D_AND_3D("a tank that has run empty steps and reports nothing") {
+    auto solver = test::pbf_solver<D>(test::pbf_scene<D>(test::box<D>(0.5, 0.5, 0.5)));
+    solver->fluid().remove_if([](int) { return true; });
     ASSERT_EQ(solver->fluid().count(), 0);
     EXPECT_EQ(solver->step(0.008).density_error, 0);
-    EXPECT_EQ(solver->advised_dt(), 10 / std::ceil(10 / std::sqrt(0.5 * 0.125 / 9.81)));
+    EXPECT_GT(solver->advised_dt(), 0);
 }
 
 TEST_IN_2D_AND_3D("a block twice too dense spreads without leaving the box") {
@@ -186,4 +185,27 @@ TEST("a million particles make a few steps, inside and finite") {
     ASSERT_EQ(solver->fluid().count(), 1000000);
     stays_inside(*solver, 3, 0.0006);
     EXPECT_EQ(integral(*solver, "particles"), 1e6);
+}
+
+TEST_IN_2D_AND_3D("what walls put back is counted once, beside a side that repeats too, and alike with any number of threads") {
+    const auto run = [](int with) {
+        set_threads(with);
+        auto solver = test::pbf_solver<D>(test::pbf_scene<D>(
+            test::box<D>(1, 0.5, 1), "settle = 0", "sides = { x_min = { kind = \"periodic\" }, x_max = { kind = \"periodic\" } }"));
+        auto& fluid = solver->fluid();
+        for (int i = 0; i < fluid.count(); ++i) Fluid<D>::put(fluid.v, i, -10 * Vec<D>::unit(1));
+        for (int s = 0; s < 5; ++s) solver->step(0.008);
+        return std::pair{integral(*solver, "clamped"), integral(*solver, "clamp_depth")};
+    };
+    const auto one = run(1), three = run(3);
+    set_threads(1);
+    EXPECT_GT(one.first, 0);
+    EXPECT_EQ(one, three);
+
+    auto solver = test::pbf_solver<D>(test::pbf_scene<D>(test::box<D>(0.125, 0.125, 0.125), "settle = 0",
+                                                         "sides = { x_min = { kind = \"periodic\" }, x_max = { kind = \"periodic\" } }"));
+    Fluid<D>::put(solver->fluid().x, 0, 0.01 * Vec<D>::constant(1));  // it has an image beyond the side
+    Fluid<D>::put(solver->fluid().v, 0, -5 * Vec<D>::unit(1));
+    solver->step(0.008);
+    EXPECT_EQ(integral(*solver, "clamped"), 1);
 }

@@ -183,6 +183,32 @@ TEST("a right-hand side that is not finite is an error for every method") {
     }
 }
 
+TEST("the cosine transform is content with what rounding leaves of a direct solve, as CHOLMOD is; what is worse stays an error") {
+    const auto A = box<2>(256);
+    std::mt19937 gen(5);
+    std::uniform_real_distribution<real> u(-1, 1);
+    Grid<real, 2> b(A.cells.extent()), p(A.cells.extent()), exact(A.cells.extent());
+    for (int j = 0; j < 256; ++j)  // smooth: |A| |p| is 1e5 |b|, so that 1e-12 is out of reach
+        for (int i = 0; i < 256; ++i) b(Index<2>{{i, j}}) = std::cos(pi * (i + 0.5) / 256) + 1e-3 * u(gen);
+    const auto solver = poisson::make_solver<2>("dct", {.tolerance = 1e-12});
+    solver->setup(A);
+    const auto report = solver->solve(p, b);
+    EXPECT_TRUE(report.converged);
+    EXPECT_GT(report.residual_after, 1e-12);  // else this test tests nothing
+    EXPECT_LT(report.residual_after, 1e-9);   // 1e5 epsilon times 60 for the transforms' log2
+    const auto direct = poisson::make_solver<2>("cholmod", {.tolerance = 1e-9});
+    direct->setup(A);
+    direct->solve(exact, b);
+    real largest = 0, difference = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        largest = std::max(largest, std::abs(exact[i]));
+        difference = std::max(difference, std::abs(p[i] - exact[i]));
+    }
+    EXPECT_LT(difference, 1e-8 * largest);
+    b[7] = std::numeric_limits<real>::quiet_NaN();
+    EXPECT_THROW(solver->solve(p, b), NumericalFailure);
+}
+
 TEST("an unknown method is refused and the known ones are named; so is a box that the cosine transform cannot solve") {
     try {
         poisson::make_solver<2>("multgrid", {});

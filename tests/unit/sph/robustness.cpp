@@ -77,8 +77,10 @@ TEST_IN_2D_AND_3D("a single particle falls like one, beside a wall too, and neve
         }
 }
 
-TEST_IN_2D_AND_3D("a scene without any liquid steps and reports nothing") {
-    sph::SphSolver<D> solver(test::sph_box<D>(0.01, 0.01, 0.01));
+TEST_IN_2D_AND_3D("a tank that has run empty steps and reports nothing; one that is empty from the start is refused") {
+    EXPECT_THROW(sph::SphSolver<D>(test::sph_box<D>(0.01, 0.01, 0.01)), BadInput);
+    sph::SphSolver<D> solver(test::sph_box<D>(0.5, 0.5, 0.5));
+    solver.fluid().remove_if([](int) { return true; });
     ASSERT_EQ(solver.fluid().count(), 0);
     EXPECT_EQ(solver.step(solver.advised_dt()).density_error, 0);
 }

@@ -1,0 +1,15 @@
+// Which cells of a grid the solids of a scene take, for those who draw its fields.
+#pragma once
+#include "core/solver.hpp"
+#include "scene/scene.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace weir::sim {
+
+/// 1 for each cell whose centre lies in a solid at a time, x fastest; no function where the scene has no solids.
+std::function<std::vector<std::uint8_t>(const GridView& grid, real t)> solid_cells(const scene::Scene& scene);
+
+}  // namespace weir::sim

@@ -1,0 +1,103 @@
+// What the order of the passes of a step does to flows that should not know the step.
+#include "support.hpp"
+
+namespace weir::water {
+
+namespace {
+
+constexpr real nu = 0.02;
+
+/// Water 0.5 m deep and as viscous as honey between no-slip walls; open along x where that repeats.
+std::string viscous(bool film, const std::string& g, const std::string& scheme, const std::string& transfer) {
+    const char* const stick = "{ kind = \"wall\", slip = \"no\" }";
+    return fmt::format(R"(solver = "mac_water"
+dim = 2
+grid = {{ cells = {}, size = {} }}
+time = {{ end = 9.0 }}
+fluid = {{ density = 1000.0, viscosity = {} }}
+sides = {{ y_min = {}{} }}
+liquid = [ {{ shape = "plane", point = [0.0, 0.5], normal = [0.0, 1.0] }} ]
+effects = {{ gravity = {{ g = {} }}, viscosity = {{ scheme = "{}" }} }}
+scheme = {{ transfer = "{}", poisson = {{ tolerance = 1e-12 }} }}
+)",
+                       film ? "[4, 12]" : "[16, 16]", film ? "[0.25, 0.75], periodic = [\"x\"]" : "[1.0, 1.0]", nu, stick,
+                       film ? "" : fmt::format(", x_min = {0}, x_max = {0}", stick), g, scheme, transfer);
+}
+
+/// The fastest of the film, which flows along x, when it is steady.
+real film_speed(const std::string& scheme, real dt) {
+    Water<2> water(test::water_scene(viscous(true, "[0.05, -1.0]", scheme, "grid")));
+    constexpr real diffusion_times = 5;  // H²/ν; the slowest mode decays by π²/4 in one: 4e-6 are left
+    const int steps = static_cast<int>(diffusion_times * 0.25 / nu / dt);
+    for (int i = 0; i < steps; ++i) water.step(dt);
+    return water.state().u[0]({2, 7});
+}
+
+/// Amplitude of cos(k x) of a wave as long as the tank after `time`, in `steps` steps, over that at the start.
+real amplitude(const std::string& transfer, real time, int steps) {
+    constexpr int n = 32, rows = 24;
+    Water<2> water(test::water_scene(fmt::format(R"(solver = "mac_water"
+dim = 2
+grid = {{ cells = [{}, {}], size = [1.0, 0.75] }}
+time = {{ end = 9.0 }}
+fluid = {{ density = 1000.0 }}
+liquid = [ {{ shape = "wave", level = 0.5, amplitude = 0.01, wavelength = 1.0 }} ]
+effects = {{ gravity = {{ g = [0.0, -9.81] }} }}
+scheme = {{ transfer = "{}", flip_blend = 1.0, poisson = {{ tolerance = 1e-10 }} }}
+)",
+                                                 n, rows, transfer)));
+    const auto mode = [&] {
+        const auto& phi = water.surface().phi;
+        real sum = 0;
+        for (int i = 0; i < n; ++i) {
+            int j = rows - 2;
+            while (phi({i, j}) >= 0) --j;
+            sum += (j + phi({i, j}) / (phi({i, j}) - phi({i, j + 1}))) * std::cos(2 * pi * (i + 0.5) / n);
+        }
+        return sum;
+    };
+    const real start = mode();
+    for (int i = 0; i < steps; ++i) water.step(time / steps);
+    return mode() / start;
+}
+
+/// Order of what is left to change when steps are halved twice.
+real order(real coarse, real middle, real fine) { return std::log2(std::abs(coarse - middle) / std::abs(middle - fine)); }
+
+}  // namespace
+
+TEST("viscous water between no-slip walls stays at rest, whatever the step") {
+    for (const char* scheme : {"crank-nicolson", "implicit"})
+        for (const real dt : {0.02, 0.002}) {
+            Water<2> water(test::water_scene(viscous(false, "[0.0, -9.81]", scheme, "grid")));
+            for (int i = 0; i < 50; ++i) water.step(dt);
+            real fastest = 0;  // of the faces of liquid
+            for (int a = 0; a < 2; ++a)
+                for_each_in(Index<2>{}, Index<2>{{16, 8}},
+                            [&](const Index<2>& I) { fastest = std::max(fastest, std::abs(water.state().u[a](I))); });
+            EXPECT_LE(fastest, 50 * 1e-12 * 9.81 * dt * 16) << scheme << ", dt " << dt;  // tolerance of what g dt asks for, 16 cells wide
+        }
+}
+
+// Friction acts before the force: K u = (M + θ dt K) g, so that u is that of the equations, M K⁻¹ g, and θ dt g everywhere.
+TEST("a film's steady speed is of first order in the step: theta g dt is added to it") {
+    for (const auto& [scheme, theta] : {std::pair{"crank-nicolson", 0.5}, std::pair{"implicit", 1.0}}) {
+        const real dt = 0.05, slow = film_speed(scheme, dt / 2), fast = film_speed(scheme, dt);
+        EXPECT_NEAR((fast - slow) / (0.5 * dt), theta * 0.05, 0.01 * 0.05) << scheme;
+    }
+}
+
+// The surface moves with the velocity of before and the pressure is of the surface of after: a leapfrog whose velocity starts half a step
+// late. Read half a step later its error is of second order; on its own clock it lags, at first order.
+TEST("a standing wave lags half a step, and is of second order but for that") {
+    constexpr real omega = 7.836, time = 0.2;  // ω² = g k tanh(k d); a quarter of a period, where the lag is seen best
+    for (const char* transfer : {"grid", "flip", "apic"}) {
+        const real coarse = amplitude(transfer, time, 16), middle = amplitude(transfer, time, 32), fine = amplitude(transfer, time, 64);
+        EXPECT_NEAR(order(coarse, middle, fine), 1, 0.1) << transfer;
+        EXPECT_NEAR((coarse - fine) / (time / 16 - time / 64), 0.5 * omega, 0.05 * omega) << transfer;
+    }
+    const auto lagged = [&](int steps) { return amplitude("grid", time * steps / (steps - 0.5), steps); };
+    EXPECT_GE(order(lagged(16), lagged(32), lagged(64)), 1.8);
+}
+
+}  // namespace weir::water
