@@ -58,8 +58,8 @@ void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
 /// again.
 void SlicedList::make_room_ahead(Chunk& chunk) const {
     ListChunk& v = chunk.view;
-    if (v.used + v.used / 4 <= v.capacity) return;
-    resize_exactly(chunk.entries, v.used + 3 * v.used / 8);
+    if (v.used + v.used / 8 <= v.capacity) return;
+    resize_exactly(chunk.entries, v.used + v.used / 2);
     v.entries = chunk.entries.data();
     v.capacity = chunk.entries.size();
 }

@@ -15,7 +15,7 @@ template <int D>
 scene::Scene dam(const std::string& solver, const std::string& backend, const std::string& scheme = "", const std::string& more = "") {
     const std::string text = fmt::format(
         "title = \"dam\"\nsolver = \"{}\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime = {{ end = 1.0 }}\n"
-        "fluid = {{ density = 1000.0, viscosity = 1e-3 }}\nliquid = [{{ shape = \"box\", min = {}, max = {} }}]\n"
+        "fluid = {{ density = 1000.0 }}\nliquid = [{{ shape = \"box\", min = {}, max = {} }}]\n"
         "scheme = {{ support = 2.0, backend = \"{}\"{} }}\neffects.gravity = {{ g = {} }}\n{}\n",
         solver, D, test::list<D>(24, 12, 6), test::list<D>(1.5, 0.75, 0.375), test::list<D>(0, 0, 0), test::list<D>(0.5, 0.5, 0.375),
         backend, scheme, test::list<D>(0, -9.81, 0), more);

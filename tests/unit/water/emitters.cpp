@@ -111,7 +111,8 @@ real pressure_at_nozzle(const water::Water<D>& water, real x, real top) {
 template <int D>
 std::pair<real, real> largest_share(const std::string& transfer, real x, real y, real depth, real end) {
     constexpr real rho = 1000;
-    water::Water<D> water(water_scene(fountain<D>(transfer, x, y, depth > 0 ? pool<D>(depth) : "")));
+    const std::string liquid = depth > 0 ? pool<D>(depth) : "";
+    water::Water<D> water(water_scene(fountain<D>(transfer, x, y, liquid), {{"effects.volume_control", "{}"}}));
     const real top = y + deep, flux = std::pow(wide, D - 1) * speed;
     const real newly = std::pow(wide, D - 1) * (deep - std::clamp(depth - y, 0.0, deep));  // of its volume was air
     real given = integral(water, "potential_energy") + rho * std::pow(wide, D - 1) * deep * 0.5 * speed * speed +
@@ -130,7 +131,8 @@ std::pair<real, real> largest_share(const std::string& transfer, real x, real y,
 
 }  // namespace
 
-// The volume is known to a thousandth of what was poured, and an energy with it; what is left is the pressure's line through two cells.
+// With its volume controlled, that is known to a thousandth of what was poured, and an energy with it (without, the level set of a splash
+// gains up to a fifth, and its height with that); what is left is the pressure's line through two cells.
 TEST_IN_2D_AND_3D("a tank holds no more energy than its source gave, with every transfer, also when the fountain falls back and splashes") {
     for (const std::string transfer : {"grid", "pic", "flip", "apic"})
         for (const auto& [what, x, y, depth] : std::vector<std::tuple<const char*, real, real, real>>{{"open", 0.4, 0.3, 0},
