@@ -55,10 +55,12 @@ void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
 }
 
 /// So that a liquid that a lattice started, some of whose pairs stand at just the radius (8 of 48 in 2D at four spacings), does not ask
-/// again.
+/// again: at first there is half as much room again, later an eighth.
 void SlicedList::make_room_ahead(Chunk& chunk) const {
     ListChunk& v = chunk.view;
-    if (v.used + v.used / 8 <= v.capacity) return;
+    const std::size_t wanted = v.used + (chunk.roomy ? v.used / 8 : v.used / 2);
+    chunk.roomy = chunk.roomy || v.used > 0;
+    if (wanted <= v.capacity) return;
     resize_exactly(chunk.entries, v.used + v.used / 2);
     v.entries = chunk.entries.data();
     v.capacity = chunk.entries.size();

@@ -39,6 +39,7 @@ private:
         std::vector<std::uint32_t> entries, offset, hits;
         std::vector<float> x, y, z;
         int growths = 0;
+        bool roomy = false;  // has had room made ahead
         std::string failure;
     };
     void prepare(Chunk& chunk, int t, int slices, int lanes);
