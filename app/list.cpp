@@ -1,5 +1,6 @@
 // weir list WHAT: the names that scenes and commands may use.
 #include "app/commands.hpp"
+#include "app/shown.hpp"
 #include "backend/device.hpp"
 #include "core/error.hpp"
 #include "sim/registry.hpp"
@@ -54,15 +55,20 @@ void add_list(CLI::App& app, int& exit_code) {
     auto what = std::make_shared<std::string>();
     auto folder = std::make_shared<std::string>(validation::case_root().string());
     CLI::App* list =
-        app.add_subcommand("list", "List the solvers, the effects of each, the cases (* where they are validated), or the devices");
-    list->add_option("what", *what, "solvers, effects, cases or devices")
+        app.add_subcommand("list",
+                           "List the solvers, the effects of each, the fields and integrals that each shows, the cases (* where they are "
+                           "validated), or the devices");
+    list->add_option("what", *what, "solvers, effects, fields, cases or devices")
         ->required()
-        ->check(CLI::IsMember({"solvers", "effects", "cases", "devices"}));
+        ->check(CLI::IsMember({"solvers", "effects", "fields", "cases", "devices"}));
     list->add_option("--cases", *folder, "Folder of the cases");
-    list->callback([what, folder, &exit_code] {
+    auto markdown = std::make_shared<bool>(false);
+    list->add_flag("--markdown", *markdown, "Of fields: docs/fields.md");
+    list->callback([what, folder, markdown, &exit_code] {
         exit_code = exit_success;
         if (*what == "solvers") list_solvers();
         if (*what == "effects") list_effects();
+        if (*what == "fields") std::fputs((*markdown ? shown_markdown() : shown_text()).c_str(), stdout);
         if (*what == "cases") list_cases(*folder);
         if (*what == "devices") list_devices();
     });

@@ -66,6 +66,11 @@ real integral(const MacState<D>& s, const Grid<real, D>& q) {
 }
 
 template <int D>
+std::string times_volume(const std::string& unit) {
+    return (unit.empty() ? "" : unit + ' ') + (D == 2 ? "m^2" : "m^3");
+}
+
+template <int D>
 std::vector<Integral> integrals(const MacState<D>& s) {
     real speed = 0;
     for (int a = 0; a < D; ++a) speed = std::max(speed, max_over(s.u[a].extent(), [&](const Index<D>& I) { return std::abs(s.u[a](I)); }));
@@ -76,7 +81,7 @@ std::vector<Integral> integrals(const MacState<D>& s) {
     const Vec<D> m = momentum(s);
     for (int a = 0; a < D; ++a) list.push_back({std::string("momentum_") + letters[a], D == 2 ? "kg/s" : "kg m/s", m[a]});
     for (const auto& field : s.fields)
-        list.push_back({"total_" + field.name, unit_of(field.name) + (D == 2 ? " m^2" : " m^3"), integral(s, field.values)});
+        list.push_back({"total_" + field.name, times_volume<D>(unit_of(field.name)), integral(s, field.values)});
     return list;
 }
 

@@ -84,6 +84,12 @@ TEST("--backend runs particles on the reference; what it has not got, and an unk
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out"));
 }
 
+TEST("docs/fields.md is what weir list fields --markdown writes") {
+    const auto answer = weir_says({"list", "fields", "--markdown"});
+    EXPECT_EQ(answer.code, 0);
+    EXPECT_EQ(answer.text, weir::test::text_of(std::string(WEIR_SOURCE_DIR) + "/docs/fields.md")) << "run: weir list fields --markdown > docs/fields.md";
+}
+
 TEST("--explain says so where a scene is not valid without an effect, whose cost is then no difference of two runs") {
     const std::string drop = std::string(WEIR_SOURCE_DIR) + "/cases/couette/sph.toml";
     const auto answer = weir_says({"run", drop, "--explain", "--set", "grid.cells=[8, 16]"});
