@@ -63,7 +63,11 @@ struct Fluid {
     std::vector<Integral> integrals() const;
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
-    std::size_t bytes() const { return (2 * D + 3) * id.capacity() * sizeof(real); }
+    std::size_t bytes() const {
+        std::size_t values = id.capacity() + density.capacity() + carried.capacity() + scratch_.capacity();
+        for (int a = 0; a < D; ++a) values += x[static_cast<std::size_t>(a)].capacity() + v[static_cast<std::size_t>(a)].capacity();
+        return values * sizeof(real);
+    }
 
 private:
     std::vector<real> scratch_;

@@ -1,6 +1,9 @@
 #include "effects/audit/heap.hpp"
 
 #include <malloc.h>
+#include <sys/syscall.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -8,6 +11,7 @@
 
 namespace {
 
+constexpr long huge_page = 1L << 21;
 std::atomic<long> count{0}, held{0};
 
 void* taken(void* p) {
@@ -37,6 +41,17 @@ void operator delete(void* p) noexcept { given(p); }
 void operator delete(void* p, std::size_t) noexcept { given(p); }
 void operator delete(void* p, std::align_val_t) noexcept { given(p); }
 void operator delete(void* p, std::size_t, std::align_val_t) noexcept { given(p); }
+
+/// Anonymous memory that is mapped beside the heap: the multigrid's arena, which asks for a huge page more than it uses so that it begins
+/// on one. The C library's own mappings do not come by here.
+extern "C" void* mmap(void* at, std::size_t size, int protection, int flags, int file, off_t offset) noexcept {
+    if (file == -1) held += static_cast<long>(size) - huge_page;
+    return reinterpret_cast<void*>(syscall(SYS_mmap, at, size, protection, flags, file, offset));
+}
+extern "C" int munmap(void* at, std::size_t size) noexcept {
+    held -= static_cast<long>(size) - huge_page;
+    return static_cast<int>(syscall(SYS_munmap, at, size));
+}
 
 namespace weir::test {
 
