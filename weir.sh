@@ -64,7 +64,7 @@ build_all() {
 run_tests() {
     local code=0 log
     log="$(mktemp)"
-    ctest --output-on-failure --output-junit "$here/build/release/tests.xml" "$@" | tee "$log" || code=$?
+    ctest -j 2 --output-on-failure --output-junit "$here/build/release/tests.xml" "$@" | tee "$log" || code=$?
     "$here/tests/skipped.sh" "$here/build/release/tests.xml" "$here/build/release/weir" || code=$((code > 0 ? code : 1))
     grep '% tests passed' "$log" || true
     rm -f "$log"

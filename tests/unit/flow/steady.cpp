@@ -94,6 +94,7 @@ real dependence(const std::string& scene, real dt, real rate) {
 }  // namespace
 
 TEST("with fluxes a steady state does not depend on the step, whatever acts") {
+    set_threads(1);  // threads would only wait for one another on so few cells
     const std::string ball = "emitters = [ { shape = \"sphere\", centre = [0.4, 0.3], radius = 0.12, ";
     const std::vector<Case> cases{
         {"buoyancy, conduction and viscosity, Crank-Nicolson", heated(16, implicit), 0.15},
@@ -120,6 +121,7 @@ TEST("with fluxes a steady state does not depend on the step, whatever acts") {
 // Interpolation errs by h²/dt a second times functions of the CFL number, and terms along a path by dt² (MacCormack, which takes half of
 // each at either end) or dt: at a fixed CFL number the step's share falls with the grid, at the scheme's order.
 TEST("along paths a steady state depends on the step at order 2 with MacCormack, at order 1 with semi-Lagrangian") {
+    set_threads(1);  // threads would only wait for one another on so few cells
     const auto order = [](const std::string& scheme, const std::string& effects) {
         const auto at = [&](int n) { return dependence(heated(n, effects) + with(scheme), 3.2 / n, 1e-6); };
         return std::log2(at(12) / at(24));
