@@ -115,7 +115,10 @@ Key grid_key() {
                          "the same scene, and not looked at here."}}};
 }
 
-std::unique_ptr<Solver> make(const scene::Scene& scene) { return std::make_unique<ShallowWater>(scene); }
+std::unique_ptr<Solver> make(const scene::Scene& scene) {
+    (void)scene.text("scheme.model");
+    return std::make_unique<ShallowWater>(scene);
+}
 
 }  // namespace
 
@@ -135,6 +138,7 @@ scene::SolverKind kind() {
                    terrain_key(),
                    initial_key(),
                    sides_key()};
+    schema.columns = true;
     schema.effects = effect_schemas();
     schema.without = {"fluid.viscosity", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "sides.y_min", "sides.y_max",
                       "emitters",        "initial.temperature", "initial.smoke"};
