@@ -60,6 +60,25 @@ private:
     real coefficient_;
 };
 
+class Damping final : public Effect<State> {
+public:
+    explicit Damping(const scene::Table& table) : rate_(table.number("rate")) {}
+    Stage stage() const override { return Stage::implicit; }
+    void apply(State& s, real dt) override {
+        if (rate_ == 0) return;
+        const real left = std::exp(-dt * rate_);
+        for_each_row(s, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t c = begin; c < end; ++c) {
+                s.qx[c] *= left;
+                if (!s.qz.empty()) s.qz[c] *= left;
+            }
+        });
+    }
+
+private:
+    real rate_;
+};
+
 /// dh/dt = rate, on the domain or within a shape seen from above (its points at the height of the floor).
 class Rain final : public Effect<State> {
 public:
@@ -119,6 +138,10 @@ std::vector<scene::Variant> effect_schemas() {
               {.name = "n", .type = Type::number, .doc = "Manning's.", .unit = "s/m^(1/3)", .fallback = 0.03, .min = 0},
               {.name = "c", .type = Type::number, .doc = "Of the quadratic law.", .fallback = 0.003, .min = 0}},
              {"n"}},
+            {"damping",
+             "Of all motion, at the same rate everywhere: dq/dt = -rate q, in columns that of their speed.",
+             {{.name = "rate", .type = Type::number, .doc = "It.", .unit = "1/s", .required = true, .min = 0}},
+             {"rate"}},
             {"rain",
              "Water from above.",
              {{.name = "rate", .type = Type::number, .doc = "Depth that falls a second.", .unit = "m/s", .required = true, .min = 0},
@@ -140,6 +163,7 @@ Effects<State> make_effects(const scene::Scene& scene, const State& state, const
             effects.declare({.name = "gravity", .inside = moved_in});
     }
     if (const auto* t = scene.effect("friction")) effects.add("friction", std::make_unique<Friction>(*t));
+    if (const auto* t = scene.effect("damping")) effects.add("damping", std::make_unique<Damping>(*t));
     if (const auto* t = scene.effect("rain")) {
         if (t->has("over")) {
             const auto& over = t->numbers("over");

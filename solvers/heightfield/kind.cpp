@@ -1,4 +1,5 @@
 // What a scene may say to the solver "heightfield".
+#include "heightfield/columns.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/shallow_water.hpp"
 #include "heightfield/solver.hpp"
@@ -17,9 +18,11 @@ Key scheme_keys() {
             .doc = "Numerical methods.",
             .keys = {{.name = "model",
                       .type = Type::choice,
-                      .doc = "shallow_water: the equations of long waves of any height, with dry ground.",
+                      .doc = "shallow_water: the equations of long waves of any height, with currents and dry ground. columns: each is "
+                             "pulled by the heights of its neighbours, the linear wave equation of real-time graphics, with floating and "
+                             "dragged objects.",
                       .fallback = std::string("shallow_water"),
-                      .choices = {"shallow_water"}},
+                      .choices = {"shallow_water", "columns"}},
                      {.name = "limiter",
                       .type = Type::choice,
                       .doc = "Of the slopes of depth, surface and velocity; none: first order.",
@@ -115,8 +118,32 @@ Key grid_key() {
                          "the same scene, and not looked at here."}}};
 }
 
+Key floats_key() {
+    const auto point = [](const char* name, const char* doc) {
+        return Key{.name = name, .type = Type::numbers, .doc = doc, .unit = "m", .required = true, .length = -1};
+    };
+    return {.name = "floats",
+            .type = Type::tables,
+            .doc = "Boxes that float in the water, or are dragged through it; of scheme.model = \"columns\".",
+            .keys = {point("size", "Along each axis."),
+                     point("at", "The middle of its underside at t = 0."),
+                     {.name = "density", .type = Type::number, .doc = "Over the water's.", .fallback = 0.5, .min = 0, .min_open = true},
+                     {.name = "heave",
+                      .type = Type::flag,
+                      .doc = "Whether it rises and sinks by its weight and the water's pressure; else its motion says its height too.",
+                      .fallback = true},
+                     {.name = "motion",
+                      .type = Type::table,
+                      .doc = "Prescribed motion along the plane, and along y where it does not heave; without it, it stays.",
+                      .selector = "kind",
+                      .variants_from = &scene::motions}}};
+}
+
 std::unique_ptr<Solver> make(const scene::Scene& scene) {
-    (void)scene.text("scheme.model");
+    if (scene.text("scheme.model") == "columns") return std::make_unique<Columns>(scene);
+    if (!scene.root().tables("floats").empty())
+        scene.refuse("floats", "the model \"shallow_water\" has no floating objects",
+                     "scheme.model = \"columns\" has them; solids stand on the bed");
     return std::make_unique<ShallowWater>(scene);
 }
 
@@ -136,6 +163,7 @@ scene::SolverKind kind() {
                               .fallback = 0.45}}},
                    scheme_keys(),
                    terrain_key(),
+                   floats_key(),
                    initial_key(),
                    sides_key()};
     schema.columns = true;
