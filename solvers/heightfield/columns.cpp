@@ -112,6 +112,7 @@ StepReport Columns::step(real dt) {
         const auto timed = passes_.time("floats");
         floats_.after(dt, surface_, rate_);
     }
+    state_.poured += dt * through_;  // the sweep moved by the rates that sides and damping have yet to change
     if (damping_ > 0) {
         const auto timed = passes_.time("effect damping");
         const real left = std::exp(-dt * damping_);
@@ -142,7 +143,6 @@ void Columns::let_out(real dt) {
         for (int i = 0; state_.sides.open(1, end) && i < plane.nx; ++i) slow(i, end == 0 ? 0 : plane.nz - 1, plane.dz);
     }
     through_ += plane.area() * taken;
-    state_.poured += dt * through_;
 }
 
 void Columns::check() const {
@@ -199,7 +199,9 @@ real Columns::sum(F&& f) const {
 
 std::vector<Integral> Columns::integrals() const {
     const real columns = sum([&](std::size_t c) { return surface_[c] - state_.bed[c]; });
-    std::vector<Integral> list = {{"volume", "m^3", columns + floats_.missing(surface_)}, {"poured_volume", "m^3", state_.poured}};
+    const real volume = columns + floats_.missing(surface_);
+    std::vector<Integral> list = {
+        {"volume", "m^3", volume}, {"poured_volume", "m^3", state_.poured}, {"volume_balance", "m^3", volume - state_.poured}};
     for (std::size_t b = 0; b < floats_.count(); ++b) {
         const std::string name = fmt::format("float{}_", b);
         const Pushed& p = floats_.pushed(b);

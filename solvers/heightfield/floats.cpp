@@ -128,7 +128,8 @@ void Floats::locate(real t, const Field& surface, const Field& rate) {
             if (place_of_[c.column] < 0) add(c.column, surface[c.column] - bed_[c.column], surface, rate);
             if (depth_[c.column] > 0 && !(c.underside + height > bed_[c.column]))
                 throw NumericalFailure("float", fmt::format("object {} stands on the bed: there is no water below it", b));
-            const bool touches = surface[c.column] > c.underside + height;
+            const bool clings = covered_[static_cast<std::size_t>(place_of_[c.column])].clings && !(bodies_[b]->mass() < infinity);
+            const bool touches = clings || surface[c.column] > c.underside + height;
             contacts_.push_back({static_cast<std::size_t>(place_of_[c.column]), b, c.part, c.underside, touches});
         }
     }
@@ -306,12 +307,13 @@ real Floats::height_of(std::size_t b) const {
 }
 
 /// Water pushes and never pulls: where the pressure would be negative the body lets go, and where water stands higher than it, it touches.
+/// One whose height is prescribed does not let go: air that would have to get below a hull held down has no way in that columns know of.
 bool Floats::change_contacts() {
     bool changed = false;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         const real height = height_of(b);
         for (Contact& c : contacts_) {
-            if (c.body != b) continue;
+            if (c.body != b || (c.touches && !(bodies_[b]->mass() < infinity))) continue;
             const bool touches = x_[c.place] > c.underside + height;
             changed = changed || touches != c.touches;
             c.touches = touches;
@@ -343,6 +345,9 @@ void Floats::take(real dt, Field& surface, Field& rate) {
         c.water += dt * w;
         surface[c.column] = free_[i] < 1 ? x_[i] : bed_[c.column] + c.water;
     }
+    for (Covered& c : covered_) c.clings = false;
+    for (const Contact& c : contacts_)
+        if (c.touches && !(bodies_[c.body]->mass() < infinity)) covered_[c.place].clings = true;
     tell();
     forget_free_columns();
 }
@@ -425,7 +430,9 @@ std::size_t Floats::bytes() const {
 void Floats::save(Checkpoint& to) const {
     std::vector<std::size_t> columns;
     Field water;
-    for (const Covered& c : covered_) columns.push_back(c.column), water.push_back(c.water);
+    std::vector<char> clings;
+    for (const Covered& c : covered_) columns.push_back(c.column), water.push_back(c.water), clings.push_back(c.clings ? 1 : 0);
+    to.put("covered_clings", clings);
     to.put("covered_columns", columns);
     to.put("covered_water", water);
     to.put("pushed", pushed_);
@@ -441,8 +448,10 @@ void Floats::restore(const Checkpoint& from, real t, const Field& surface, const
     Field water;
     from.get("covered_columns", columns);
     from.get("covered_water", water);
+    std::vector<char> clings;
+    from.get("covered_clings", clings);
     from.get("pushed", std::span<Pushed>(pushed_));
-    for (std::size_t i = 0; i < columns.size(); ++i) add(columns[i], water[i], surface, rate);
+    for (std::size_t i = 0; i < columns.size(); ++i) add(columns[i], water[i], surface, rate), covered_.back().clings = clings[i] != 0;
     for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b]->restore(from, fmt::format("float{}_", b));
     locate(t, surface, rate);
 }

@@ -82,6 +82,7 @@ private:
     /// A column below bodies, or that was below them in the last step.
     struct Covered {
         std::size_t column = 0;
+        bool clings = false;                           // touched by a body whose height is prescribed
         real water = 0;                                // thickness at the beginning of the step [m]
         real surface = 0, rate = 0;                    // then
         std::array<std::size_t, 4> beside{};           // columns along x and z; itself at the ends of the plane

@@ -130,7 +130,8 @@ Key floats_key() {
                      {.name = "density", .type = Type::number, .doc = "Over the water's.", .fallback = 0.5, .min = 0, .min_open = true},
                      {.name = "heave",
                       .type = Type::flag,
-                      .doc = "Whether it rises and sinks by its weight and the water's pressure; else its motion says its height too.",
+                      .doc = "Whether it rises and sinks by its weight and the water's pressure, and lets go of the water where that would "
+                             "have to pull it; else its motion says its height too, and the water clings to it.",
                       .fallback = true},
                      {.name = "motion",
                       .type = Type::table,

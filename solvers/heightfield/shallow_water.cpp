@@ -133,8 +133,10 @@ std::vector<Integral> ShallowWater::integrals() const {
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
     const auto speed2 = [&](std::size_t c) { return h[c] > state_.dry ? (qx[c] * qx[c] + (qz.empty() ? 0 : qz[c] * qz[c])) / h[c] : 0; };
     const real kinetic = sum(speed2), weight = sum([&](std::size_t c) { return h[c] * (state_.bed[c] + 0.5 * h[c]); });
-    std::vector<Integral> list = {{"volume", "m^3", sum([&](std::size_t c) { return h[c]; })},
+    const real volume = sum([&](std::size_t c) { return h[c]; });
+    std::vector<Integral> list = {{"volume", "m^3", volume},
                                   {"poured_volume", "m^3", state_.poured},
+                                  {"volume_balance", "m^3", volume - state_.poured},
                                   {"kinetic_energy", "J", 0.5 * state_.rho * kinetic},
                                   {"potential_energy", "J", state_.rho * state_.g * weight},
                                   {"momentum_x", "kg m/s", state_.rho * sum([&](std::size_t c) { return qx[c]; })}};

@@ -221,3 +221,52 @@ REFERENCE(solitary_wave) {
     if (slope > 0) ref.numbers["run_up"] = 2.831 * depth * std::sqrt(1 / slope) * std::pow(crest / depth, 1.25);
     return ref;
 }
+
+namespace {
+
+/// f on so many times from 0 to `end`.
+template <class F>
+Curve history(const std::string& label, real end, F&& f) {
+    Curve curve{.label = label, .x = {}, .y = {}};
+    constexpr int points = 4000;
+    for (int i = 0; i <= points; ++i) curve.x.push_back(end * i / points), curve.y.push_back(f(end * i / points));
+    return curve;
+}
+
+}  // namespace
+
+REFERENCE(long_wave) {
+    Reference ref{.source = "omega = k sqrt(g d): waves much longer than the water is deep (Lamb 1932, sec. 169)"};
+    const scene::Table& wave = scene.root().tables("liquid").at(0);
+    const real floor = scene.root().numbers("grid.origin").at(1), k = 2 * pi / wave.number("wavelength");
+    const real omega = k * std::sqrt(gravity_down(scene) * (wave.number("level") - floor)), a = wave.number("amplitude");
+    ref.numbers["frequency"] = omega, ref.numbers["amplitude"] = a;
+    ref.curves["amplitude"] = history("long waves", 1.1 * scene.number("time.end"), [=](real t) { return a * std::cos(omega * t); });
+    return ref;
+}
+
+REFERENCE(heave) {
+    Reference ref{.source = "long waves that a heaving box radiates along a channel (Lannes 2017; Bocchi 2020)"};
+    // Below a box of length L, D above the bed, the water moves at -Y' x/D, so that its pressure bears rho L^3/(12 D) of added mass; at the
+    // ends it makes waves of height -Y' L/(2 c). So (M + rho L^3/(12 D)) Y'' + rho g L^2/(2 c) Y' + rho g L Y = 0, a metre of the channel.
+    const scene::Table& box = scene.root().tables("floats").at(0);
+    const real g = gravity_down(scene), rho = scene.number("fluid.density"), length = box.numbers("size").at(0),
+               height = box.numbers("size").at(1);
+    const real density = box.number("density"), depth = -bed_of(scene)({}, 0), draft = density * height, gap = depth - draft;
+    const real mass = rho * density * length * height + rho * length * length * length / (12 * gap);
+    const real damping = rho * g * length * length / (2 * std::sqrt(g * depth)) / (2 * mass), stiffness = rho * g * length / mass;
+    const real omega = std::sqrt(stiffness - damping * damping), start = box.numbers("at").at(1) + draft;
+    ref.numbers["draft"] = draft, ref.numbers["frequency"] = omega, ref.numbers["start"] = start;
+    ref.curves["height"] = history("long waves", 1.1 * scene.number("time.end"), [=](real t) {
+        return start * std::exp(-damping * t) * (std::cos(omega * t) + damping / omega * std::sin(omega * t)) - draft;
+    });
+    return ref;
+}
+
+REFERENCE(dragged) {
+    Reference ref{.source = "Mach's angle, sin a = c/U: waves that all run at c = sqrt(g d)"};
+    const scene::Table& box = scene.root().tables("floats").at(0);
+    const real c = std::sqrt(-gravity_down(scene) * bed_of(scene)({}, 0)), speed = box.numbers("motion.velocity").at(0);
+    ref.numbers["angle"] = std::asin(std::min(1.0, c / speed));
+    return ref;
+}
