@@ -45,9 +45,10 @@ int draw(const PictureArguments& arguments) {
         auto frame = output::read_frame(folder, number, scene.dim());
         picture::particles_as_markers(frame, scene);
         const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
-        if (field == "water" && !frame.particles.count("markers")) throw BadInput("this run has no markers to draw as water");
+        const bool columns = picture::is_of_columns(frame);
+        if (field == "water" && !columns && !frame.particles.count("markers")) throw BadInput("this run has no markers to draw as water");
         const picture::View view{scene, frame, field, arguments.size, arguments.range};
-        pictures.push_back(scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
+        pictures.push_back(columns ? picture::draw_columns(view) : scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
     }
     const std::filesystem::path out = arguments.out.empty() ? folder / "picture.png" : std::filesystem::path(arguments.out);
     row_of(pictures).write(out);

@@ -57,7 +57,7 @@ std::vector<Shown> shown_by(const scene::SolverKind& kind) {
     }
     const scene::Scene plain = validation::plain_scene(kind, dim, cells);
     add_all(list, kind, plain, "");
-    const std::string solids = plain.source() + "solids = [ { shape = \"sphere\", centre = [0.5, 0.5, 0.5], radius = 0.2 } ]\n";
+    const std::string solids = plain.source() + "solids = [ { shape = \"box\", min = [0.3, 0, 0.3], max = [0.7, 0.7, 0.7] } ]\n";
     add_all(list, kind, scene::parse(solids, plain.file(), {kind.schema}), "solids");
     for (const scene::Variant& effect : kind.schema.effects)
         add_all(list, kind, validation::scene_with(kind, dim, cells, {effect.name}, validation::negligible), "effects." + effect.name);

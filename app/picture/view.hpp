@@ -25,6 +25,9 @@ std::vector<real> scalar_field(const output::FrameData& frame, const std::string
 /// Speed of each marker: its own velocity, or the grid's at its place.
 std::vector<real> marker_speeds(const output::FrameData& frame);
 
+/// Whether the frame holds columns of water; they are drawn by what follows, whatever the dimension.
+bool is_of_columns(const output::FrameData& frame);
+Canvas draw_columns(const View& view);
 Canvas draw_2d(const View& view);
 Canvas draw_3d(const View& view);
 

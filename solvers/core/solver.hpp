@@ -51,9 +51,11 @@ struct GridView {
     std::array<real, 3> spacing{0, 0, 0};  // [m]
 };
 
-/// The names by which solvers show their free surface: a cell field, signed distance to it [m], negative in the liquid; and the particle
-/// sets of grid and of particle solvers.
+/// The names by which solvers show their free surface: a cell field, signed distance to it [m], negative in the liquid; depth and height of
+/// the surface of columns of water, on a grid of one cell along y [m]; and the particle sets of grid and of particle solvers.
 inline constexpr const char* level_set_name = "level_set";
+inline constexpr const char* column_depth_name = "depth";
+inline constexpr const char* column_surface_name = "surface";
 inline constexpr const char* marker_set_name = "markers";
 inline constexpr const char* particle_set_name = "particles";
 

@@ -58,6 +58,18 @@ int dimension(const Node& root, const std::string& file, const SolverSchema* sol
 
 }  // namespace
 
+namespace {
+
+void one_cell_along_y(Table& root) {
+    Table* grid = root.find_table("grid");
+    if (!grid || !grid->has("cells")) return;
+    auto cells = grid->numbers("cells");
+    if (cells.size() > 1) cells[1] = 1;
+    grid->set("cells", cells, grid->place("cells"));
+}
+
+}  // namespace
+
 Scene parse(std::string_view source, const std::string& file, const std::vector<SolverSchema>& solvers,
             const std::vector<Override>& overrides) {
     Document document = parse_document(source, file);
@@ -72,6 +84,7 @@ Scene parse(std::string_view source, const std::string& file, const std::vector<
     reader.know(solvers, solver ? solver->name : "");
     const auto keys = keys_of(solver ? *solver : SolverSchema{});
     scene.root_ = reader.root(document.root, keys);
+    if (solver && solver->columns) one_cell_along_y(scene.root_);
     check_rules(scene.root_, scene.dim_, file, problems);
     name_overrides(problems, overrides);
     if (!problems.empty()) throw BadScene(problems, source);

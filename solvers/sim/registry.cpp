@@ -1,6 +1,7 @@
 #include "sim/registry.hpp"
 
 #include "flow/solver.hpp"
+#include "heightfield/solver.hpp"
 #include "pbf/solver.hpp"
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
@@ -12,7 +13,7 @@ namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
     static const std::vector<scene::SolverKind> kinds = {flow::kind(), water::kind(), studies::transport_kind(), studies::poisson_kind(),
-                                                         pbf::kind(),  sph::kind()};
+                                                         pbf::kind(),  sph::kind(),   heightfield::kind()};
     return kinds;
 }
 

@@ -90,11 +90,42 @@ auto along(const FieldView& level_set, const Lattice& lattice, const Vec<3>& x, 
     };
 }
 
+/// Columns of water, each with one depth and one surface.
+struct WaterColumns {
+    const FieldView *depth, *surface;
+    explicit operator bool() const { return depth && surface; }
+};
+WaterColumns columns_of(const FieldSet& fields) { return {fields.find(column_depth_name), fields.find(column_surface_name)}; }
+
+/// Films thinner than this part of the deepest water are no front: a scheme that keeps depths positive lets traces run ahead.
+constexpr real film = 1e-3;
+
+real front_of_columns(const FieldSet& fields, const WaterColumns& water, int axis) {
+    const Lattice lattice = Lattice::of_cells(fields.grid);
+    const auto& depth = water.depth->data[0];
+    const real least = film * *std::max_element(depth.begin(), depth.end());
+    real farthest = fields.grid.origin[static_cast<std::size_t>(axis)];
+    std::array<int, 3> I{};
+    for (I[2] = 0; I[2] < lattice.n[2]; ++I[2])
+        for (I[0] = 0; I[0] < lattice.n[0]; ++I[0]) {
+            const std::size_t c = lattice.linear(I);
+            if (depth[c] <= least) continue;
+            const real reaches = axis == 1 ? water.surface->data[0][c] : coordinate(lattice, axis, I[static_cast<std::size_t>(axis)] + 0.5);
+            farthest = std::max(farthest, reaches);
+        }
+    return farthest;
+}
+
 }  // namespace
 
-bool has_surface(const FieldSet& fields) { return fields.find(level_set_name) || wet_points(fields).position; }
+bool has_surface(const FieldSet& fields) { return fields.find(level_set_name) || columns_of(fields) || wet_points(fields).position; }
 
 real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
+    if (const WaterColumns water = columns_of(fields)) {
+        const Lattice lattice = Lattice::of_cells(fields.grid);
+        const real depth = sample(water.depth->data[0], lattice, x);
+        return depth > 0 ? sample(water.surface->data[0], lattice, x) : fields.grid.origin[static_cast<std::size_t>(axis)];
+    }
     const FieldView* level_set = fields.find(level_set_name);
     if (!level_set) return highest_point(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
@@ -103,6 +134,7 @@ real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
 }
 
 real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
+    if (const WaterColumns water = columns_of(fields)) return sample(water.depth->data[0], Lattice::of_cells(fields.grid), x);
     const FieldView* level_set = fields.find(level_set_name);
     if (!level_set) return depth_of_points(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
@@ -114,6 +146,7 @@ real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
 }
 
 real front(const FieldSet& fields, int axis) {
+    if (const WaterColumns water = columns_of(fields)) return front_of_columns(fields, water, axis);
     const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
     real farthest = fields.grid.origin[a];
     if (const FieldView* level_set = fields.find(level_set_name)) {

@@ -164,6 +164,27 @@ std::map<std::string, Said> everything() {
                   "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
                   "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
         all(probes("density"), refused_by_particles)};
+    const std::string of_input = std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/", asc = of_input + "hill.asc",
+                      pgm = of_input + "hill.pgm";
+    const std::string hill = "terrain = { kind = ";
+    said["heightfield"] = {
+        liquid,
+        all(of_the_run, probes("surface"), of_the_surface, open_sides, Lines{walls[0]},
+            Lines{"solids = [ { shape = \"box\", min = [0.7, 0.0], max = [0.9, 0.9], slip = \"free\", motion = { kind = \"constant\", "
+                  "velocity = "
+                  "[0.1, 0] } } ]",
+                  "liquid = []\ninitial = { surface = \"0.4 + 0.1*sin(6*x)\", velocity = { name = \"formula\", x = \"0.1\" } }",
+                  "liquid = []\ninitial = { surface = \"0.5\", velocity = { name = \"constant\", value = [0.1, 0] } }", inflow + " } }",
+                  "sides = { x_min = { kind = \"discharge\", discharge = 0.1 }, x_max = { kind = \"level\", level = 0.5 } }",
+                  hill + "\"formula\", height = \"0.1*x\" }", hill + "\"asc\", file = \"" + asc + "\", corner = [0, 0], nodata = 0 }",
+                  hill + "\"image\", file = \"" + pgm + "\", black = 0, white = 0.2 }",
+                  "scheme = { model = \"shallow_water\", limiter = \"mc\", dry_depth = 1e-5 }", "time.cfl = 0.4",
+                  "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]",
+                  "effects.friction = { law = \"manning\", n = 0.03 }", "effects.friction = { law = \"quadratic\", c = 0.003 }",
+                  "effects.rain = { rate = 0.001, over = [0, 1], start = 0, end = 1 }"}),
+        all(Lines{walls[1], at_the_wall, "liquid = [ { shape = \"sphere\", centre = [0.5, 0.7], radius = 0.1 } ]"}),
+        {"liquid = []\ninitial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1\", z = \"0.1\" } }",
+         "liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"}};
     return said;
 }
 

@@ -43,8 +43,8 @@ double median(std::vector<double> list) {
 std::optional<scene::Scene> divided(const scene::Scene& scene, int by, const std::vector<scene::SolverSchema>& schemas) {
     std::vector<std::string> cells;
     for (const double n : scene.root().numbers("grid.cells")) {
-        if (std::fmod(n, by) != 0 || n / by < 4) return std::nullopt;
-        cells.push_back(fmt::format("{:.0f}", n / by));
+        if (n != 1 && (std::fmod(n, by) != 0 || n / by < 4)) return std::nullopt;  // 1: columns
+        cells.push_back(fmt::format("{:.0f}", n == 1 ? n : n / by));
     }
     auto overrides = scene.overrides();
     overrides.push_back({"grid.cells", fmt::format("[{}]", fmt::join(cells, ", "))});

@@ -1,4 +1,4 @@
-// A standing wave: the amplitude of its one mode, read off the level set, against the linear (viscous) solution.
+// A standing wave: the amplitude of its one mode, read off the level set or the surface of columns, against the linear (viscous) solution.
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
@@ -20,15 +20,16 @@ real surface_height(const FieldSet& fields, const FieldView& phi, int i) {
 
 /// Amplitude of cos(k x) in the surface: 2/n sum eta cos(k x). The mean level drops out, and so do the other modes.
 real mode_amplitude(const FieldSet& fields, const scene::Scene& scene, real) {
-    const FieldView* phi = fields.find("level_set");
-    if (!phi) throw BadInput("the solver shows no field \"level_set\"");
+    const FieldView *phi = fields.find("level_set"), *columns = fields.find("surface");
+    if (!phi && !columns) throw BadInput("the solver shows no field \"level_set\" and no \"surface\"");
     const GridView& g = fields.grid;
     const scene::Table& wave = scene.root().tables("liquid").at(0);
     const real k = 2 * pi / wave.number("wavelength");
     real sum = 0;
     for (int i = 0; i < g.cells[0]; ++i) {
         const real x = g.origin[0] + g.spacing[0] * (i + 0.5);
-        sum += (surface_height(fields, *phi, i) - wave.number("level")) * std::cos(k * x);
+        const real height = phi ? surface_height(fields, *phi, i) : columns->data[0][static_cast<std::size_t>(i)];
+        sum += (height - wave.number("level")) * std::cos(k * x);
     }
     return 2 * sum / g.cells[0];
 }

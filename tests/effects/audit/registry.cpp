@@ -30,6 +30,12 @@ std::vector<scene::SolverKind> with_effects(int dim) {
     return kinds;
 }
 
+/// So many along each axis that a scene holds a megabyte; columns have one along y.
+int cells_of(const scene::SolverKind& kind, int dim) {
+    if (kind.schema.columns) return dim == 2 ? 16384 : 128;
+    return dim == 2 ? 192 : 32;
+}
+
 }  // namespace
 
 TEST_IN_2D_AND_3D("a step without effects is what the solver registers as plain") {
@@ -51,7 +57,7 @@ TEST_IN_2D_AND_3D("a solver tells of every byte that it holds, with each effect 
         std::vector<std::vector<std::string>> scenes{{}};
         for (const auto& effect : kind.schema.effects) scenes.push_back({effect.name});
         for (const auto& effects : scenes) {
-            const scene::Scene scene = validation::scene_with(kind, D, D == 2 ? 192 : 32, effects, validation::negligible);
+            const scene::Scene scene = validation::scene_with(kind, D, cells_of(kind, D), effects, validation::negligible);
             const long before = bytes_held();
             const auto solver = kind.make(scene);
             for (int s = 0; s < 2; ++s) solver->step(std::min(solver->advised_dt(), 1e-3));

@@ -1,0 +1,245 @@
+#include "heightfield/columns.hpp"
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::heightfield {
+
+namespace {
+
+constexpr int checked_every = 16;  // steps: a look at all columns costs as much as half a step
+
+void refuse_what_columns_cannot(const scene::Scene& scene, const State& state) {
+    for (const char* effect : {"friction", "rain"})
+        if (scene.effect(effect))
+            scene.refuse(std::string("effects.") + effect, "columns that pull their neighbours have no currents and keep their still depth",
+                         "scheme.model = \"shallow_water\" has both");
+    if (state.push[0] != 0 || state.push[1] != 0)
+        scene.refuse("effects.gravity.g", "columns pull their neighbours along y only",
+                     "scheme.model = \"shallow_water\" runs down slopes");
+    if (scene.has("initial.velocity"))
+        scene.refuse("initial.velocity", "columns that pull their neighbours have no currents",
+                     "scheme.model = \"shallow_water\" has them");
+    for (int axis = 0; axis < scene.dim() - 1; ++axis)
+        for (int end = 0; end < 2; ++end)
+            if (const SideKind kind = state.sides(axis, end).kind;
+                kind != SideKind::wall && kind != SideKind::periodic && kind != SideKind::outflow)
+                scene.refuse(fmt::format("sides.{}_{}", "xz"[axis], end == 0 ? "min" : "max"),
+                             "nothing flows in where columns only pull their neighbours", "known: wall, outflow, open, periodic");
+}
+
+}  // namespace
+
+Columns::Columns(const scene::Scene& scene)
+    : state_(scene),
+      surface_(state_.plane.count()),
+      rate_(state_.plane.count(), 0),
+      periodic_x_(state_.sides(0, 0).kind == SideKind::periodic),
+      periodic_z_(state_.sides(1, 0).kind == SideKind::periodic),
+      sweep_(state_.plane, periodic_x_, periodic_z_),
+      floats_(make_floats(scene, state_.plane), state_.plane, state_.bed, state_.h, state_.g, state_.rho, periodic_x_, periodic_z_),
+      depth_(state_.plane.count()),
+      nothing_(state_.plane.count(), 0),
+      cfl_(scene.number("time.cfl")) {
+    refuse_what_columns_cannot(scene, state_);
+    Field().swap(state_.qx), Field().swap(state_.qz);
+    // the still depth is that below the mean surface, so that waves at the start are no deeper water
+    const real wet = sum([&](std::size_t c) { return state_.h[c] > state_.dry ? 1.0 : 0.0; });
+    if (wet == 0) scene.refuse("solver", "there is no water in this scene", "liquid, or initial.surface");
+    const real still = sum([&](std::size_t c) { return state_.h[c] > state_.dry ? state_.h[c] + state_.bed[c] : 0.0; }) / wet;
+    for (std::size_t c = 0; c < surface_.size(); ++c) {
+        const bool is_wet = state_.h[c] > state_.dry;
+        surface_[c] = state_.h[c] + state_.bed[c];
+        state_.h[c] = is_wet ? std::max(0.0, still - state_.bed[c]) : 0;
+    }
+    make_stiffness();
+    if (!floats_.empty()) {
+        displaced_.resize(state_.plane.count());
+        floats_.enter(surface_, rate_, k_);
+    }
+    if (scene.effect("gravity")) plans_.push_back({.name = "gravity", .inside = "move columns"});
+    if (const auto* t = scene.effect("damping")) {
+        damping_ = t->number("rate");
+        plans_.push_back({.name = "damping", .pass = effect_pass("damping")});
+    }
+}
+
+/// Faces between two wet columns pull by g times the mean of their still depths.
+void Columns::make_stiffness() {
+    const Plane& plane = state_.plane;
+    const Field& depth = state_.h;
+    const auto between = [&](std::size_t a, std::size_t b, real d) {
+        return depth[a] > 0 && depth[b] > 0 ? state_.g * 0.5 * (depth[a] + depth[b]) / (d * d) : 0;
+    };
+    const real first = depth[0];
+    k_.uniform = floats_.empty() && std::all_of(depth.begin(), depth.end(), [&](real d) { return std::abs(d - first) <= 1e-12 * first; });
+    k_.along_x = between(0, 0, plane.dx), k_.along_z = plane.dim == 3 ? between(0, 0, plane.dz) : 0;
+    real stiffest = 2 * (k_.along_x + k_.along_z);
+    if (!k_.uniform) {
+        const int nx = plane.nx, nz = plane.nz;
+        k_.x.assign(static_cast<std::size_t>(nx + 1) * static_cast<std::size_t>(nz), 0);
+        k_.z.assign(static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz + 1), 0);
+        for (int r = 0; r < nz; ++r)
+            for (int f = 0; f <= nx; ++f)
+                if (periodic_x_ || (f > 0 && f < nx))
+                    k_.x[static_cast<std::size_t>(r) * static_cast<std::size_t>(nx + 1) + static_cast<std::size_t>(f)] =
+                        between(plane.at((f - 1 + nx) % nx, r), plane.at(f % nx, r), plane.dx);
+        for (int f = 0; plane.dim == 3 && f <= nz; ++f)
+            for (int i = 0; i < nx; ++i)
+                if (periodic_z_ || (f > 0 && f < nz))
+                    k_.z[plane.at(i, f)] = between(plane.at(i, (f - 1 + nz) % nz), plane.at(i, f % nz), plane.dz);
+        const real deepest = *std::max_element(depth.begin(), depth.end()), k = 2 * state_.g * deepest;
+        stiffest = k / (plane.dx * plane.dx) + (plane.dim == 3 ? k / (plane.dz * plane.dz) : 0);
+    }
+    limit_ = stiffest > 0 ? std::sqrt(2 / stiffest) : infinity;
+}
+
+StepReport Columns::step(real dt) {
+    if (!floats_.empty()) {
+        const auto timed = passes_.time("place floats");
+        floats_.before(state_.time + dt, surface_, rate_, k_);
+    }
+    {
+        const auto timed = passes_.time("move columns");
+        sweep_.step(surface_, rate_, k_, dt);
+    }
+    if (!floats_.empty()) {
+        const auto timed = passes_.time("floats");
+        floats_.after(dt, surface_, rate_);
+    }
+    state_.poured += dt * through_;  // the sweep moved by the rates that sides and damping have yet to change
+    if (damping_ > 0) {
+        const auto timed = passes_.time("effect damping");
+        const real left = std::exp(-dt * damping_);
+        const auto n = static_cast<std::size_t>(state_.plane.nx);
+        parallel_for(0, state_.plane.nz, [&](int r) {
+            for (std::size_t c = static_cast<std::size_t>(r) * n; c < static_cast<std::size_t>(r + 1) * n; ++c) rate_[c] *= left;
+        });
+        through_ *= left;
+    }
+    if (state_.sides.any_open()) let_out(dt);
+    state_.time += dt;
+    if (++steps_ % checked_every == 0) check();
+    return {.dt = dt, .cfl = dt / limit_, .iterations = floats_.iterations()};
+}
+
+/// Open sides take what arrives: the discharge through the side is c times the height of the wave, so that dw/dt = -c/dx w there.
+void Columns::let_out(real dt) {
+    const Plane& plane = state_.plane;
+    real taken = 0;
+    const auto slow = [&](int i, int r, real d) {
+        const std::size_t c = plane.at(i, r);
+        const real before = rate_[c];
+        rate_[c] = before / (1 + dt * std::sqrt(state_.g * state_.h[c]) / d);
+        taken += rate_[c] - before;
+    };
+    for (int end = 0; end < 2; ++end) {
+        for (int r = 0; state_.sides.open(0, end) && r < plane.nz; ++r) slow(end == 0 ? 0 : plane.nx - 1, r, plane.dx);
+        for (int i = 0; state_.sides.open(1, end) && i < plane.nx; ++i) slow(i, end == 0 ? 0 : plane.nz - 1, plane.dz);
+    }
+    through_ += plane.area() * taken;
+}
+
+void Columns::check() const {
+    const Plane& plane = state_.plane;
+    const real least = -ordered_max(plane.nz, [&](int r) {
+        real most = -infinity;
+        for (int i = 0; i < plane.nx; ++i) {
+            const std::size_t c = plane.at(i, r);
+            const real shallow = state_.h[c] > 0 ? state_.bed[c] - surface_[c] : -infinity;
+            if (!(shallow <= most)) most = shallow;
+            if (std::isnan(most)) break;
+        }
+        return most;
+    });
+    if (std::isnan(least) || std::isinf(surface_[0])) throw NumericalFailure("surface", "surface is no longer finite");
+    if (least < 0)
+        throw NumericalFailure("depth",
+                               "a column ran dry: columns that pull their neighbours keep their depth; scheme.model = \"shallow_water\" "
+                               "has dry ground");
+}
+
+std::string Columns::concern() const {
+    if (floats_.empty()) return {};
+    const real over = floats_.over_top(surface_);
+    return over > 0 ? fmt::format("water stands {:.3g} m above the top of a float: a height field has none over objects", over)
+                    : std::string();
+}
+
+FieldSet Columns::fields() const {
+    for (std::size_t c = 0; c < depth_.size(); ++c) depth_[c] = surface_[c] - state_.bed[c];
+    FieldSet set{.grid = state_.plane.view(),
+                 .fields = {{"velocity", "m/s", Where::cell, "", {nothing_, rate_}},
+                            {"depth", "m", Where::cell, "", {depth_}},
+                            {"surface", "m", Where::cell, "", {surface_}},
+                            {"bed", "m", Where::cell, "", {state_.bed}}}};
+    if (state_.plane.dim == 3) set.fields[0].data.push_back(nothing_);
+    if (!floats_.empty()) {
+        floats_.displaced(surface_, displaced_);
+        for (std::size_t c = 0; c < depth_.size(); ++c) depth_[c] -= displaced_[c];
+        set.fields.push_back({"displaced", "m", Where::cell, "", {displaced_}});
+    }
+    return set;
+}
+
+template <class F>
+real Columns::sum(F&& f) const {
+    const Plane& plane = state_.plane;
+    return plane.area() * ordered_sum(plane.nz, [&](int r) {
+               real total = 0;
+               for (int i = 0; i < plane.nx; ++i) total += f(plane.at(i, r));
+               return total;
+           });
+}
+
+std::vector<Integral> Columns::integrals() const {
+    const real columns = sum([&](std::size_t c) { return surface_[c] - state_.bed[c]; });
+    const real volume = columns + floats_.missing(surface_);
+    std::vector<Integral> list = {
+        {"volume", "m^3", volume}, {"poured_volume", "m^3", state_.poured}, {"volume_balance", "m^3", volume - state_.poured}};
+    for (std::size_t b = 0; b < floats_.count(); ++b) {
+        const std::string name = fmt::format("float{}_", b);
+        const Pushed& p = floats_.pushed(b);
+        list.push_back({name + "height", "m", floats_.body(b).height()});
+        list.push_back({name + "speed", "m/s", floats_.body(b).speed()});
+        list.push_back({name + "displaced", "m^3", p.displaced});
+        list.push_back({name + "force_x", "N", p.along_x});
+        list.push_back({name + "force_y", "N", p.up});
+        if (state_.plane.dim == 3) list.push_back({name + "force_z", "N", p.along_z});
+    }
+    return list;
+}
+
+void Columns::save(Checkpoint& to) const {
+    to.put("surface", surface_);
+    to.put("rate", rate_);
+    to.put_value("time", state_.time);
+    to.put_value("poured", state_.poured);
+    to.put_value("through", through_);
+    to.put_value("steps", steps_);
+    if (!floats_.empty()) floats_.save(to);
+}
+
+void Columns::restore(const Checkpoint& from) {
+    from.get("surface", std::span<real>(surface_));
+    from.get("rate", std::span<real>(rate_));
+    state_.time = from.get_value<real>("time");
+    state_.poured = from.get_value<real>("poured");
+    through_ = from.get_value<real>("through");
+    steps_ = from.get_value<std::int64_t>("steps");
+    if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
+}
+
+std::size_t Columns::bytes() const {
+    std::size_t total = state_.bytes() + k_.bytes() + sweep_.bytes() + floats_.bytes();
+    for (const Field* f : {&surface_, &rate_, &std::as_const(depth_), &std::as_const(displaced_), &nothing_})
+        total += f->capacity() * sizeof(real);
+    return total;
+}
+
+}  // namespace weir::heightfield

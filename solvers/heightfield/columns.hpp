@@ -1,0 +1,49 @@
+// Columns as real-time graphics moves them (sweep.hpp), with objects that float or are dragged (floats.hpp).
+#pragma once
+#include "heightfield/effects.hpp"
+#include "heightfield/floats.hpp"
+#include "heightfield/sweep.hpp"
+
+namespace weir::heightfield {
+
+class Columns final : public Solver {
+public:
+    explicit Columns(const scene::Scene& scene);
+    StepReport step(real dt) override;
+    real advised_dt() const override { return cfl_ * limit_; }
+    StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }
+    std::string concern() const override;
+    FieldSet fields() const override;
+    bool checks_itself() const override { return true; }
+    std::vector<Integral> integrals() const override;
+    real time() const override { return state_.time; }
+    void save(Checkpoint& to) const override;
+    void restore(const Checkpoint& from) override;
+    const Passes& passes() const override { return passes_; }
+    Passes& passes() override { return passes_; }
+    std::size_t bytes() const override;
+    std::vector<EffectPlan> effects() const override { return plans_; }
+
+private:
+    void make_stiffness();
+    void let_out(real dt);
+    void check() const;
+    template <class F>
+    real sum(F&& f) const;
+
+    State state_;  // h is the still depth
+    Field surface_, rate_;
+    bool periodic_x_, periodic_z_;
+    Stiffness k_;
+    Sweep sweep_;
+    Floats floats_;
+    std::vector<EffectPlan> plans_;
+    mutable Field depth_, displaced_;
+    Field nothing_;
+    Passes passes_;
+    real cfl_ = 0, limit_ = infinity, damping_ = 0;
+    real through_ = 0;  // volume a second that sides let in [m^3/s]
+    std::int64_t steps_ = 0;
+};
+
+}  // namespace weir::heightfield

@@ -1,0 +1,459 @@
+#include "heightfield/floats.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::heightfield {
+
+namespace {
+
+constexpr real exact = 1e-14;  // of the right-hand side: what the solve leaves
+
+/// A box whose sides stand upright and along the axes.
+template <int D>
+class Box final : public Body {
+public:
+    Box(const scene::Table& table, const Plane& plane, real rho) : plane_(plane), size_(table.vec<D>("size")), at_(table.vec<D>("at")) {
+        if (table.has("motion")) motion_ = geometry::Motion<D>::make(table.table("motion"), at_);
+        heaves_ = table.flag("heave");
+        height_ = at_[1];
+        real volume = 1;
+        for (int a = 0; a < D; ++a) volume *= size_[a];
+        mass_ = heaves_ ? rho * table.number("density") * volume : infinity;
+    }
+    void move(real t, std::vector<Cover>& covers) override {
+        const geometry::Pose<D> pose = motion_.pose(t);
+        if (!heaves_) height_ = at_[1] + pose.offset[1], speed_ = pose.velocity[1];
+        const real x = at_[0] + pose.offset[0], x0 = x - size_[0] / 2 - plane_.x0, x1 = x + size_[0] / 2 - plane_.x0;
+        real z0 = 0, z1 = plane_.dz;
+        if constexpr (D == 3) {
+            const real z = at_[2] + pose.offset[2];
+            z0 = z - size_[2] / 2 - plane_.z0, z1 = z + size_[2] / 2 - plane_.z0;
+        }
+        const auto first = [](real from, real d) { return std::max(0, static_cast<int>(std::floor(from / d))); };
+        const auto behind = [](real to, real d, int n) { return std::min(n, static_cast<int>(std::ceil(to / d))); };
+        const auto part = [](real from, real to, int i, real d) {
+            return std::max(0.0, (std::min(to, (i + 1) * d) - std::max(from, i * d)) / d);
+        };
+        for (int k = first(z0, plane_.dz); k < behind(z1, plane_.dz, plane_.nz); ++k)
+            for (int i = first(x0, plane_.dx); i < behind(x1, plane_.dx, plane_.nx); ++i)
+                if (const real covered = part(x0, x1, i, plane_.dx) * part(z0, z1, k, plane_.dz); covered > 1e-12)
+                    covers.push_back({plane_.at(i, k), std::min(1.0, covered), 0});
+    }
+    real mass() const override { return mass_; }
+    real height() const override { return height_; }
+    real speed() const override { return speed_; }
+    void set(real height, real speed) override {
+        if (heaves_) height_ = height, speed_ = speed;
+    }
+    real top() const override { return size_[1]; }
+    void save(Checkpoint& to, const std::string& name) const override {
+        to.put_value(name + "height", height_);
+        to.put_value(name + "speed", speed_);
+    }
+    void restore(const Checkpoint& from, const std::string& name) override {
+        height_ = from.get_value<real>(name + "height");
+        speed_ = from.get_value<real>(name + "speed");
+    }
+
+private:
+    Plane plane_;
+    Vec<D> size_, at_;
+    geometry::Motion<D> motion_;
+    bool heaves_ = true;
+    real height_ = 0, speed_ = 0, mass_ = 0;
+};
+
+template <int D>
+std::unique_ptr<Body> make_box(const scene::Scene& scene, std::size_t n, const Plane& plane, real rho) {
+    const scene::Table& table = scene.root().tables("floats")[n];
+    const std::string path = fmt::format("floats[{}]", n);
+    if (!scene.effect("gravity")) scene.refuse(path, "without gravity nothing floats", "effects.gravity.g = [0, -9.81]");
+    for (const double s : table.numbers("size"))
+        if (!(s > 0)) scene.refuse(path + ".size", "an object has a size greater than 0 along each axis");
+    if (table.flag("heave") && table.number("density") >= 1)
+        scene.refuse(path + ".density", "what is as dense as water sinks, and a height field knows nothing below the surface",
+                     "density is relative to the water's; heave = false holds the object where its motion says");
+    if (table.has("motion"))
+        if (const std::string& kind = table.text("motion.kind"); kind == "rotation")
+            scene.refuse(path + ".motion", "objects on columns do not turn", "known: constant, sinusoidal, keyframes without angle");
+    return std::make_unique<Box<D>>(table, plane, rho);
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<Body>> make_floats(const scene::Scene& scene, const Plane& plane) {
+    std::vector<std::unique_ptr<Body>> list;
+    const real rho = scene.number("fluid.density");
+    for (std::size_t n = 0; n < scene.root().tables("floats").size(); ++n)
+        list.push_back(scene.dim() == 2 ? make_box<2>(scene, n, plane, rho) : make_box<3>(scene, n, plane, rho));
+    return list;
+}
+
+Floats::Floats(std::vector<std::unique_ptr<Body>> bodies, const Plane& plane, const Field& bed, const Field& still_depth, real g, real rho,
+               bool periodic_x, bool periodic_z)
+    : bodies_(std::move(bodies)),
+      plane_(plane),
+      bed_(bed),
+      depth_(still_depth),
+      g_(g),
+      rho_(rho),
+      periodic_x_(periodic_x),
+      periodic_z_(periodic_z),
+      pushed_(bodies_.size()) {
+    if (!bodies_.empty()) place_of_.assign(plane.count(), -1);
+    stiff_.resize(bodies_.size()), given_.resize(bodies_.size());
+}
+
+void Floats::add(std::size_t column, real water, const Field& surface, const Field& rate) {
+    place_of_[column] = static_cast<std::ptrdiff_t>(covered_.size());
+    Covered c;
+    c.column = column, c.water = water, c.surface = surface[column], c.rate = rate[column];
+    covered_.push_back(c);
+}
+
+/// The columns that bodies cover at time t, behind those that they covered before.
+void Floats::locate(real t, const Field& surface, const Field& rate) {
+    for (Covered& c : covered_) c.surface = surface[c.column], c.rate = rate[c.column];
+    contacts_.clear();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        covers_.clear();
+        bodies_[b]->move(t, covers_);
+        const real height = bodies_[b]->height();
+        for (const Cover& c : covers_) {
+            if (place_of_[c.column] < 0) add(c.column, surface[c.column] - bed_[c.column], surface, rate);
+            if (depth_[c.column] > 0 && !(c.underside + height > bed_[c.column]))
+                throw NumericalFailure("float", fmt::format("object {} stands on the bed: there is no water below it", b));
+            const bool clings = covered_[static_cast<std::size_t>(place_of_[c.column])].clings && !(bodies_[b]->mass() < infinity);
+            const bool touches = clings || surface[c.column] > c.underside + height;
+            contacts_.push_back({static_cast<std::size_t>(place_of_[c.column]), b, c.part, c.underside, touches});
+        }
+    }
+    for (Field* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_}) f->assign(covered_.size(), 0);
+}
+
+/// What is left for water below bodies, and between them.
+void Floats::see_depths() {
+    std::fill(free_.begin(), free_.end(), 1.0);
+    std::fill(gap_.begin(), gap_.end(), 0.0);
+    for (const Contact& c : contacts_) {
+        const std::size_t column = covered_[c.place].column;
+        free_[c.place] -= c.part;
+        gap_[c.place] += c.part * (c.underside + bodies_[c.body]->height() - bed_[column]);
+    }
+    for (std::size_t i = 0; i < covered_.size(); ++i) {
+        if (free_[i] < -1e-9) throw NumericalFailure("float", "two objects are in the same place");
+        gap_[i] += free_[i] * depth_[covered_[i].column];
+    }
+}
+
+void Floats::set_stiffness(Stiffness& k) {
+    see_depths();
+    const int nx = plane_.nx, nz = plane_.nz;
+    const auto depth = [&](std::size_t c) { return place_of_[c] < 0 ? depth_[c] : gap_[static_cast<std::size_t>(place_of_[c])]; };
+    const auto between = [&](std::size_t a, std::size_t b, real d) {
+        return depth_[a] > 0 && depth_[b] > 0 ? g_ * 0.5 * (depth(a) + depth(b)) / (d * d) : 0;
+    };
+    for (const Covered& c : covered_) {
+        const int i = static_cast<int>(c.column % static_cast<std::size_t>(nx)),
+                  r = static_cast<int>(c.column / static_cast<std::size_t>(nx));
+        const std::size_t row = static_cast<std::size_t>(r) * static_cast<std::size_t>(nx + 1);
+        for (const int f : {i, i + 1}) {
+            const bool end = f == 0 || f == nx;
+            if (end && !periodic_x_) continue;
+            const real value = between(plane_.at((f - 1 + nx) % nx, r), plane_.at(f % nx, r), plane_.dx);
+            k.x[row + static_cast<std::size_t>(f)] = value;
+            if (end) k.x[row + static_cast<std::size_t>(nx - f)] = value;
+        }
+        for (const int f : {r, r + 1}) {
+            const bool end = f == 0 || f == nz;
+            if (plane_.dim == 2 || (end && !periodic_z_)) continue;
+            const real value = between(plane_.at(i, (f - 1 + nz) % nz), plane_.at(i, f % nz), plane_.dz);
+            k.z[plane_.at(i, f)] = value;
+            if (end) k.z[plane_.at(i, nz - f)] = value;
+        }
+    }
+}
+
+void Floats::see_neighbours(const Field& surface, const Stiffness& k) {
+    const int nx = plane_.nx, nz = plane_.nz;
+    for (Covered& c : covered_) {
+        const int i = static_cast<int>(c.column % static_cast<std::size_t>(nx)),
+                  r = static_cast<int>(c.column / static_cast<std::size_t>(nx));
+        const std::size_t row = static_cast<std::size_t>(r) * static_cast<std::size_t>(nx + 1) + static_cast<std::size_t>(i);
+        c.k = {k.x[row], k.x[row + 1], k.z[c.column], k.z[c.column + static_cast<std::size_t>(nx)]};
+        c.beside = {plane_.at((i - 1 + nx) % nx, r), plane_.at((i + 1) % nx, r), plane_.at(i, (r - 1 + nz) % nz),
+                    plane_.at(i, (r + 1) % nz)};
+        for (std::size_t f = 0; f < 4; ++f) c.surface_beside[f] = surface[c.beside[f]], c.place_beside[f] = place_of_[c.beside[f]];
+    }
+}
+
+void Floats::enter(const Field& surface, const Field& rate, Stiffness& k) {
+    locate(0, surface, rate);
+    for (const Contact& c : contacts_) {
+        Covered& below = covered_[c.place];
+        if (c.touches) below.water -= c.part * (below.surface - c.underside - bodies_[c.body]->height());
+    }
+    set_stiffness(k);
+    see_neighbours(surface, k);
+    for (std::size_t i = 0; i < covered_.size(); ++i) x_[i] = covered_[i].surface;
+    tell();
+}
+
+void Floats::before(real t, const Field& surface, const Field& rate, Stiffness& k) {
+    locate(t, surface, rate);
+    set_stiffness(k);
+    see_neighbours(surface, k);
+}
+
+void Floats::after(real dt, Field& surface, Field& rate) {
+    constexpr int most = 8;  // times that contacts change within a step
+    for (int n = 0; n < most; ++n) {
+        set_up(dt);
+        solve(dt);
+        if (!change_contacts()) break;
+    }
+    take(dt, surface, rate);
+}
+
+/// The system for s of the covered columns at the end of the step. A body's height Y follows: M (Y - Y_0 - dt v)/dt^2 = rho g A sum f (s -
+/// u - Y) - M g, over rho g A:  (m + F) Y = m (Y_0 + dt v - dt^2 g) + sum f (s - u).
+void Floats::set_up(real dt) {
+    std::fill(free_.begin(), free_.end(), 1.0);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const Body& body = *bodies_[b];
+        const real m = body.mass() / (rho_ * plane_.area() * dt * dt * g_);
+        stiff_[b] = m;
+        given_[b] = m < infinity ? m * (body.height() + dt * body.speed() - dt * dt * g_) : body.height();
+    }
+    for (const Contact& c : contacts_) {
+        if (!c.touches) continue;
+        free_[c.place] -= c.part;
+        if (stiff_[c.body] < infinity) stiff_[c.body] += c.part, given_[c.body] -= c.part * c.underside;
+    }
+    for (std::size_t i = 0; i < covered_.size(); ++i) {
+        const Covered& c = covered_[i];
+        real rhs = c.water + dt * c.rate + free_[i] * bed_[c.column], stiffness = 0;
+        for (std::size_t f = 0; f < 4; ++f) {
+            stiffness += c.k[f];
+            if (c.place_beside[f] < 0) rhs += dt * dt * c.k[f] * c.surface_beside[f];
+        }
+        diagonal_[i] = free_[i] + dt * dt * stiffness;
+        r_[i] = rhs;
+        x_[i] = c.surface;
+    }
+    for (const Contact& c : contacts_) {
+        if (!c.touches) continue;
+        const bool free = stiff_[c.body] < infinity;
+        r_[c.place] -= c.part * (c.underside - bed_[covered_[c.place].column] + (free ? given_[c.body] / stiff_[c.body] : given_[c.body]));
+    }
+}
+
+/// y = A x:  (1 - f) s + dt^2 sum k (s - s_beside) + f sum f s/(m + F)
+void Floats::multiply(const Field& x, Field& y, real dt) const {
+    for (std::size_t i = 0; i < covered_.size(); ++i) {
+        const Covered& c = covered_[i];
+        real sum = diagonal_[i] * x[i];
+        for (std::size_t f = 0; f < 4; ++f)
+            if (c.place_beside[f] >= 0) sum -= dt * dt * c.k[f] * x[static_cast<std::size_t>(c.place_beside[f])];
+        y[i] = sum;
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        if (!(stiff_[b] < infinity)) continue;
+        real sum = 0;
+        for (const Contact& c : contacts_)
+            if (c.body == b && c.touches) sum += c.part * x[c.place];
+        for (const Contact& c : contacts_)
+            if (c.body == b && c.touches) y[c.place] += c.part * sum / stiff_[b];
+    }
+}
+
+/// Conjugate gradients, preconditioned by the diagonal.
+void Floats::solve(real dt) {
+    const std::size_t n = covered_.size();
+    const auto dot = [n](const Field& a, const Field& b) {
+        real sum = 0;
+        for (std::size_t i = 0; i < n; ++i) sum += a[i] * b[i];
+        return sum;
+    };
+    const auto over = [&](std::size_t i) { return diagonal_[i] > 0 ? 1 / diagonal_[i] : 0; };
+    const real wanted = exact * exact * dot(r_, r_);
+    multiply(x_, ap_, dt);
+    for (std::size_t i = 0; i < n; ++i) r_[i] -= ap_[i], p_[i] = over(i) * r_[i];
+    real rz = dot(r_, p_);
+    for (iterations_ = 0; iterations_ < static_cast<int>(4 * n + 50) && dot(r_, r_) > wanted && rz > 0; ++iterations_) {
+        multiply(p_, ap_, dt);
+        const real curvature = dot(p_, ap_);
+        if (!(curvature > 0)) break;
+        const real a = rz / curvature;
+        for (std::size_t i = 0; i < n; ++i) x_[i] += a * p_[i], r_[i] -= a * ap_[i];
+        real next = 0;
+        for (std::size_t i = 0; i < n; ++i) next += over(i) * r_[i] * r_[i];
+        for (std::size_t i = 0; i < n; ++i) p_[i] = over(i) * r_[i] + next / rz * p_[i];
+        rz = next;
+    }
+}
+
+real Floats::height_of(std::size_t b) const {
+    if (!(stiff_[b] < infinity)) return given_[b];
+    real sum = given_[b];
+    for (const Contact& c : contacts_)
+        if (c.body == b && c.touches) sum += c.part * x_[c.place];
+    return sum / stiff_[b];
+}
+
+/// Water pushes and never pulls: where the pressure would be negative the body lets go, and where water stands higher than it, it touches.
+/// One whose height is prescribed does not let go: air that would have to get below a hull held down has no way in that columns know of.
+bool Floats::change_contacts() {
+    bool changed = false;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const real height = height_of(b);
+        for (Contact& c : contacts_) {
+            if (c.body != b || (c.touches && !(bodies_[b]->mass() < infinity))) continue;
+            const bool touches = x_[c.place] > c.underside + height;
+            changed = changed || touches != c.touches;
+            c.touches = touches;
+        }
+    }
+    return changed;
+}
+
+/// Rates and heights by the solution; what crosses a face leaves one column and enters the other, so that water is kept whatever the solve
+/// left.
+void Floats::take(real dt, Field& surface, Field& rate) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        if (const real height = height_of(b); bodies_[b]->mass() < infinity) bodies_[b]->set(height, (height - bodies_[b]->height()) / dt);
+    for (std::size_t i = 0; i < covered_.size(); ++i) {
+        Covered& c = covered_[i];
+        real w = c.rate;
+        for (std::size_t f = 0; f < 4; ++f) {
+            const std::ptrdiff_t place = c.place_beside[f];
+            if (place >= 0) {
+                w += dt * c.k[f] * (x_[static_cast<std::size_t>(place)] - x_[i]);
+            } else {
+                w += dt * c.k[f] * (c.surface_beside[f] - x_[i]);
+                const real more = dt * c.k[f] * (x_[i] - c.surface);  // the sweep took the old height
+                rate[c.beside[f]] += more;
+                surface[c.beside[f]] += dt * more;
+            }
+        }
+        rate[c.column] = w;
+        c.water += dt * w;
+        surface[c.column] = free_[i] < 1 ? x_[i] : bed_[c.column] + c.water;
+    }
+    for (Covered& c : covered_) c.clings = false;
+    for (const Contact& c : contacts_)
+        if (c.touches && !(bodies_[c.body]->mass() < infinity)) covered_[c.place].clings = true;
+    tell();
+    forget_free_columns();
+}
+
+/// Displaced volume and forces. Along x and z the pressure rho g d^2/2 acts on upright sides of the depth d below water.
+void Floats::tell() {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        Pushed& push = pushed_[b];
+        push = {};
+        const real height = bodies_[b]->height();
+        std::fill(part_.begin(), part_.end(), 0.0);
+        std::fill(p_.begin(), p_.end(), 0.0);
+        for (const Contact& c : contacts_) {
+            if (c.body != b || !c.touches) continue;
+            const real depth = x_[c.place] - c.underside - height;
+            push.displaced += plane_.area() * c.part * depth;
+            part_[c.place] = c.part;
+            p_[c.place] = 0.5 * rho_ * g_ * depth * depth;
+        }
+        push.up = rho_ * g_ * push.displaced;
+        for (std::size_t i = 0; i < covered_.size(); ++i)
+            for (std::size_t f = 0; f < 4; ++f) {
+                const std::ptrdiff_t place = covered_[i].place_beside[f];
+                const real there = place >= 0 ? part_[static_cast<std::size_t>(place)] : 0;
+                if (!(part_[i] > there)) continue;  // each face once, from the side that the body covers more of
+                const real q = place >= 0 ? p_[static_cast<std::size_t>(place)] : 0;
+                const real force = (part_[i] * p_[i] + there * q) / (part_[i] + there) * (part_[i] - there);
+                (f < 2 ? push.along_x : push.along_z) += (f % 2 == 0 ? force : -force) * (f < 2 ? plane_.dz : plane_.dx);
+            }
+    }
+}
+
+/// Columns that no body covers any more are like all others from here on.
+void Floats::forget_free_columns() {
+    std::fill(part_.begin(), part_.end(), 0.0);
+    for (const Contact& c : contacts_) part_[c.place] = 1;
+    bool all = true;
+    for (const real p : part_) all = all && p > 0;
+    if (all) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < covered_.size(); ++i) {
+        place_of_[covered_[i].column] = part_[i] > 0 ? static_cast<std::ptrdiff_t>(kept) : -1;
+        for (Contact& c : contacts_)
+            if (c.place == i) c.place = kept;
+        if (part_[i] > 0) covered_[kept++] = covered_[i];
+    }
+    covered_.resize(kept);
+}
+
+void Floats::displaced(const Field& surface, Field& to) const {
+    std::fill(to.begin(), to.end(), 0.0);
+    for (const Contact& c : contacts_) {
+        const std::size_t column = covered_[c.place].column;
+        if (c.touches) to[column] += c.part * (surface[column] - c.underside - bodies_[c.body]->height());
+    }
+}
+
+real Floats::over_top(const Field& surface) const {
+    real most = 0;
+    for (const Contact& c : contacts_) {
+        const Body& body = *bodies_[c.body];
+        if (c.touches) most = std::max(most, surface[covered_[c.place].column] - c.underside - body.height() - body.top());
+    }
+    return most;
+}
+
+real Floats::missing(const Field& surface) const {
+    real sum = 0;
+    for (const Covered& c : covered_) sum += c.water - (surface[c.column] - bed_[c.column]);
+    return plane_.area() * sum;
+}
+
+std::size_t Floats::bytes() const {
+    std::size_t total = place_of_.capacity() * sizeof(std::ptrdiff_t) + covered_.capacity() * sizeof(Covered) +
+                        contacts_.capacity() * sizeof(Contact) + covers_.capacity() * sizeof(Cover);
+    for (const Field* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_, &stiff_, &given_}) total += f->capacity() * sizeof(real);
+    return total;
+}
+
+void Floats::save(Checkpoint& to) const {
+    std::vector<std::size_t> columns;
+    Field water;
+    std::vector<char> clings;
+    for (const Covered& c : covered_) columns.push_back(c.column), water.push_back(c.water), clings.push_back(c.clings ? 1 : 0);
+    to.put("covered_clings", clings);
+    to.put("covered_columns", columns);
+    to.put("covered_water", water);
+    to.put("pushed", pushed_);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b]->save(to, fmt::format("float{}_", b));
+}
+
+void Floats::restore(const Checkpoint& from, real t, const Field& surface, const Field& rate, Stiffness& k) {
+    contacts_.clear();
+    set_stiffness(k);  // where the bodies were: open water again
+    for (const Covered& c : covered_) place_of_[c.column] = -1;
+    covered_.clear();
+    std::vector<std::size_t> columns;
+    Field water;
+    from.get("covered_columns", columns);
+    from.get("covered_water", water);
+    std::vector<char> clings;
+    from.get("covered_clings", clings);
+    from.get("pushed", std::span<Pushed>(pushed_));
+    for (std::size_t i = 0; i < columns.size(); ++i) add(columns[i], water[i], surface, rate), covered_.back().clings = clings[i] != 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b]->restore(from, fmt::format("float{}_", b));
+    locate(t, surface, rate);
+}
+
+}  // namespace weir::heightfield

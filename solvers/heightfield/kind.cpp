@@ -1,0 +1,181 @@
+// What a scene may say to the solver "heightfield".
+#include "heightfield/columns.hpp"
+#include "heightfield/effects.hpp"
+#include "heightfield/shallow_water.hpp"
+#include "heightfield/solver.hpp"
+#include "scene/formula.hpp"
+
+namespace weir::heightfield {
+
+namespace {
+
+using scene::Key;
+using scene::Type;
+
+Key scheme_keys() {
+    return {.name = "scheme",
+            .type = Type::table,
+            .doc = "Numerical methods.",
+            .keys = {{.name = "model",
+                      .type = Type::choice,
+                      .doc = "shallow_water: the equations of long waves of any height, with currents and dry ground. columns: each is "
+                             "pulled by the heights of its neighbours, the linear wave equation of real-time graphics, with floating and "
+                             "dragged objects.",
+                      .fallback = std::string("shallow_water"),
+                      .choices = {"shallow_water", "columns"}},
+                     {.name = "limiter",
+                      .type = Type::choice,
+                      .doc = "Of the slopes of depth, surface and velocity; none: first order.",
+                      .fallback = std::string("van_leer"),
+                      .choices = {"none", "minmod", "van_leer", "mc"}},
+                     {.name = "dry_depth",
+                      .type = Type::number,
+                      .doc = "Water that is thinner stands still.",
+                      .unit = "m",
+                      .fallback = 1e-6,
+                      .min = 0,
+                      .min_open = true}}};
+}
+
+Key terrain_key() {
+    const Key file{.name = "file", .type = Type::text, .doc = "Its path, from the scene's folder.", .required = true};
+    const auto height = [](const char* name, const char* doc) {
+        return Key{.name = name, .type = Type::number, .doc = doc, .unit = "m", .required = true};
+    };
+    return {.name = "terrain",
+            .type = Type::table,
+            .doc = "Height of the bed; the floor of the domain where absent.",
+            .selector = "kind",
+            .variants = {{"formula",
+                          "A formula of x, and of z in 3D: numbers, pi, + - * / ^ ( ), functions such as sin, exp, max.",
+                          {{.name = "height", .type = Type::text, .doc = "It.", .unit = "m", .required = true}}},
+                         {"asc",
+                          "An ESRI ASCII grid; bilinear between the centres of its cells. Its y is z here.",
+                          {file,
+                           {.name = "corner",
+                            .type = Type::numbers,
+                            .doc = "Where its lower corner lies, x and z, in place of what the file says.",
+                            .unit = "m",
+                            .length = 2},
+                           {.name = "nodata", .type = Type::number, .doc = "Height of cells without data.", .unit = "m"}}},
+                         {"image",
+                          "A grey map (PGM) over the whole domain, its upper row at the least z.",
+                          {file, height("black", "Height of black."), height("white", "Height of white.")}}}};
+}
+
+Key initial_key() {
+    const auto speed = [](const char* name, int only_dim) {
+        return Key{.name = name,
+                   .type = Type::text,
+                   .doc = std::string("Along ") + name + ", a formula.",
+                   .unit = "m/s",
+                   .fallback = std::string("0"),
+                   .only_dim = only_dim};
+    };
+    Key velocity{.name = "velocity", .type = Type::table};
+    velocity.variants = {{"formula", "Formulas of x, and of z in 3D.", {speed("x", 0), speed("z", 3)}}};
+    return {
+        .name = "initial",
+        .type = Type::table,
+        .keys = {
+            {.name = "surface",
+             .type = Type::text,
+             .doc =
+                 "Height of the water's surface, a formula of x, and of z in 3D; where it is below the bed it is dry. In place of liquid.",
+             .unit = "m"},
+            velocity}};
+}
+
+/// Sides that say how much water comes in, or how high it stands.
+Key sides_key() {
+    Key sides{.name = "sides", .type = Type::table};
+    for (const char* axis : {"x", "z"})
+        for (const char* end : {"_min", "_max"}) {
+            Key side{.name = std::string(axis) + end, .type = Type::table};
+            side.variants = {{"discharge",
+                              "So much water comes in, with a depth that fits the flow inside.",
+                              {{.name = "discharge",
+                                .type = Type::number,
+                                .doc = "A second and metre of the side.",
+                                .unit = "m^2/s",
+                                .required = true,
+                                .min = 0}}},
+                             {"level",
+                              "Open to water whose surface stands at a height; faster water leaves without feeling it.",
+                              {{.name = "level", .type = Type::number, .doc = "The height.", .unit = "m", .required = true}}}};
+            sides.keys.push_back(std::move(side));
+        }
+    return sides;
+}
+
+Key grid_key() {
+    return {
+        .name = "grid",
+        .type = Type::table,
+        .keys = {{.name = "cells",
+                  .type = Type::integers,
+                  .doc = "Number of cells along each axis. A column of a height field is one cell: that along y is for other solvers of "
+                         "the same scene, and not looked at here."}}};
+}
+
+Key floats_key() {
+    const auto point = [](const char* name, const char* doc) {
+        return Key{.name = name, .type = Type::numbers, .doc = doc, .unit = "m", .required = true, .length = -1};
+    };
+    return {.name = "floats",
+            .type = Type::tables,
+            .doc = "Boxes that float in the water, or are dragged through it; of scheme.model = \"columns\".",
+            .keys = {point("size", "Along each axis."),
+                     point("at", "The middle of its underside at t = 0."),
+                     {.name = "density", .type = Type::number, .doc = "Over the water's.", .fallback = 0.5, .min = 0, .min_open = true},
+                     {.name = "heave",
+                      .type = Type::flag,
+                      .doc = "Whether it rises and sinks by its weight and the water's pressure, and lets go of the water where that would "
+                             "have to pull it; else its motion says its height too, and the water clings to it.",
+                      .fallback = true},
+                     {.name = "motion",
+                      .type = Type::table,
+                      .doc = "Prescribed motion along the plane, and along y where it does not heave; without it, it stays.",
+                      .selector = "kind",
+                      .variants_from = &scene::motions}}};
+}
+
+std::unique_ptr<Solver> make(const scene::Scene& scene) {
+    if (scene.text("scheme.model") == "columns") return std::make_unique<Columns>(scene);
+    if (!scene.root().tables("floats").empty())
+        scene.refuse("floats", "the model \"shallow_water\" has no floating objects",
+                     "scheme.model = \"columns\" has them; solids stand on the bed");
+    return std::make_unique<ShallowWater>(scene);
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "heightfield";
+    schema.doc =
+        "Water as one depth a column: long waves, floods, tides on dry ground; no overturning, no drops, nothing below the surface.";
+    schema.keys = {grid_key(),
+                   {.name = "time",
+                    .type = Type::table,
+                    .keys = {{.name = "cfl",
+                              .type = Type::number,
+                              .doc = "How much of a column waves may cross in a step, summed over the axes.",
+                              .fallback = 0.45}}},
+                   scheme_keys(),
+                   terrain_key(),
+                   floats_key(),
+                   initial_key(),
+                   sides_key()};
+    schema.columns = true;
+    schema.effects = effect_schemas();
+    schema.without = {"fluid.viscosity", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "sides.y_min", "sides.y_max",
+                      "emitters",        "initial.temperature", "initial.smoke"};
+    return {schema,
+            make,
+            {{"velocity", "depth", "surface", "bed"},
+             {"move water"},
+             "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"}};
+}
+
+}  // namespace weir::heightfield

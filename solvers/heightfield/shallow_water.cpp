@@ -1,0 +1,180 @@
+#include "heightfield/shallow_water.hpp"
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace weir::heightfield {
+
+namespace {
+
+/// dt max sum (|u| + c)/h: beyond it a column could give away more water than it has (Audusse et al. 2004).
+constexpr real most_cfl = 0.5;
+
+}  // namespace
+
+ShallowWater::ShallowWater(const scene::Scene& scene)
+    : state_(scene),
+      rows_(state_.plane, limiter_named(scene.text("scheme.limiter"))),
+      reports_(static_cast<std::size_t>(state_.plane.nz)),
+      h1_(state_.h.size()),
+      qx1_(state_.qx.size()),
+      qz1_(state_.qz.size()),
+      nothing_(state_.h.size(), 0),
+      raised_(make_raised_bed(scene, state_.plane)),
+      effects_(make_effects(scene, state_, "move water")),
+      cfl_(scene.number("time.cfl")) {
+    if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column a step: the depth may become negative", "cfl is at most 0.5");
+    if (raised_ && raised_->moves())
+        terrain_ = make_terrain(scene, state_.plane);
+    else
+        raised_.reset();
+    measure();
+}
+
+/// Volume and the rate that limits the step, anew: at the start, and after effects have changed depths or speeds.
+void ShallowWater::measure() {
+    const Plane& plane = state_.plane;
+    const real rx = 1 / plane.dx, rz = 1 / plane.dz, dry = state_.dry;
+    rate_ = ordered_max(plane.nz, [&](int k) {
+        real most = 0;
+        for (int i = 0; i < plane.nx; ++i) {
+            const std::size_t c = plane.at(i, k);
+            const real h = state_.h[c], d = h > dry ? h : dry, over = h > dry ? 1 / d : 0, wave = std::sqrt(state_.g * d);
+            const real along_x = (std::abs(state_.qx[c] * over) + wave) * rx;
+            most = std::max(most, plane.dim == 2 ? along_x : along_x + (std::abs(state_.qz[c] * over) + wave) * rz);
+        }
+        return most;
+    });
+    volume_ = plane.area() * ordered_sum(plane.nz, [&](int k) {
+                  real sum = 0;
+                  for (int i = 0; i < plane.nx; ++i) sum += state_.h[plane.at(i, k)];
+                  return sum;
+              });
+}
+
+/// Audusse et al. 2004 with Heun's method.
+StepReport ShallowWater::step(real dt) {
+    const real cfl = dt * rate_;
+    effects_.apply(Stage::source, state_, dt, passes_);
+    if (raised_) raise_bed(state_.time + dt);
+    move_water(dt);
+    effects_.apply(Stage::force, state_, dt, passes_);
+    effects_.apply(Stage::implicit, state_, dt, passes_);
+    state_.time += dt;
+    if (!effects_.empty(Stage::force)) measure();
+    return {.dt = dt, .cfl = cfl};
+}
+
+void ShallowWater::raise_bed(real t) {
+    const auto timed = passes_.time("raise bed");
+    raised_->at(t, terrain_, state_.bed);
+}
+
+void ShallowWater::move_water(real dt) {
+    const auto timed = passes_.time("move water");
+    const Water now{state_.h.data(), state_.qx.data(), state_.qz.data()}, next{h1_.data(), qx1_.data(), qz1_.data()};
+    rows_.stage({.state = state_, .from = now, .to = next, .dt = dt, .second = false}, reports_);
+    take_reports(0.5);
+    rows_.stage({.state = state_, .from = next, .to = now, .dt = dt, .second = true}, reports_);
+    take_reports(0.5);
+}
+
+void ShallowWater::take_reports(real weight) {
+    volume_ = 0, rate_ = 0;
+    for (const RowReport& r : reports_) {
+        volume_ += r.volume * state_.plane.dz;
+        rate_ = std::max(rate_, r.rate);
+        clipped_ = std::max(clipped_, -r.lowest);
+        state_.poured += weight * r.through;
+    }
+    if (!std::isfinite(volume_)) throw NumericalFailure("depth", "depth is no longer finite");
+}
+
+real ShallowWater::advised_dt() const { return rate_ > 0 ? cfl_ / rate_ : infinity; }
+
+StepLimit ShallowWater::stable_dt() const {
+    if (!(rate_ > 0)) return {};
+    return {most_cfl / rate_, "the depth may become negative where waves cross more than half a column a step"};
+}
+
+FieldSet ShallowWater::fields() const {
+    const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
+    parallel_for(0, state_.plane.nz, [&](int k) {
+        for (int i = 0; i < state_.plane.nx; ++i) {
+            const std::size_t c = state_.plane.at(i, k);
+            const real over = h[c] > state_.dry ? 1 / h[c] : 0;
+            h1_[c] = h[c] + state_.bed[c];
+            qx1_[c] = qx[c] * over;
+            if (!qz.empty()) qz1_[c] = qz[c] * over;
+        }
+    });
+    FieldSet set{.grid = state_.plane.view(),
+                 .fields = {{"velocity", "m/s", Where::cell, "", {qx1_, nothing_}},
+                            {"depth", "m", Where::cell, "", {h}},
+                            {"surface", "m", Where::cell, "", {h1_}},
+                            {"bed", "m", Where::cell, "", {state_.bed}}}};
+    if (!qz.empty()) set.fields[0].data.push_back(qz1_);
+    return set;
+}
+
+std::vector<Integral> ShallowWater::integrals() const {
+    const Plane& plane = state_.plane;
+    const auto sum = [&](const auto& f) {
+        return plane.area() * ordered_sum(plane.nz, [&](int k) {
+                   real total = 0;
+                   for (int i = 0; i < plane.nx; ++i) total += f(plane.at(i, k));
+                   return total;
+               });
+    };
+    const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
+    const auto speed2 = [&](std::size_t c) { return h[c] > state_.dry ? (qx[c] * qx[c] + (qz.empty() ? 0 : qz[c] * qz[c])) / h[c] : 0; };
+    const real kinetic = sum(speed2), weight = sum([&](std::size_t c) { return h[c] * (state_.bed[c] + 0.5 * h[c]); });
+    const real volume = sum([&](std::size_t c) { return h[c]; });
+    std::vector<Integral> list = {{"volume", "m^3", volume},
+                                  {"poured_volume", "m^3", state_.poured},
+                                  {"volume_balance", "m^3", volume - state_.poured},
+                                  {"kinetic_energy", "J", 0.5 * state_.rho * kinetic},
+                                  {"potential_energy", "J", state_.rho * state_.g * weight},
+                                  {"momentum_x", "kg m/s", state_.rho * sum([&](std::size_t c) { return qx[c]; })}};
+    if (!qz.empty()) list.push_back({"momentum_z", "kg m/s", state_.rho * sum([&](std::size_t c) { return qz[c]; })});
+    list.push_back({"wet_area", "m^2", sum([&](std::size_t c) { return h[c] > state_.dry ? 1.0 : 0.0; })});
+    list.push_back({"raised_depth", "m", clipped_});
+    return list;
+}
+
+void ShallowWater::save(Checkpoint& to) const {
+    to.put("depth", state_.h);
+    to.put("discharge_x", state_.qx);
+    to.put("discharge_z", state_.qz);
+    to.put("bed", state_.bed);
+    to.put_value("time", state_.time);
+    to.put_value("poured", state_.poured);
+    to.put_value("volume", volume_);
+    to.put_value("rate", rate_);
+    to.put_value("clipped", clipped_);
+}
+
+void ShallowWater::restore(const Checkpoint& from) {
+    from.get("depth", std::span<real>(state_.h));
+    from.get("discharge_x", std::span<real>(state_.qx));
+    from.get("discharge_z", std::span<real>(state_.qz));
+    from.get("bed", std::span<real>(state_.bed));
+    state_.time = from.get_value<real>("time");
+    state_.poured = from.get_value<real>("poured");
+    volume_ = from.get_value<real>("volume");
+    rate_ = from.get_value<real>("rate");
+    clipped_ = from.get_value<real>("clipped");
+}
+
+std::size_t ShallowWater::bytes() const {
+    std::size_t fields = 0;
+    for (const Field* f : {&std::as_const(h1_), &std::as_const(qx1_), &std::as_const(qz1_), &terrain_, &nothing_})
+        fields += f->capacity() * sizeof(real);
+    return state_.bytes() + fields + reports_.capacity() * sizeof(RowReport) + rows_.bytes() + effects_.bytes();
+}
+
+}  // namespace weir::heightfield

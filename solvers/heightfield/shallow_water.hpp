@@ -1,0 +1,43 @@
+// The shallow-water equations on a plane of columns: second order in space and time, water at rest at rest, no negative depth.
+#pragma once
+#include "heightfield/effects.hpp"
+#include "heightfield/rows.hpp"
+#include "heightfield/start.hpp"
+
+namespace weir::heightfield {
+
+class ShallowWater final : public Solver {
+public:
+    explicit ShallowWater(const scene::Scene& scene);
+    StepReport step(real dt) override;
+    real advised_dt() const override;
+    StepLimit stable_dt() const override;
+    FieldSet fields() const override;
+    bool checks_itself() const override { return true; }
+    std::vector<Integral> integrals() const override;
+    real time() const override { return state_.time; }
+    void save(Checkpoint& to) const override;
+    void restore(const Checkpoint& from) override;
+    const Passes& passes() const override { return passes_; }
+    Passes& passes() override { return passes_; }
+    std::size_t bytes() const override;
+    std::vector<EffectPlan> effects() const override { return effects_.plans(); }
+
+private:
+    void move_water(real dt);
+    void take_reports(real weight);
+    void raise_bed(real t);
+    void measure();
+
+    State state_;
+    Rows rows_;
+    std::vector<RowReport> reports_;
+    mutable Field h1_, qx1_, qz1_;  // between the stages; between steps, the surface and the velocity as others see them
+    Field terrain_, nothing_;       // the bed without solids, where these move; the vertical velocity
+    std::unique_ptr<RaisedBed> raised_;
+    Effects<State> effects_;
+    Passes passes_;
+    real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
+};
+
+}  // namespace weir::heightfield

@@ -1,0 +1,298 @@
+#include "heightfield/start.hpp"
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "geometry/shape.hpp"
+#include "heightfield/raster.hpp"
+#include "scene/formula.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace weir::heightfield {
+
+namespace {
+
+using scene::Scene;
+
+std::vector<std::string> coordinates(const Plane& plane) {
+    return plane.dim == 2 ? std::vector<std::string>{"x"} : std::vector<std::string>{"x", "z"};
+}
+
+/// f(i, k) for every column, threaded over rows.
+template <class F>
+void for_each_column(const Plane& plane, F&& f) {
+    parallel_for(0, plane.nz, [&](int k) {
+        for (int i = 0; i < plane.nx; ++i) f(i, k);
+    });
+}
+
+/// The formula at `path` at the middle of each column; refused where it has no value.
+Field formula_field(const Scene& scene, const std::string& path, const Plane& plane) {
+    const scene::Formula f = scene::formula_at(scene, path, coordinates(plane));
+    Field values(plane.count());
+    for_each_column(plane, [&](int i, int k) {
+        const real at[2] = {plane.x(i), plane.z(k)};
+        values[plane.at(i, k)] = f(at);
+    });
+    for (std::size_t c = 0; c < values.size(); ++c)
+        if (!std::isfinite(values[c])) {
+            const int i = static_cast<int>(c) % plane.nx, k = static_cast<int>(c) / plane.nx;
+            scene.refuse(path, fmt::format("{} has no value at x = {:g}, z = {:g}", path, plane.x(i), plane.z(k)));
+        }
+    return values;
+}
+
+std::filesystem::path beside_scene(const Scene& scene, const std::string& path) {
+    const std::filesystem::path file = scene.text(path);
+    return file.is_absolute() ? file : std::filesystem::path(scene.file()).parent_path() / file;
+}
+
+/// What a reader of files says of them stands at the key that names the file.
+template <class Read>
+Raster raster_at(const Scene& scene, const std::string& path, Read&& read) {
+    try {
+        return read(beside_scene(scene, path));
+    } catch (const scene::BadScene&) {
+        throw;
+    } catch (const BadInput& bad) {
+        scene.refuse(path, bad.what());
+    }
+}
+
+Raster read_raster(const Scene& scene, const Plane& plane) {
+    const bool image = scene.text("terrain.kind") == "image";
+    std::optional<real> nodata;
+    if (!image && scene.has("terrain.nodata")) nodata = scene.number("terrain.nodata");
+    Raster r = raster_at(scene, "terrain.file", [&](const auto& file) { return image ? read_pgm(file) : read_asc(file, nodata); });
+    if (image) {  // it covers the domain
+        const real black = scene.number("terrain.black"), white = scene.number("terrain.white");
+        for (real& v : r.value) v = black + (white - black) * v;
+        r.x0 = plane.x0, r.z0 = plane.z0;
+        r.dx = plane.nx * plane.dx / r.nx, r.dz = plane.nz * plane.dz / r.nz;
+        return r;
+    }
+    if (scene.has("terrain.corner")) r.x0 = scene.root().numbers("terrain.corner")[0], r.z0 = scene.root().numbers("terrain.corner")[1];
+    const real x1 = plane.x0 + plane.nx * plane.dx, z1 = plane.z0 + plane.nz * plane.dz, slack = 1e-9 * (x1 - plane.x0);
+    const bool covers =
+        r.x0 <= plane.x0 + slack && r.x1() >= x1 - slack && (plane.dim == 2 || (r.z0 <= plane.z0 + slack && r.z1() >= z1 - slack));
+    if (!covers)
+        scene.refuse(
+            "terrain.file",
+            fmt::format("the grid reaches from [{:g}, {:g}] to [{:g}, {:g}] m; the domain from [{:g}, {:g}] to [{:g}, {:g}] m is not "
+                        "within it",
+                        r.x0, r.z0, r.x1(), r.z1(), plane.x0, plane.z0, x1, z1),
+            "terrain.corner says where the grid's lower corner lies");
+    return r;
+}
+
+/// The highest point of a shape on the vertical line through (x, z), from `low` to `high`, and the lowest; to the last bit, so that a box
+/// has the same top over each of its columns.
+template <int D>
+struct Line {
+    const geometry::Shape<D>& shape;
+    const geometry::Pose<D>& pose;
+    Vec<D> x{};
+    Line(const geometry::Shape<D>& s, const geometry::Pose<D>& p, real at_x, real at_z) : shape(s), pose(p) {
+        x[0] = at_x;
+        if constexpr (D == 3) x[2] = at_z;
+    }
+    bool inside(real y) {
+        x[1] = y;
+        return shape.contains(pose.to_rest(x));
+    }
+    /// Between one end inside and one outside: the last point inside.
+    real end(real in, real out) {
+        for (;;) {
+            const real mid = 0.5 * (in + out);
+            if (mid == in || mid == out) return out;
+            (inside(mid) ? in : out) = mid;
+        }
+    }
+};
+
+struct Span {
+    real low = 0, high = -1;  // empty where high < low
+    bool gap = false;         // air inside of it
+};
+
+constexpr int samples = 64;  // along a line: what is thinner than a 64th of the domain's height may be missed
+
+/// Where a line from `low` to `high` lies in the shape.
+template <int D>
+Span span_of(const geometry::Shape<D>& shape, const geometry::Pose<D>& pose, real x, real z, real low, real high) {
+    Line<D> line(shape, pose, x, z);
+    Span span;
+    const auto y = [&](int s) { return low + (high - low) * (s + 0.5) / samples; };
+    int first = -1, last = -1, count = 0;
+    for (int s = 0; s < samples; ++s)
+        if (line.inside(y(s))) first = first < 0 ? s : first, last = s, ++count;
+    if (first < 0) return span;
+    span.gap = count != last - first + 1;
+    span.high = last + 1 < samples ? line.end(y(last), y(last + 1)) : line.inside(high) ? high : line.end(y(last), high);
+    span.low = first > 0 ? line.end(y(first), y(first - 1)) : line.inside(low) ? low : line.end(y(first), low);
+    return span;
+}
+
+template <int D>
+void pour(const Scene& scene, State& state) {
+    const Plane& plane = state.plane;
+    const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
+    const geometry::Pose<D> rest;
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+        std::vector<int> bad(static_cast<std::size_t>(plane.nz), -1);
+        for_each_column(plane, [&](int i, int k) {
+            const std::size_t c = plane.at(i, k);
+            const real bed = state.bed[c];
+            if (!(bed < plane.ceiling)) return;
+            const Span water = span_of<D>(*shapes[s], rest, plane.x(i), plane.z(k), bed, plane.ceiling);
+            if (water.high < water.low) return;
+            const real slack = (plane.ceiling - bed) / samples;
+            if (water.gap || water.low > bed + state.h[c] + slack) bad[static_cast<std::size_t>(k)] = i;
+            state.h[c] = std::max(state.h[c], water.high - bed);
+        });
+        for (int k = 0; k < plane.nz; ++k)
+            if (const int i = bad[static_cast<std::size_t>(k)]; i >= 0)
+                scene.refuse(
+                    fmt::format("liquid[{}]", s),
+                    fmt::format("this water hangs above the bed at x = {:g}, z = {:g}: in a height field each column is filled from "
+                                "its bed to one surface",
+                                plane.x(i), plane.z(k)),
+                    "solvers \"mac_water\", \"pbf\" and \"sph\" have drops and overturning waves");
+    }
+}
+
+void give_velocity(const Scene& scene, State& state) {
+    if (!scene.has("initial.velocity")) return;
+    const Plane& plane = state.plane;
+    const auto set = [&](Field& q, const auto& u) {
+        for (std::size_t c = 0; c < q.size(); ++c) q[c] = state.h[c] > state.dry ? state.h[c] * u(c) : 0;
+    };
+    if (scene.text("initial.velocity.name") == "formula") {
+        const Field u = formula_field(scene, "initial.velocity.x", plane);
+        set(state.qx, [&](std::size_t c) { return u[c]; });
+        if (plane.dim == 2) return;
+        const Field w = formula_field(scene, "initial.velocity.z", plane);
+        set(state.qz, [&](std::size_t c) { return w[c]; });
+        return;
+    }
+    const auto& value = scene.root().numbers("initial.velocity.value");
+    if (value[1] != 0) scene.refuse("initial.velocity.value", "a height field has no vertical velocity: that along y is 0");
+    set(state.qx, [&](std::size_t) { return value[0]; });
+    if (plane.dim == 3) set(state.qz, [&](std::size_t) { return value[2]; });
+}
+
+template <int D>
+class Raised final : public RaisedBed {
+public:
+    Raised(const Scene& scene, const Plane& plane) : plane_(plane), solids_(scene.root().tables("solids")) {
+        for (std::size_t s = 0; s < solids_.count(); ++s)
+            if (solids_[s].no_slip)
+                scene.refuse(fmt::format("solids[{}].slip", s), "a height field has no boundary layers: its solids are free of friction");
+        Field terrain = make_terrain(scene, plane), bed = terrain;
+        solids_.set_time(0);
+        for (std::size_t s = 0; s < solids_.count(); ++s)
+            if (const int c = raise(s, terrain, bed, true); c >= 0)
+                scene.refuse(
+                    fmt::format("solids[{}]", s),
+                    fmt::format("this solid has air or water below it at x = {:g}, z = {:g}: in a height field a solid stands on the "
+                                "bed, which it raises",
+                                plane_.x(c % plane_.nx), plane_.z(c / plane_.nx)),
+                    "scheme.model = \"columns\" has floating and dragged objects (floats)");
+    }
+    void at(real t, const Field& terrain, Field& bed) override {
+        solids_.set_time(t);
+        bed = terrain;
+        for (std::size_t s = 0; s < solids_.count(); ++s) raise(s, terrain, bed, false);
+    }
+    bool moves() const override { return solids_.moving(); }
+
+private:
+    /// Four lines a column and axis; the number of a column over which the solid hangs, if asked for, or -1.
+    int raise(std::size_t s, const Field& terrain, Field& bed, bool look_for_gaps) {
+        constexpr int lines = 4;
+        std::vector<int> hangs(static_cast<std::size_t>(plane_.nz), -1);
+        for_each_column(plane_, [&](int i, int k) {
+            const std::size_t c = plane_.at(i, k);
+            const real low = std::min(terrain[c], plane_.floor), slack = 2 * (plane_.ceiling - low) / samples;
+            real sum = 0;
+            const int across = D == 3 ? lines : 1;
+            for (int a = 0; a < lines; ++a)
+                for (int b = 0; b < across; ++b) {
+                    const real x = plane_.x(i) + ((a + 0.5) / lines - 0.5) * plane_.dx,
+                               z = plane_.z(k) + ((b + 0.5) / across - 0.5) * plane_.dz;
+                    const Span solid = span_of<D>(*solids_[s].shape, solids_.pose(s), x, z, low, plane_.ceiling);
+                    const bool there = solid.high > terrain[c];
+                    if (look_for_gaps && there && (solid.gap || solid.low > terrain[c] + slack)) hangs[static_cast<std::size_t>(k)] = i;
+                    sum += there ? solid.high - terrain[c] : 0;
+                }
+            bed[c] = std::max(bed[c], terrain[c] + sum / (lines * across));
+        });
+        for (int k = 0; k < plane_.nz; ++k)
+            if (hangs[static_cast<std::size_t>(k)] >= 0) return static_cast<int>(plane_.at(hangs[static_cast<std::size_t>(k)], k));
+        return -1;
+    }
+
+    Plane plane_;
+    geometry::Solids<D> solids_;
+};
+
+}  // namespace
+
+Field make_terrain(const Scene& scene, const Plane& plane) {
+    if (!scene.has("terrain")) return Field(plane.count(), plane.floor);
+    if (scene.text("terrain.kind") == "formula") return formula_field(scene, "terrain.height", plane);
+    const Raster raster = read_raster(scene, plane);
+    Field bed(plane.count());
+    for_each_column(plane, [&](int i, int k) { bed[plane.at(i, k)] = raster(plane.x(i), plane.z(k)); });
+    return bed;
+}
+
+std::unique_ptr<RaisedBed> make_raised_bed(const Scene& scene, const Plane& plane) {
+    if (scene.root().tables("solids").empty()) return nullptr;
+    if (plane.dim == 2) return std::make_unique<Raised<2>>(scene, plane);
+    return std::make_unique<Raised<3>>(scene, plane);
+}
+
+void start(const Scene& scene, State& state) {
+    state.h.assign(state.plane.count(), 0);
+    state.qx.assign(state.plane.count(), 0);
+    if (state.plane.dim == 3) state.qz.assign(state.plane.count(), 0);
+    state.bed = make_terrain(scene, state.plane);
+    if (const auto raised = make_raised_bed(scene, state.plane)) {
+        const Field terrain = state.bed;
+        raised->at(0, terrain, state.bed);
+    }
+    if (scene.has("initial.surface")) {
+        if (!scene.root().tables("liquid").empty())
+            scene.refuse("initial.surface", "the water is given twice: by its surface, and as liquid");
+        const Field surface = formula_field(scene, "initial.surface", state.plane);
+        for (std::size_t c = 0; c < surface.size(); ++c) state.h[c] = std::max(0.0, surface[c] - state.bed[c]);
+    } else if (state.plane.dim == 2) {
+        pour<2>(scene, state);
+    } else {
+        pour<3>(scene, state);
+    }
+    give_velocity(scene, state);
+}
+
+State::State(const Scene& scene) : plane(scene), sides(scene), rho(scene.number("fluid.density")), dry(scene.number("scheme.dry_depth")) {
+    if (plane.nx < 2 || (plane.dim == 3 && plane.nz < 2))
+        scene.refuse("grid.cells", "a height field has at least 2 columns along each axis");
+    constexpr real nothing = 1e-9;  // [m/s^2]: moves nothing in any run
+    if (const auto* gravity = scene.effect("gravity")) {
+        const auto& a = gravity->numbers("g");
+        if (a[1] > nothing)
+            scene.refuse("effects.gravity.g", "gravity points up: the water of a height field lies below its surface", "g = [0, -9.81]");
+        g = std::max(0.0, -a[1]);
+        push[0] = a[0];
+        if (plane.dim == 3) push[1] = a[2];
+    }
+    start(scene, *this);
+}
+
+}  // namespace weir::heightfield

@@ -1,0 +1,28 @@
+// The state at t = 0: bed from terrain and solids, water from shapes or from a formula of its surface, velocity.
+#pragma once
+#include "geometry/solids.hpp"
+#include "heightfield/state.hpp"
+
+#include <functional>
+#include <memory>
+
+namespace weir::heightfield {
+
+/// Height of the bed of each column, without solids.
+Field make_terrain(const scene::Scene& scene, const Plane& plane);
+/// Fills depth, discharge and bed.
+void start(const scene::Scene& scene, State& state);
+
+/// Solids that stand on the bed raise it: where one covers a column, its bed is the solid's top, in part where it covers a part. What moves
+/// raises and lowers the bed as it goes.
+class RaisedBed {
+public:
+    virtual ~RaisedBed() = default;
+    /// The bed at time t.
+    virtual void at(real t, const Field& terrain, Field& bed) = 0;
+    virtual bool moves() const = 0;
+};
+/// Null without solids.
+std::unique_ptr<RaisedBed> make_raised_bed(const scene::Scene& scene, const Plane& plane);
+
+}  // namespace weir::heightfield

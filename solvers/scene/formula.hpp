@@ -1,0 +1,45 @@
+// Formulas in scenes, such as "0.2 - 0.05*(x-10)^2": numbers, variables by name, + - * / ^, brackets
+// and a few functions; compiled once into a list of operations for a stack, so that a formula may be asked a million times.
+#pragma once
+#include "core/types.hpp"
+#include "scene/scene.hpp"
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir::scene {
+
+/// What is wrong with a formula, and where: `at` counts its characters from 0.
+struct BadFormula : std::runtime_error {
+    BadFormula(int at_, int width_, const std::string& what) : std::runtime_error(what), at(at_), width(width_) {}
+    int at, width;
+};
+
+class Formula {
+public:
+    Formula() = default;
+    /// Throws BadFormula. `variables` in the order in which values are given.
+    Formula(std::string_view text, const std::vector<std::string>& variables);
+    /// NaN or infinity where the formula has no value.
+    real operator()(std::span<const real> values) const;
+    bool empty() const { return code_.empty(); }
+    /// What a formula may say, for hints and manuals.
+    static const std::string& words();
+
+private:
+    friend class FormulaParser;
+    struct Operation {
+        int code;    // of `operations` in formula.cpp
+        real value;  // of a constant
+        int variable;
+    };
+    std::vector<Operation> code_;
+};
+
+/// The formula that stands at a key of type text; a mistake in it is refused with the place of the mistake.
+Formula formula_at(const Scene& scene, std::string_view path, const std::vector<std::string>& variables);
+
+}  // namespace weir::scene

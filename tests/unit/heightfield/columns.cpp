@@ -1,0 +1,150 @@
+// Columns that pull their neighbours: the fast sweep against the plain one, bits for any number of threads, objects and the water they
+// displace.
+#include "core/parallel.hpp"
+#include "heightfield/sweep.hpp"
+#include "support/test.hpp"
+#include "unit/heightfield/support.hpp"
+
+#include <cmath>
+
+using namespace weir;
+using namespace weir::heightfield;
+
+namespace {
+
+scene::Scene columns(int dim, const std::string& more, int cells = 24) {
+    const std::string floor = dim == 2 ? "[0, -1]" : "[0, -1, 0]";
+    return test::height_scene(dim, "grid.origin = " + floor + "\nscheme.model = \"columns\"\n" + more, cells);
+}
+real value(const Solver& solver, const std::string& name) {
+    for (const auto& i : solver.integrals())
+        if (i.name == name) return i.value;
+    return std::nan("");
+}
+std::vector<real> everything(const Solver& solver) {
+    std::vector<real> all;
+    for (const auto& f : solver.fields().fields)
+        for (const auto& c : f.data) all.insert(all.end(), c.begin(), c.end());
+    for (const auto& integral : solver.integrals()) all.push_back(integral.value);
+    return all;
+}
+const std::string waves = "initial.surface = \"0.05*sin(9*x)\"\nterrain = { kind = \"formula\", height = \"-0.6 + 0.3*x\" }\n";
+std::string floats(int dim) {
+    return dim == 2
+               ? "floats = [ { size = [0.3, 0.2], at = [0.41, -0.03], density = 0.4, motion = { kind = \"constant\", velocity = [0.3, 0] } "
+                 "} ]\n"
+               : "floats = [ { size = [0.3, 0.2, 0.4], at = [0.41, -0.03, 0.5], density = 0.4, motion = { kind = \"constant\", velocity = "
+                 "[0.3, 0, 0.2] } }, { size = [0.2, 0.2, 0.2], at = [0.6, -0.1, 1.2], heave = false } ]\n";
+}
+
+}  // namespace
+
+TEST_IN_2D_AND_3D("the fast sweep is the plain one, bit for bit where the pull varies and to round-off where it does not") {
+    const Plane plane(columns(D, waves, 70));
+    Field start(plane.count()), rate(plane.count());
+    for (std::size_t c = 0; c < start.size(); ++c)
+        start[c] = std::sin(0.7 * static_cast<real>(c)), rate[c] = std::cos(1.3 * static_cast<real>(c));
+    Stiffness k;
+    k.x.resize(plane.count() + static_cast<std::size_t>(plane.nz));
+    k.z.resize(plane.count() + static_cast<std::size_t>(plane.nx), 0);
+    for (std::size_t f = 0; f < k.x.size(); ++f) k.x[f] = 1 + 0.5 * std::sin(static_cast<real>(f));
+    for (std::size_t f = 0; D == 3 && f < k.z.size(); ++f) k.z[f] = 1 + 0.5 * std::cos(static_cast<real>(f));
+    for (const bool periodic : {false, true})
+        for (const bool uniform : {false, true}) {
+            k.uniform = uniform, k.along_x = 1.25, k.along_z = D == 3 ? 0.75 : 0;
+            for (const int count : {1, 2, 3}) {
+                set_threads(count);
+                Sweep sweep(plane, periodic, periodic && D == 3);
+                Field s = start, w = rate, s0 = start, w0 = rate;
+                for (int n = 0; n < 3; ++n) {
+                    sweep.step(s, w, k, 0.1);
+                    reference_sweep(plane, periodic, periodic && D == 3, s0, w0, k, 0.1);
+                }
+                for (std::size_t c = 0; c < s.size(); ++c) ASSERT_NEAR(s[c], s0[c], 1e-14) << c << ' ' << uniform << periodic << count;
+            }
+        }
+    set_threads(0);
+}
+
+TEST_IN_2D_AND_3D("water and displaced volume are kept to round-off while objects heave and are dragged") {
+    const auto solver = test::height_solver(columns(D, waves + floats(D), 40));
+    const real before = value(*solver, "volume");
+    real most = 0;
+    for (int i = 0; i < 150; ++i) {
+        solver->step(solver->advised_dt());
+        EXPECT_NEAR(value(*solver, "volume"), before, 1e-12 * before);
+        most = std::max(most, std::abs(value(*solver, "float0_speed")));
+        // what the fields show is the same water: columns less what is displaced
+        const FieldSet f = static_cast<const Solver&>(*solver).fields();
+        real shown = 0;
+        for (const real d : f.find("depth")->data[0]) shown += d;
+        const GridView& g = f.grid;
+        // the solve leaves 1e-14 of each covered column
+        EXPECT_NEAR(shown * g.spacing[0] * (D == 3 ? g.spacing[2] : 1), before, 1e-10 * before);
+    }
+    EXPECT_GT(most, 0.01);
+}
+
+TEST_IN_2D_AND_3D("an object at rest stays at rest, as deep as Archimedes says, wherever its edges lie in their columns") {
+    const std::string at = D == 2 ? "at = [0.4321, -0.08], size = [0.333, 0.2]" : "at = [0.4321, -0.08, 0.777], size = [0.333, 0.2, 0.222]";
+    const auto solver = test::height_solver(columns(D,
+                                                    "initial.surface = \"0\"\nterrain = { kind = \"formula\", height = \"-0.6 + 0.3*x\" }\n"
+                                                    "floats = [ { " +
+                                                        at + ", density = 0.4 } ]\n",
+                                                    30));
+    for (int i = 0; i < 100; ++i) solver->step(solver->advised_dt());
+    const real area = D == 2 ? 0.333 : 0.333 * 0.222;
+    EXPECT_NEAR(value(*solver, "float0_height"), -0.08, 1e-12);
+    EXPECT_NEAR(value(*solver, "float0_displaced"), 0.08 * area, 1e-12);
+    EXPECT_NEAR(value(*solver, "float0_force_x"), 0, 1e-10);
+}
+
+TEST_IN_2D_AND_3D("the same bits for any number of threads, and after a restart, with objects") {
+    std::vector<real> first;
+    for (const int count : {1, 3}) {
+        set_threads(count);
+        const scene::Scene scene = columns(D, waves + floats(D) + "effects.damping.rate = 0.5\nsides.x_max = \"outflow\"\n", 60);
+        const auto whole = test::height_solver(scene), half = test::height_solver(scene), rest = test::height_solver(scene);
+        for (int i = 0; i < 20; ++i) whole->step(0.002);
+        for (int i = 0; i < 9; ++i) half->step(0.002);
+        Checkpoint saved;
+        half->save(saved);
+        rest->restore(saved);
+        EXPECT_EQ(everything(*half), everything(*rest));
+        for (int i = 0; i < 11; ++i) rest->step(0.002);
+        EXPECT_EQ(everything(*whole), everything(*rest)) << count;
+        if (first.empty()) first = everything(*whole);
+        EXPECT_EQ(everything(*whole), first) << count;
+    }
+    set_threads(0);
+}
+
+TEST("what columns cannot do is refused by name") {
+    const auto told = [](const std::string& more) {
+        try {
+            (void)test::height_solver(columns(2, "initial.surface = \"0\"\n" + more));
+        } catch (const BadInput& bad) {
+            return std::string(bad.what());
+        }
+        return std::string("accepted");
+    };
+    const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+    EXPECT_EQ(told(""), "accepted");
+    EXPECT_TRUE(has(told("effects.rain.rate = 0.1\n"), "no currents and keep their still depth"));
+    EXPECT_TRUE(has(told("initial.velocity = { name = \"constant\", value = [1, 0] }\n"), "have no currents"));
+    EXPECT_TRUE(has(told("sides.x_min = { kind = \"level\", level = 0.1 }\n"), "nothing flows in"));
+    EXPECT_TRUE(has(told("floats = [ { size = [0.2, 0.2], at = [0.5, 0], density = 1.5 } ]\n"), "what is as dense as water sinks"));
+    EXPECT_TRUE(
+        has(told("floats = [ { size = [0.2, 0.2], at = [0.5, 0], motion = { kind = \"rotation\", rate = 1 } } ]\n"), "do not turn"));
+}
+
+TEST("a column that runs dry ends the run with a reason") {
+    const auto solver = test::height_solver(
+        columns(2, "initial.surface = \"-0.03*exp(-(x-0.2)^2/0.005)\"\nterrain = { kind = \"formula\", height = \"-0.06 + 0.05*x\" }\n"));
+    try {
+        for (int i = 0; i < 400; ++i) solver->step(solver->advised_dt());
+        ADD_FAILURE() << "nothing ran dry";
+    } catch (const NumericalFailure& failure) {
+        EXPECT_NE(std::string(failure.what()).find("ran dry"), std::string::npos);
+    }
+}

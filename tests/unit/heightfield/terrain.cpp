@@ -1,0 +1,135 @@
+// Terrain and water of a scene: formulas, grids, images, shapes; and what is wrong with them, where it stands.
+#include "heightfield/raster.hpp"
+#include "heightfield/start.hpp"
+#include "scene/formula.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test.hpp"
+#include "unit/heightfield/support.hpp"
+
+#include <fstream>
+
+using namespace weir;
+using namespace weir::heightfield;
+
+namespace {
+
+std::filesystem::path written(const test::TemporaryFolder& folder, const std::string& name, const std::string& text) {
+    std::ofstream(folder.path() / name, std::ios::binary) << text;
+    return folder.path() / name;
+}
+template <class F>
+std::string refusal(F&& f) {
+    try {
+        f();
+    } catch (const BadInput& bad) {
+        return bad.what();
+    }
+    return "accepted";
+}
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const std::string header = "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9999\n";
+
+}  // namespace
+
+TEST("an ASCII grid's rows run from north to south; it is bilinear between centres") {
+    const test::TemporaryFolder folder;
+    const Raster r = read_asc(written(folder, "a.asc", header + "4 5 6\n1 2 3\n"), {});
+    EXPECT_EQ(r(11, 21), 1);
+    EXPECT_EQ(r(15, 23), 6);
+    EXPECT_EQ(r(12, 21), 1.5);
+    EXPECT_EQ(r(13, 22), 3.5);
+    EXPECT_EQ(r(0, 0), 1);  // the nearest centre's
+}
+
+TEST("what is wrong with an ASCII grid is told with its line and column") {
+    const test::TemporaryFolder folder;
+    const auto told = [&](const std::string& text) { return refusal([&] { (void)read_asc(written(folder, "a.asc", text), {}); }); };
+    EXPECT_TRUE(has(told(header + "4 5 6\n1 x2 3\n"), "a.asc:8:3: \"x2\" stands where height 2 of row 2"))
+        << told(header + "4 5 6\n1 x2 3\n");
+    EXPECT_TRUE(has(told(header + "4 5 6\n1 2\n"), "a.asc:9:1: the file ends where height 3 of row 2"));
+    EXPECT_TRUE(has(told(header + "4 5 6\n1 2 3 9\n"), "a.asc:8:7: \"9\" stands behind the last of 3 x 2"));
+    EXPECT_TRUE(has(told(header + "4 5 6\n1 -9999 3\n"), "a.asc:8:3: there is no data here"));
+    EXPECT_TRUE(has(told("ncols 3\nnrow 2\n"), "a.asc:2:1: \"nrow\" is no key"));
+    EXPECT_TRUE(has(told("ncols 0\n"), "a.asc:1:7: ncols is 0"));
+    EXPECT_TRUE(has(told("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n1 2 3\n"), "a.asc:5:1: the header ends here and lacks cellsize"));
+    EXPECT_TRUE(has(told(""), "lacks ncols"));
+    EXPECT_TRUE(has(refusal([] { (void)read_asc("/nowhere.asc", {}); }), "cannot be read"));
+}
+
+TEST("grey maps, written out and in bytes") {
+    const test::TemporaryFolder folder;
+    const Raster text = read_pgm(written(folder, "a.pgm", "P2\n# c\n2 2\n10\n0 5\n10 1\n"));
+    const Raster bytes = read_pgm(written(folder, "b.pgm", std::string("P5 2 2 10\n") + '\0' + '\5' + '\12' + '\1'));
+    EXPECT_EQ(text.value, bytes.value);
+    EXPECT_EQ(text.value, (std::vector<real>{0, 0.5, 1, 0.1}));
+    const auto told = [&](const std::string& t) { return refusal([&] { (void)read_pgm(written(folder, "a.pgm", t)); }); };
+    EXPECT_TRUE(has(told("P6\n"), "a.pgm:1:1: \"P6\" is not the beginning of a grey map"));
+    EXPECT_TRUE(has(told("P2\n2 2\n10\n0 5\n11 1\n"), "a.pgm:5:1: 11 is no shade from 0 to 10"));
+    EXPECT_TRUE(has(told("P5 2 2 10\n12"), "the picture ends after 2 of 4 bytes"));
+}
+
+TEST("formulas: precedence, functions, and where they are wrong") {
+    const auto f = [](const std::string& text, real x = 0, real z = 0) {
+        const real at[2] = {x, z};
+        return scene::Formula(text, {"x", "z"})(at);
+    };
+    EXPECT_EQ(f("1 + 2*3^2"), 19);
+    EXPECT_EQ(f("-x^2", 3), -9);
+    EXPECT_EQ(f("2^-1"), 0.5);
+    EXPECT_EQ(f("2^3^2"), 512);
+    EXPECT_EQ(f("8/4/2"), 1);
+    EXPECT_EQ(f("max(x, min(z, 7)) - step(x)", 1, 9), 6);
+    EXPECT_EQ(f("1e-3*x", 2), 0.002);
+    EXPECT_NEAR(f("sin(pi/6) + sech(0) + hypot(3, 4)"), 6.5, 1e-15);
+    const auto wrong = [](const std::string& text) {
+        try {
+            scene::Formula(text, {"x"});
+        } catch (const scene::BadFormula& bad) {
+            return std::to_string(bad.at) + ": " + bad.what();
+        }
+        return std::string("accepted");
+    };
+    EXPECT_EQ(wrong("1 + y"), "4: the formula knows no \"y\"");
+    EXPECT_EQ(wrong("2 x"), "2: \"x\" is not expected here");
+    EXPECT_EQ(wrong("(1 + x"), "6: a closing bracket is missing");
+    EXPECT_EQ(wrong("1 +"), "3: the formula ends where a value is expected");
+    EXPECT_EQ(wrong("sin x"), "0: \"sin\" wants its argument in brackets");
+    EXPECT_EQ(wrong("max(1)"), "5: \"max\" wants 2 arguments");
+    EXPECT_EQ(wrong(std::string(100, '(')), "64: the formula is nested too deeply");
+}
+
+TEST("a mistake in a scene's formula stands at its own column") {
+    const std::string text = "terrain = { kind = \"formula\", height = \"0.1*x + q\" }\n";
+    const std::string told = refusal([&] { (void)test::height_solver(test::height_scene(2, text)); });
+    EXPECT_TRUE(has(told, ":7:49: terrain.height: the formula knows no \"q\"")) << told;
+}
+
+TEST_IN_2D_AND_3D("boxes and planes fill columns to the last bit; what hangs above the bed is refused") {
+    const std::string high = D == 2 ? "min = [0, -1], max = [1, 0.3]" : "min = [0, -1, 0], max = [1, 0.3, 1.5]";
+    const scene::Scene box = test::height_scene(
+        D, "liquid = [ { shape = \"box\", " + high + " } ]\nterrain = { kind = \"formula\", height = \"0.2*sin(7*x)\" }\n");
+    const State state(box);
+    for (std::size_t c = 0; c < state.h.size(); ++c) EXPECT_EQ(state.h[c], std::max(0.0, 0.3 - state.bed[c]));
+    const std::string drop = D == 2 ? "centre = [0.5, 0.6]" : "centre = [0.5, 0.6, 0.5]";
+    const std::string told =
+        refusal([&] { State s(test::height_scene(D, "liquid = [ { shape = \"sphere\", " + drop + ", radius = 0.2 } ]\n")); });
+    EXPECT_TRUE(has(told, "this water hangs above the bed")) << told;
+}
+
+TEST_IN_2D_AND_3D("solids raise the bed by their height and by the part of a column that they cover; floating ones are refused") {
+    const std::string more = "initial.surface = \"0.2\"\nsolids = [ { shape = \"box\", ";
+    const auto scene = [&](const std::string& two, const std::string& three) {
+        return test::height_scene(D, more + (D == 2 ? two : three) + " } ]\n", 8);
+    };
+    const State state(scene("min = [0.25, 0], max = [0.5625, 0.4]", "min = [0.25, 0, 0], max = [0.5625, 0.4, 1.5]"));
+    for (int k = 0; k < state.plane.nz; ++k) {
+        EXPECT_EQ(state.bed[state.plane.at(1, k)], 0);
+        EXPECT_NEAR(state.bed[state.plane.at(2, k)], 0.4, 1e-15);
+        EXPECT_NEAR(state.bed[state.plane.at(4, k)], 0.2, 1e-15);  // half of the column from 0.5 to 0.625
+        EXPECT_EQ(state.h[state.plane.at(2, k)], 0);
+    }
+    const std::string told = refusal(
+        [&] { (void)test::height_solver(scene("min = [0.3, 0.1], max = [0.6, 0.4]", "min = [0.3, 0.1, 0], max = [0.6, 0.4, 1]")); });
+    EXPECT_TRUE(has(told, "this solid has air or water below it")) << told;
+}
