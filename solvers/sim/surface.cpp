@@ -92,10 +92,13 @@ auto along(const FieldView& level_set, const Lattice& lattice, const Vec<3>& x, 
 
 }  // namespace
 
-bool has_surface(const FieldSet& fields) { return fields.find(level_set_name) || wet_points(fields).position; }
+bool has_surface(const FieldSet& fields) {
+    return fields.find("", surface_height_name) || fields.find(level_set_name) || wet_points(fields).position;
+}
 
 real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
     const FieldView* level_set = fields.find(level_set_name);
+    if (const FieldView* height = fields.find("", surface_height_name); height && axis == 1) return sample(*height, fields.grid, 0, x);
     if (!level_set) return highest_point(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
     const real zero = uppermost_zero(lattice.n[static_cast<std::size_t>(axis)], along(*level_set, lattice, x, axis));
@@ -104,6 +107,8 @@ real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
 
 real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
     const FieldView* level_set = fields.find(level_set_name);
+    if (const FieldView* height = fields.find("", surface_height_name); height && axis == 1)
+        return std::max(0.0, sample(*height, fields.grid, 0, x) - fields.grid.origin[1]);
     if (!level_set) return depth_of_points(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
     const auto phi = along(*level_set, lattice, x, axis);
@@ -116,6 +121,11 @@ real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
 real front(const FieldSet& fields, int axis) {
     const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
     real farthest = fields.grid.origin[a];
+    if (const FieldView* height = fields.find("", surface_height_name)) {  // there is liquid below every point
+        if (axis != 1) return upper_corner(fields.grid)[axis];
+        for (const real y : height->data[0]) farthest = std::max(farthest, y);
+        return farthest;
+    }
     if (const FieldView* level_set = fields.find(level_set_name)) {
         const Lattice lattice = Lattice::of_cells(fields.grid);
         std::array<int, 3> I{};
