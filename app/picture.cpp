@@ -1,5 +1,6 @@
 // weir picture RESULT: one frame, or a row of frames, of a finished (or running) run as PNG.
 #include "app/commands.hpp"
+#include "app/picture/sea.hpp"
 #include "app/picture/view.hpp"
 #include "app/run_folder.hpp"
 #include "core/error.hpp"
@@ -45,7 +46,8 @@ int draw(const PictureArguments& arguments) {
         auto frame = output::read_frame(folder, number, scene.dim());
         picture::particles_as_markers(frame, scene);
         const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
-        if (field == "water" && !frame.particles.count("markers")) throw BadInput("this run has no markers to draw as water");
+        if (field == "water" && !frame.particles.count("markers") && !picture::has_sea(frame))
+            throw BadInput("this run has no markers, and no surface, to draw as water");
         const picture::View view{scene, frame, field, arguments.size, arguments.range};
         pictures.push_back(scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
     }

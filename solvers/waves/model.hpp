@@ -16,6 +16,8 @@ public:
     virtual bool sideways() const { return false; }
     /// The point of the surface that rests at (x, z), at the mean level.
     virtual Motion motion(real x, real z) const = 0;
+    /// The same of a particle that rests anywhere, y counted from the mean level; false: the model follows no particles.
+    virtual bool particle(const Vec<3>& /*rest*/, Motion& /*of*/) const { return false; }
     /// Velocity of the water at a place; its y counts from the mean level.
     virtual Vec<3> velocity(const Vec<3>& at) const = 0;
     /// The whole sheet, point by point unless a model knows better.

@@ -116,7 +116,7 @@ Bed Reader::bed() const {
 
 std::unique_ptr<Model> Reader::gerstner() const {
     const auto made = trains();
-    Trochoids::Shape shape{.bed = bed(), .lean = table.number("lean"), .flatten = table.number("flatten")};
+    Trochoids::Shape shape{.bed = bed(), .lean = table.number("lean"), .flatten = table.number("flatten"), .tilt = table.number("tilt")};
     for (std::size_t i = 0; i < made.size(); ++i) {
         const real steep = made[i].amplitude * made[i].k;
         if (steep > 1)

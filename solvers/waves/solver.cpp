@@ -139,6 +139,7 @@ bool Waves::answer(std::string_view field, const Vec<3>& at, std::span<real> val
         return true;
     };
     if (field == "velocity") return whole(model_->velocity({{at[0], at[1] - level_, at[2]}}));
+    if (Motion m; field == "position" && model_->particle({{at[0], at[1] - level_, at[2]}}, m)) return whole(at + m.moved);
     const Vec<2> rest = rest_of(*model_, at[0], at[2]);
     const Motion m = model_->motion(rest[0], rest[1]);
     if (field == surface_height_name) return values[0] = level_ + m.moved[1], true;

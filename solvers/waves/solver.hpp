@@ -20,6 +20,7 @@ public:
     bool checks_itself() const override { return true; }
     std::string concern() const override;
     FieldSet fields() const override;
+    /// "position" is that of the particle that rests at the point.
     bool answer(std::string_view field, const Vec<3>& at, std::span<real> values) const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return time_; }

@@ -57,7 +57,7 @@ void Trochoids::add(const Train& w, std::size_t number, real x, real y, real z, 
         heading = {{p.kx / p.k, kz / p.k}};
         k = p.k, h = p.depth, a = std::min(a * p.growth, breaks_at * h);
         const real rises = -shape_.bed.slope(x) * heading[0];  // the bed's, on the wave's way
-        tilt = std::asin(rises / std::hypot(1.0, rises) * std::exp(-k * h));
+        tilt = shape_.tilt * std::asin(rises / std::hypot(1.0, rises) * std::exp(-k * h));
     }
     a *= std::exp(k * y);
     const real flat = h == infinity ? 1 : 1 / -std::expm1(-shape_.flatten * k * h);

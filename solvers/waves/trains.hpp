@@ -40,6 +40,7 @@ public:
         Bed bed{};
         real lean = 0;     // [1/m]
         real flatten = 2;  // f
+        real tilt = 1;     // how far orbits follow the bed's slope
     };
     Trochoids(std::vector<Train> trains, real depth, Shape shape, const Restoring& by);
     void set_time(real t) override { t_ = t; }
@@ -47,6 +48,7 @@ public:
     Motion motion(real x, real z) const override { return motion(x, 0, z); }
     /// Of a particle that rests below the surface, y < 0.
     Motion motion(real x, real y, real z) const;
+    bool particle(const Vec<3>& rest, Motion& of) const override { return of = motion(rest[0], rest[1], rest[2]), true; }
     Vec<3> velocity(const Vec<3>& at) const override;
     std::size_t bytes() const override;
 
