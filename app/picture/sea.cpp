@@ -94,7 +94,7 @@ const Vec<3> sun = normalised({{0.55, 0.34, -1.0}});
 
 Colour sky(const Vec<3>& direction) {
     const real high = std::clamp(direction[1], 0.0, 1.0), to_sun = std::max(0.0, dot(direction, sun));
-    const Colour clear = mix(hex(0xe9edee), hex(0x5b8fc9), std::pow(high, 0.45));
+    const Colour clear = mix(hex(0xdfe6ea), hex(0x3f7fc4), std::pow(high, 0.38));
     return clear + (0.30 * std::pow(to_sun, 8) + 1.5 * std::pow(to_sun, 350)) * hex(0xfff1d6);
 }
 
@@ -159,9 +159,9 @@ Colour shade(const Pixel& at, const Vec<3>& ray, real crest, real far) {
     reflected[1] = std::abs(reflected[1]);
     const real facing = std::clamp(-dot(ray, n), 0.0, 1.0), fresnel = 0.02 + 0.98 * std::pow(1 - facing, 5);
     const real through = std::clamp(0.5 + 0.25 * crest, 0.0, 1.0) * std::pow(std::max(0.0, dot(ray, sun)), 2);
-    const Colour body = hex(0x06283a) + (0.25 * std::max(0.0, dot(n, sun)) + 0.55 * through) * hex(0x1f8a83);
+    const Colour body = hex(0x041c2c) + (0.10 * std::max(0.0, dot(n, sun)) + 0.45 * through) * hex(0x1f8a83);
     Colour colour = mix(body, sky(reflected), std::min(1.0, fresnel));
-    const real whiteness = std::clamp(1.35 * at.foam, 0.0, 1.0);
+    const real whiteness = std::clamp(3.0 * at.foam, 0.0, 1.0);
     colour = mix(colour, (0.55 + 0.45 * std::max(0.0, dot(n, normalised({{0.3, 1, 0.2}})))) * hex(0xf4f7f8), 0.92 * whiteness);
     return mix(colour, sky({{ray[0], 0.02, ray[2]}}), 0.75 * far * far);
 }

@@ -157,6 +157,16 @@ real Waves::least_jacobian() const {
     });
 }
 
+/// The part of the sheet's patches that have any.
+real Waves::foam_cover() const {
+    return ordered_sum(box_.nz(),
+                       [&](int k) {
+                           const auto row = foam_.begin() + static_cast<std::ptrdiff_t>(k) * box_.nx();
+                           return static_cast<real>(std::count_if(row, row + box_.nx(), [](real f) { return f > 0; }));
+                       }) /
+           static_cast<real>(foam_.size());
+}
+
 std::string Waves::concern() const {
     if (foam_below_ || sheet_.jacobian.empty()) return {};
     const real least = least_jacobian();
@@ -186,6 +196,7 @@ std::vector<Integral> Waves::integrals() const {
                                {"potential_energy", box_.dim == 3 ? "J" : "J/m", 0.5 * density_ * g_ * second * area * cell},
                                {"carried_variance", "", model_->carried()}};
     if (!sheet_.jacobian.empty()) list.push_back({"least_jacobian", "", least_jacobian()});
+    if (foam_below_) list.push_back({"foam_cover", "", foam_cover()});
     return list;
 }
 

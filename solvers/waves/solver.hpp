@@ -40,6 +40,7 @@ private:
     void make_foam();
     real foam_of(real jacobian) const;
     real least_jacobian() const;
+    real foam_cover() const;
     /// Below the surface the grid has cells: it shows the water. With one cell along y it shows the surface.
     bool shows_water() const { return box_.ny() > 1; }
 
