@@ -19,7 +19,7 @@ set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 
 weir_needs=(g++ cmake ninja-build git libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev opencl-headers
-            ocl-icd-opencl-dev libgsl-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev)
+            ocl-icd-opencl-dev libgsl-dev libmuparser-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev)
 figures_need=(gnuplot-nox)
 tests_need=(ccache libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium)
 

@@ -1,5 +1,6 @@
 // weir picture RESULT: one frame, or a row of frames, of a finished (or running) run as PNG.
 #include "app/commands.hpp"
+#include "app/picture/sea.hpp"
 #include "app/picture/view.hpp"
 #include "app/run_folder.hpp"
 #include "core/error.hpp"
@@ -46,7 +47,8 @@ int draw(const PictureArguments& arguments) {
         picture::particles_as_markers(frame, scene);
         const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
         const bool columns = picture::is_of_columns(frame);
-        if (field == "water" && !columns && !frame.particles.count("markers")) throw BadInput("this run has no markers to draw as water");
+        if (field == "water" && !columns && !frame.particles.count("markers") && !picture::has_sea(frame))
+            throw BadInput("this run has no markers, and no surface, to draw as water");
         const picture::View view{scene, frame, field, arguments.size, arguments.range};
         pictures.push_back(columns ? picture::draw_columns(view) : scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
     }

@@ -51,7 +51,7 @@ void particles_as_markers(output::FrameData& frame, const scene::Scene& scene) {
 }
 
 std::string best_field(const output::FrameData& frame) {
-    if (frame.particles.count("markers") || is_of_columns(frame)) return "water";
+    if (frame.particles.count("markers") || frame.particles.count(surface_set_name) || is_of_columns(frame)) return "water";
     for (const char* name : {"smoke", "temperature"})
         if (frame.cells.count(name)) return name;
     return frame.cells.count("velocity") ? "speed" : frame.cells.empty() ? "" : frame.cells.begin()->first;

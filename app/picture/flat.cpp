@@ -96,6 +96,31 @@ private:
     real lower_ = 0, upper_ = 1;
 };
 
+/// Water below a line of points; where it is folded over, below its highest.
+void draw_below_line(const View& view, const Plane& plane, Canvas& canvas) {
+    const auto& x = view.frame.particles.at(surface_set_name).at("position");
+    std::vector<real> top(static_cast<std::size_t>(plane.width), -infinity);
+    for (std::size_t i = 0; i + 1 < x[0].size(); ++i) {
+        const auto [left, right] = std::minmax(x[0][i], x[0][i + 1]);
+        const int from = std::max(0, static_cast<int>((left - plane.x0) / plane.metre)),
+                  to = std::min(plane.width - 1, static_cast<int>((right - plane.x0) / plane.metre));
+        for (int column = from; column <= to; ++column) {
+            const real s = right > left ? std::clamp((plane.place(column, 0)[0] - x[0][i]) / (x[0][i + 1] - x[0][i]), 0.0, 1.0) : 0;
+            top[static_cast<std::size_t>(column)] = std::max(top[static_cast<std::size_t>(column)], (1 - s) * x[1][i] + s * x[1][i + 1]);
+        }
+    }
+    for (int column = 0; column < plane.width; ++column) {  // half a cell beyond the outermost points
+        const bool left = column < plane.width / 2;
+        if (real& y = top[static_cast<std::size_t>(column)]; y == -infinity) y = left ? x[1].front() : x[1].back();
+    }
+    const Colour air = hex(0xf3f5f7), rim = hex(0x9ccbe8), water = colour_of("water", 0.3);
+    for (int y = 0; y < plane.height; ++y)
+        for (int column = 0; column < plane.width; ++column) {
+            const real below = (top[static_cast<std::size_t>(column)] - plane.place(column, y)[1]) / plane.metre;  // pixels
+            canvas.at(column, y) = below < 0 ? air : below < 3 * oversampling ? rim : water;
+        }
+}
+
 void draw_solids(const View& view, const Plane& plane, Canvas& canvas) {
     geometry::Solids<2> solids(view.scene.root().tables("solids"));
     if (solids.empty()) return;
@@ -113,7 +138,9 @@ void draw_solids(const View& view, const Plane& plane, Canvas& canvas) {
 Canvas draw_2d(const View& view) {
     const Plane plane(view.frame.grid, view.size);
     Canvas canvas(plane.width, plane.height);
-    if (view.field == "water") {
+    if (view.field == "water" && view.frame.particles.count("markers") == 0) {
+        draw_below_line(view, plane, canvas);
+    } else if (view.field == "water") {
         const Splats splats(view, plane);
         for (int y = 0; y < plane.height; ++y)
             for (int x = 0; x < plane.width; ++x)

@@ -1,5 +1,6 @@
 // 3D pictures: one ray a pixel through smoke or water, the edges of the domain drawn over it.
 #include "app/picture/media.hpp"
+#include "app/picture/sea.hpp"
 #include "core/parallel.hpp"
 
 namespace weir::picture {
@@ -40,6 +41,9 @@ Canvas draw(const View& view) {
 
 }  // namespace
 
-Canvas draw_3d(const View& view) { return view.field == "water" ? draw<Water>(view) : draw<Smoke>(view); }
+Canvas draw_3d(const View& view) {
+    if (view.field != "water") return draw<Smoke>(view);
+    return view.frame.particles.count("markers") == 0 && has_sea(view.frame) ? draw_sea(view) : draw<Water>(view);
+}
 
 }  // namespace weir::picture

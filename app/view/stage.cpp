@@ -9,6 +9,7 @@
 #include <vtkLookupTable.h>
 #include <vtkPointData.h>
 #include <vtkPointGaussianMapper.h>
+#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
@@ -74,7 +75,9 @@ Stage::~Stage() = default;
 void Stage::show(const Frame& frame, const std::string& field, Show what) {
     for (const auto& prop : props_) renderer_->RemoveViewProp(prop);
     props_.clear();
-    const bool grid = frame.grid && (what != Show::particles || frame.particles.empty());
+    const bool sheet = std::any_of(frame.particles.begin(), frame.particles.end(),
+                                   [](const auto& set) { return set.second->GetNumberOfPolys() > 0; });  // the grid is one layer of cells
+    const bool grid = frame.grid && !sheet && (what != Show::particles || frame.particles.empty());
     if (grid) dim() == 2 ? add_sheet(frame, field) : add_cloud(frame, field);
     if (what != Show::grid || !grid)
         for (const auto& [set, points] : frame.particles) add_particles(frame, points, field);
@@ -130,6 +133,7 @@ void Stage::set_colours(const std::string& field) {
 
 void Stage::add_particles(const Frame& frame, vtkPolyData* points, const std::string& field) {
     if (points->GetNumberOfPoints() == 0) return;
+    if (points->GetNumberOfPolys() + points->GetNumberOfLines() > 0) return add_surface(frame, points, field);
     const auto shown = coloured(points, frame, field);
     vtkNew<vtkPointGaussianMapper> mapper;
     mapper->SetInputData(shown ? vtkPolyData::SafeDownCast(shown) : points);
@@ -147,6 +151,24 @@ void Stage::add_particles(const Frame& frame, vtkPolyData* points, const std::st
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.16, 0.42, 0.66);
     actor->GetProperty()->LightingOff();
+    if (shown) {
+        widen(shown);
+        mapper->SetLookupTable(colours_);
+        mapper->UseLookupTableScalarRangeOn();
+    } else
+        mapper->ScalarVisibilityOff();
+    add(actor.Get());
+}
+
+void Stage::add_surface(const Frame& frame, vtkPolyData* surface, const std::string& field) {
+    const auto shown = coloured(surface, frame, field);
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(shown ? vtkPolyData::SafeDownCast(shown) : surface);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(0.16, 0.42, 0.66);
+    actor->GetProperty()->SetSpecular(0.4);
+    actor->GetProperty()->SetLineWidth(3);
     if (shown) {
         widen(shown);
         mapper->SetLookupTable(colours_);

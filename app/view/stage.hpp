@@ -40,6 +40,7 @@ public:
 
 private:
     void add_particles(const Frame& frame, vtkPolyData* points, const std::string& field);
+    void add_surface(const Frame& frame, vtkPolyData* points, const std::string& field);
     void add_sheet(const Frame& frame, const std::string& field);
     void add_cloud(const Frame& frame, const std::string& field);
     void add_solids(real time);

@@ -44,6 +44,7 @@ struct EffectPlan {
     std::vector<std::string> fields{};   // cell fields carried by the flow, shared with every other effect that asks for them
     std::vector<std::string> scratch{};  // others, shared too
     std::size_t bytes = 0;               // that it holds for itself alone
+    std::vector<std::string> shown{};    // fields that it makes and shows, and the flow does not carry
 };
 
 /// The pass by whose name an effect is timed.

@@ -59,10 +59,22 @@ inline constexpr const char* column_surface_name = "surface";
 inline constexpr const char* marker_set_name = "markers";
 inline constexpr const char* particle_set_name = "particles";
 
+/// And those whose surface is a height over each point: a cell field on a grid of one cell along y, the surface's y [m]. The same surface
+/// as points in space, which may have moved sideways too.
+inline constexpr const char* surface_height_name = "height";
+inline constexpr const char* surface_set_name = "surface";
+
+/// A particle set whose points stand in rows, x fastest, and are the corners of a surface: a line where there is one row.
+struct SheetView {
+    std::string set;
+    std::array<int, 2> points{0, 0};
+};
+
 /// Everything a solver shows. A particle set's positions are the field named "position" of that set.
 struct FieldSet {
     GridView grid;
     std::vector<FieldView> fields;
+    std::vector<SheetView> sheets{};
     const FieldView* find(std::string_view name) const {
         for (const auto& f : fields)
             if (f.name == name) return &f;
@@ -100,6 +112,8 @@ public:
     /// What is wrong with using the method on the state of the moment, in one line, with its numbers; empty where nothing is.
     virtual std::string concern() const { return {}; }
     virtual FieldSet fields() const = 0;
+    /// The components of a field at a point, from a solver that knows them without a grid; false: take them from fields().
+    virtual bool answer(std::string_view /*field*/, const Vec<3>& /*at*/, std::span<real> /*values*/) const { return false; }
     /// Whether step() itself throws NumericalFailure where a field is no longer finite, so that nobody needs to look at all fields after
     /// every step: they may be far away, on a device.
     virtual bool checks_itself() const { return false; }

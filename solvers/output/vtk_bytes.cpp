@@ -117,6 +117,30 @@ vtkSmartPointer<vtkImageData> image(const GridView& grid) {
     return data;
 }
 
+/// A vertex a point.
+void draw_points(vtkPolyData& data) {
+    vtkNew<vtkCellArray> vertices;
+    for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) vertices->InsertNextCell(1, &i);
+    data.SetVerts(vertices);
+}
+
+/// Rows of points as the corners of quadrilaterals; a single row as a line.
+void join(vtkPolyData& data, const SheetView& sheet) {
+    const vtkIdType nx = sheet.points[0], nz = sheet.points[1];
+    vtkNew<vtkCellArray> cells;
+    if (nz == 1) {
+        cells->InsertNextCell(static_cast<int>(nx));
+        for (vtkIdType i = 0; i < nx; ++i) cells->InsertCellPoint(i);
+        return data.SetLines(cells);
+    }
+    for (vtkIdType k = 0; k + 1 < nz; ++k)
+        for (vtkIdType i = 0; i + 1 < nx; ++i) {
+            const std::array<vtkIdType, 4> corners{i + nx * k, i + nx * (k + 1), i + 1 + nx * (k + 1), i + 1 + nx * k};
+            cells->InsertNextCell(4, corners.data());
+        }
+    data.SetPolys(cells);
+}
+
 }  // namespace
 
 bool can_write_frames() { return true; }
@@ -159,9 +183,11 @@ std::string particle_bytes(const FieldSet& fields, const std::string& set, real 
     vtkNew<vtkPoints> points;
     points->SetData(as_it_is(position, options));
     data->SetPoints(points);
-    vtkNew<vtkCellArray> vertices;
-    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i) vertices->InsertNextCell(1, &i);
-    data->SetVerts(vertices);
+    const auto sheet = std::find_if(fields.sheets.begin(), fields.sheets.end(), [&](const SheetView& s) { return s.set == set; });
+    if (sheet != fields.sheets.end())
+        join(*data, *sheet);
+    else
+        draw_points(*data);
     for (const auto& field : fields.fields)
         if (field.set == set && field.name != "position" && chosen(options, field))
             data->GetPointData()->AddArray(as_it_is(field, options));

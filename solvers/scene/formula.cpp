@@ -3,211 +3,118 @@
 #include "scene/names.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <muParser.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
+#include <cmath>
 
 namespace weir::scene {
 
 namespace {
 
-enum Code { constant, variable, add, subtract, multiply, divide, power, negate, function };
-
 struct Function {
     const char* name;
-    int arguments;
+    real (*value)(real);
+};
+
+struct Function2 {
+    const char* name;
     real (*value)(real, real);
 };
 
-constexpr std::array<Function, 19> functions{{
-    {"abs", 1, [](real a, real) { return std::abs(a); }},
-    {"sqrt", 1, [](real a, real) { return std::sqrt(a); }},
-    {"exp", 1, [](real a, real) { return std::exp(a); }},
-    {"log", 1, [](real a, real) { return std::log(a); }},
-    {"sin", 1, [](real a, real) { return std::sin(a); }},
-    {"cos", 1, [](real a, real) { return std::cos(a); }},
-    {"tan", 1, [](real a, real) { return std::tan(a); }},
-    {"atan", 1, [](real a, real) { return std::atan(a); }},
-    {"sinh", 1, [](real a, real) { return std::sinh(a); }},
-    {"cosh", 1, [](real a, real) { return std::cosh(a); }},
-    {"tanh", 1, [](real a, real) { return std::tanh(a); }},
-    {"sech", 1, [](real a, real) { return 1 / std::cosh(a); }},
-    {"floor", 1, [](real a, real) { return std::floor(a); }},
-    {"step", 1, [](real a, real) { return a < 0 ? 0.0 : 1.0; }},
-    {"min", 2, [](real a, real b) { return std::min(a, b); }},
-    {"max", 2, [](real a, real b) { return std::max(a, b); }},
-    {"hypot", 2, [](real a, real b) { return std::sqrt(a * a + b * b); }},
-    {"atan2", 2, [](real a, real b) { return std::atan2(a, b); }},
-    {"mod", 2, [](real a, real b) { return a - b * std::floor(a / b); }},
+constexpr std::array<Function, 14> functions{{
+    {"abs", [](real a) { return std::abs(a); }},
+    {"sqrt", [](real a) { return std::sqrt(a); }},
+    {"exp", [](real a) { return std::exp(a); }},
+    {"log", [](real a) { return std::log(a); }},
+    {"sin", [](real a) { return std::sin(a); }},
+    {"cos", [](real a) { return std::cos(a); }},
+    {"tan", [](real a) { return std::tan(a); }},
+    {"atan", [](real a) { return std::atan(a); }},
+    {"sinh", [](real a) { return std::sinh(a); }},
+    {"cosh", [](real a) { return std::cosh(a); }},
+    {"tanh", [](real a) { return std::tanh(a); }},
+    {"sech", [](real a) { return 1 / std::cosh(a); }},
+    {"floor", [](real a) { return std::floor(a); }},
+    {"step", [](real a) { return a < 0 ? 0.0 : 1.0; }},
 }};
 
-constexpr int most_depth = 64;  // of brackets: more is a mistake, and would overflow the stack
+constexpr std::array<Function2, 5> functions_of_two{{
+    {"min", [](real a, real b) { return std::min(a, b); }},
+    {"max", [](real a, real b) { return std::max(a, b); }},
+    {"hypot", [](real a, real b) { return std::sqrt(a * a + b * b); }},
+    {"atan2", [](real a, real b) { return std::atan2(a, b); }},
+    {"mod", [](real a, real b) { return a - b * std::floor(a / b); }},
+}};
+
+/// muParser's messages name its own callbacks and operators; these say what a scene's author did.
+std::string told(const mu::Parser::exception_type& e) {
+    const std::string& token = e.GetToken();
+    switch (e.GetCode()) {
+        case mu::ecUNASSIGNABLE_TOKEN:
+            return fmt::format("the formula knows no \"{}\"", token);
+        case mu::ecUNEXPECTED_EOF:
+            return "the formula ends where a value is expected";
+        case mu::ecMISSING_PARENS:
+            return "a closing bracket is missing";
+        case mu::ecTOO_FEW_PARAMS:
+        case mu::ecTOO_MANY_PARAMS:
+            return fmt::format("\"{}\" wants another number of arguments", token);
+        default:
+            return fmt::format("\"{}\" is not expected here", token);
+    }
+}
+
+/// A formula gives a value and changes none: muParser's assignment is no word of it.
+void refuse_assignment(std::string_view text) {
+    const std::string_view pairs = "=<>!";
+    for (std::size_t i = 0; i < text.size(); ++i)
+        if (text[i] == '=') {
+            const bool compares = i > 0 && pairs.find(text[i - 1]) != std::string_view::npos;
+            if (!compares && (i + 1 >= text.size() || text[i + 1] != '='))
+                throw BadFormula(static_cast<int>(i), 1, "\"=\" is not expected here");
+        }
+}
 
 }  // namespace
 
-/// Recursive descent: sum = product {+- product}, product = signed {*/ signed}, signed = [-+] power, power = atom [^ signed].
-class FormulaParser {
-public:
-    FormulaParser(std::string_view text, const std::vector<std::string>& variables, Formula& to)
-        : text_(text), variables_(variables), to_(to) {}
-    void parse() {
-        sum();
-        skip();
-        if (at_ < text_.size()) fail(at_, 1, fmt::format("\"{}\" is not expected here", text_[at_]));
-    }
-
-private:
-    [[noreturn]] void fail(std::size_t at, std::size_t width, const std::string& what) const {
-        throw BadFormula(static_cast<int>(at), static_cast<int>(width), what);
-    }
-    void skip() {
-        while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\n' || text_[at_] == '\t')) ++at_;
-    }
-    bool take(char c) {
-        skip();
-        if (at_ >= text_.size() || text_[at_] != c) return false;
-        ++at_;
-        return true;
-    }
-    void emit(int code, real value = 0, int number = 0) { to_.code_.push_back({code, value, number}); }
-
-    void sum() {
-        if (++depth_ > most_depth) fail(at_, 1, "the formula is nested too deeply");
-        product();
-        for (;;) {
-            if (take('+'))
-                product(), emit(add);
-            else if (take('-'))
-                product(), emit(subtract);
-            else
-                break;
-        }
-        --depth_;
-    }
-    void product() {
-        with_sign();
-        for (;;) {
-            if (take('*'))
-                with_sign(), emit(multiply);
-            else if (take('/'))
-                with_sign(), emit(divide);
-            else
-                return;
-        }
-    }
-    void with_sign() {
-        bool minus = false;
-        for (;;) {
-            if (take('-'))
-                minus = !minus;
-            else if (!take('+'))
-                break;
-        }
-        atom();
-        if (take('^')) {
-            if (++depth_ > most_depth) fail(at_, 1, "the formula is nested too deeply");
-            with_sign(), emit(power);
-            --depth_;
-        }
-        if (minus) emit(negate);
-    }
-    void atom() {
-        skip();
-        if (at_ >= text_.size()) fail(at_, 1, "the formula ends where a value is expected");
-        const char c = text_[at_];
-        if (take('(')) {
-            sum();
-            if (!take(')')) fail(at_, 1, "a closing bracket is missing");
-        } else if (std::isdigit(static_cast<unsigned char>(c)) || c == '.') {
-            number();
-        } else if (std::isalpha(static_cast<unsigned char>(c))) {
-            word();
-        } else {
-            fail(at_, 1, fmt::format("\"{}\" stands where a value is expected", c));
-        }
-    }
-    void number() {
-        real value = 0;
-        const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-        if (error != std::errc()) fail(at_, 1, "this is no number");
-        at_ = static_cast<std::size_t>(end - text_.data());
-        emit(constant, value);
-    }
-    void word() {
-        const std::size_t begin = at_;
-        while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) ++at_;
-        const std::string_view name = text_.substr(begin, at_ - begin);
-        if (name == "pi") return emit(constant, pi);
-        for (std::size_t v = 0; v < variables_.size(); ++v)
-            if (name == variables_[v]) return emit(variable, 0, static_cast<int>(v));
-        for (std::size_t f = 0; f < functions.size(); ++f)
-            if (name == functions[f].name) return call(f, begin);
-        fail(begin, name.size(), fmt::format("the formula knows no \"{}\"", name));
-    }
-    void call(std::size_t f, std::size_t begin) {
-        const std::string name = functions[f].name;
-        if (!take('(')) fail(begin, name.size(), fmt::format("\"{}\" wants its argument in brackets", name));
-        sum();
-        for (int a = 1; a < functions[f].arguments; ++a) {
-            if (!take(',')) fail(at_, 1, fmt::format("\"{}\" wants {} arguments", name, functions[f].arguments));
-            sum();
-        }
-        if (!take(')')) fail(at_, 1, fmt::format("a closing bracket of \"{}\" is missing", name));
-        emit(function, 0, static_cast<int>(f));
-    }
-
-    std::string_view text_;
-    const std::vector<std::string>& variables_;
-    Formula& to_;
-    std::size_t at_ = 0;
-    int depth_ = 0;
+struct Formula::Compiled {
+    std::vector<real> values;
+    mu::Parser parser;
 };
 
-Formula::Formula(std::string_view text, const std::vector<std::string>& variables) { FormulaParser(text, variables, *this).parse(); }
+Formula::Formula(std::string_view text, const std::vector<std::string>& variables) : compiled_(std::make_shared<Compiled>()) {
+    refuse_assignment(text);
+    mu::Parser& parser = compiled_->parser;
+    compiled_->values.resize(variables.size());
+    try {
+        parser.ClearFun();
+        parser.ClearConst();
+        parser.DefineConst("pi", pi);
+        for (const Function& f : functions) parser.DefineFun(f.name, f.value);
+        for (const Function2& f : functions_of_two) parser.DefineFun(f.name, f.value);
+        for (std::size_t v = 0; v < variables.size(); ++v) parser.DefineVar(variables[v], &compiled_->values[v]);
+        parser.SetExpr(std::string(text));
+        parser.Eval();
+        if (parser.GetNumResults() != 1) throw BadFormula(0, static_cast<int>(text.size()), "one value is expected");
+    } catch (const mu::Parser::exception_type& e) {
+        const int end = static_cast<int>(text.size()), at = std::clamp(static_cast<int>(e.GetPos()), 0, end);
+        throw BadFormula(at, std::clamp(static_cast<int>(e.GetToken().size()), 1, std::max(1, end - at)), told(e));
+    }
+}
 
 real Formula::operator()(std::span<const real> values) const {
-    std::array<real, 4 * most_depth + 8> stack;  // each bracket keeps at most three values waiting: of a sum, a product, a power
-    std::size_t n = 0;
-    for (const Operation& o : code_) {
-        const auto second = [&] { return stack[--n]; };
-        switch (o.code) {
-            case constant:
-                stack[n++] = o.value;
-                break;
-            case variable:
-                stack[n++] = values[static_cast<std::size_t>(o.variable)];
-                break;
-            case negate:
-                stack[n - 1] = -stack[n - 1];
-                break;
-            case function: {
-                const Function& f = functions[static_cast<std::size_t>(o.variable)];
-                const real b = f.arguments == 2 ? second() : 0;
-                stack[n - 1] = f.value(stack[n - 1], b);
-                break;
-            }
-            default: {
-                const real b = second();
-                real& a = stack[n - 1];
-                // squares by multiplication: x^2 is what bowls and bumps are made of, and pow is slower and no better
-                a = o.code == add        ? a + b
-                    : o.code == subtract ? a - b
-                    : o.code == multiply ? a * b
-                    : o.code == divide   ? a / b
-                    : b == 2             ? a * a
-                                         : std::pow(a, b);
-            }
-        }
-    }
-    return n == 1 ? stack[0] : std::nan("");
+    std::copy(values.begin(), values.end(), compiled_->values.begin());
+    return compiled_->parser.Eval();
 }
 
 const std::string& Formula::words() {
     static const std::string list = [] {
-        std::string all = "numbers, pi, + - * / ^ ( )";
-        for (const Function& f : functions) all += std::string(", ") + f.name + (f.arguments == 2 ? "(,)" : "()");
+        std::string all = "numbers, pi, + - * / ^ ( ), < <= > >= == != && || ?:";
+        for (const Function& f : functions) all += std::string(", ") + f.name + "()";
+        for (const Function2& f : functions_of_two) all += std::string(", ") + f.name + "(,)";
         return all;
     }();
     return list;

@@ -1,9 +1,10 @@
-// Formulas in scenes, such as "0.2 - 0.05*(x-10)^2": numbers, variables by name, + - * / ^, brackets
-// and a few functions; compiled once into a list of operations for a stack, so that a formula may be asked a million times.
+// Formulas in scenes, such as "0.2 - 0.05*(x-10)^2": numbers, variables by name, + - * / ^, comparisons, brackets and functions.
+// Read and evaluated by muParser.
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
 
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,7 @@ struct BadFormula : std::runtime_error {
     int at, width;
 };
 
+/// One thread at a time may ask a formula; a copy is the same formula.
 class Formula {
 public:
     Formula() = default;
@@ -25,18 +27,13 @@ public:
     Formula(std::string_view text, const std::vector<std::string>& variables);
     /// NaN or infinity where the formula has no value.
     real operator()(std::span<const real> values) const;
-    bool empty() const { return code_.empty(); }
+    bool empty() const { return compiled_ == nullptr; }
     /// What a formula may say, for hints and manuals.
     static const std::string& words();
 
 private:
-    friend class FormulaParser;
-    struct Operation {
-        int code;    // of `operations` in formula.cpp
-        real value;  // of a constant
-        int variable;
-    };
-    std::vector<Operation> code_;
+    struct Compiled;
+    std::shared_ptr<Compiled> compiled_;
 };
 
 /// The formula that stands at a key of type text; a mistake in it is refused with the place of the mistake.

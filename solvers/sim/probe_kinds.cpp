@@ -30,12 +30,15 @@ public:
                 series.positions.push_back(points_[i]);
             }
     }
-    std::vector<real> measure(const Solver&, const FieldSet& fields) const override {
+    std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
         const FieldView& field = *fields.find("", field_.name);
-        std::vector<real> row;
-        for (const auto& x : points_)
+        std::vector<real> row, answer(static_cast<std::size_t>(components_));
+        for (const auto& x : points_) {
+            const bool known = solver.answer(field_.name, x, answer);
             for (int c = 0; c < components_; ++c)
-                row.push_back(sample_to_wall(field.data[static_cast<std::size_t>(c)], Lattice::of(field, fields.grid, c), x));
+                row.push_back(known ? answer[static_cast<std::size_t>(c)]
+                                    : sample_to_wall(field.data[static_cast<std::size_t>(c)], Lattice::of(field, fields.grid, c), x));
+        }
         return row;
     }
 
@@ -54,7 +57,9 @@ public:
         series.columns = {"height [m]", "depth [m]"};
         series.positions = {at_, at_};
     }
-    std::vector<real> measure(const Solver&, const FieldSet& fields) const override {
+    std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
+        if (real height = 0; solver.answer(surface_height_name, at_, {&height, 1}))
+            return {height - fields.grid.origin[1], std::max(0.0, height - fields.grid.origin[1])};
         return {highest_liquid(fields, at_, 1) - fields.grid.origin[1], liquid_depth(fields, at_, 1)};
     }
 

@@ -6,6 +6,7 @@
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
 #include "water/solver.hpp"
+#include "waves/solver.hpp"
 
 #include <stdexcept>
 
@@ -13,7 +14,7 @@ namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
     static const std::vector<scene::SolverKind> kinds = {flow::kind(), water::kind(), studies::transport_kind(), studies::poisson_kind(),
-                                                         pbf::kind(),  sph::kind(),   heightfield::kind()};
+                                                         pbf::kind(),  sph::kind(),   heightfield::kind(), waves::kind()};
     return kinds;
 }
 

@@ -118,7 +118,9 @@ real front_of_columns(const FieldSet& fields, const WaterColumns& water, int axi
 
 }  // namespace
 
-bool has_surface(const FieldSet& fields) { return fields.find(level_set_name) || columns_of(fields) || wet_points(fields).position; }
+bool has_surface(const FieldSet& fields) {
+    return fields.find("", surface_height_name) || fields.find(level_set_name) || columns_of(fields) || wet_points(fields).position;
+}
 
 real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
     if (const WaterColumns water = columns_of(fields)) {
@@ -127,6 +129,7 @@ real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
         return depth > 0 ? sample(water.surface->data[0], lattice, x) : fields.grid.origin[static_cast<std::size_t>(axis)];
     }
     const FieldView* level_set = fields.find(level_set_name);
+    if (const FieldView* height = fields.find("", surface_height_name); height && axis == 1) return sample(*height, fields.grid, 0, x);
     if (!level_set) return highest_point(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
     const real zero = uppermost_zero(lattice.n[static_cast<std::size_t>(axis)], along(*level_set, lattice, x, axis));
@@ -136,6 +139,8 @@ real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
 real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
     if (const WaterColumns water = columns_of(fields)) return sample(water.depth->data[0], Lattice::of_cells(fields.grid), x);
     const FieldView* level_set = fields.find(level_set_name);
+    if (const FieldView* height = fields.find("", surface_height_name); height && axis == 1)
+        return std::max(0.0, sample(*height, fields.grid, 0, x) - fields.grid.origin[1]);
     if (!level_set) return depth_of_points(fields, x, axis);
     const Lattice lattice = Lattice::of_cells(fields.grid);
     const auto phi = along(*level_set, lattice, x, axis);
@@ -149,6 +154,11 @@ real front(const FieldSet& fields, int axis) {
     if (const WaterColumns water = columns_of(fields)) return front_of_columns(fields, water, axis);
     const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
     real farthest = fields.grid.origin[a];
+    if (const FieldView* height = fields.find("", surface_height_name)) {  // there is liquid below every point
+        if (axis != 1) return upper_corner(fields.grid)[axis];
+        for (const real y : height->data[0]) farthest = std::max(farthest, y);
+        return farthest;
+    }
     if (const FieldView* level_set = fields.find(level_set_name)) {
         const Lattice lattice = Lattice::of_cells(fields.grid);
         std::array<int, 3> I{};

@@ -1,5 +1,5 @@
-// Where the free surface stands: from the solver's level set (linear between cell centres), or from its markers or particles where it
-// has none.
+// Where the free surface stands: from the solver's heights, from its level set (both linear between cell centres), or from its markers or
+// particles where it has neither.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"

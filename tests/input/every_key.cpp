@@ -185,6 +185,24 @@ std::map<std::string, Said> everything() {
         all(Lines{walls[1], at_the_wall, "liquid = [ { shape = \"sphere\", centre = [0.5, 0.7], radius = 0.1 } ]"}),
         {"liquid = []\ninitial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1\", z = \"0.1\" } }",
          "liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"}};
+    const std::string falls = "\neffects.gravity.g = [0, -9.81", sea = "waves = { model = \"spectrum\", ", wind = "spectrum = { kind = ";
+    const std::string of_sea = sea + "heading = 0, choppiness = 0, shortest = 0.2, seed = 2, amplitudes = \"gaussian\", " + wind;
+    const std::string rest = "level = 0.5, depth = 0.5, velocity = true, ", way = "heading = 0, phase = 1", trains = "trains = [ { ",
+                      train = trains + "amplitude = 0.01, wavelength = 0.5, " + way + " } ]";
+    said["waves"] = {
+        {"waves = { model = \"sines\", " + rest + train + " }"},
+        all(of_the_run, probes("velocity"), of_the_surface,
+            Lines{"fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
+                  "waves = { model = \"gerstner\", " + rest + train + " }\neffects.foam.below = 0.5",
+                  "waves = { model = \"gerstner\", lean = 1, flatten = 2, tilt = 1, bed = { x = [0, 1], depth = [1, 0.5] }, " + train +
+                      " }" + falls + "]",
+                  of_sea + "\"pierson_moskowitz\", wind = 0.8 } }" + falls + "]",
+                  of_sea + "\"jonswap\", wind = 1, fetch = 1000, gamma = 2 } }" + falls + "]",
+                  of_sea + "\"phillips\", wind = 1, alpha = 0.001 } }" + falls + "]",
+                  "waves = { model = \"stokes\", height = 0.01, wavelength = 0.5, order = 2, " + way + " }" + falls + "]",
+                  "waves = \"basin\"\nliquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]" + falls + "]"}),
+        {at_the_wall},
+        {sea + "spread = 2, " + wind + "\"pierson_moskowitz\", wind = 0.8 } }" + falls + ", 0]"}};
     return said;
 }
 

@@ -52,7 +52,7 @@ EffectCost measure_effect(const scene::SolverKind& kind, int dim, int cells, con
     try {
         const auto without = kind.make(plain_scene(kind, dim, cells, {effect}));
         const auto with = kind.make(scene_with(kind, dim, cells, {effect}, usual_strength));
-        take_turns(cost, *with, *without, 0.2 * std::min(with->advised_dt(), without->advised_dt()), options);
+        take_turns(cost, *with, *without, 0.2 * std::min({with->advised_dt(), without->advised_dt(), 1.0}), options);
         cost.bytes_without = without->bytes(), cost.bytes_with = with->bytes();
         for (const EffectPlan& plan : with->effects()) {
             cost.inside = plan.inside;

@@ -54,7 +54,9 @@ Names minus(const Names& a, const Names& b) {
 std::string text(const Names& names) { return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")); }
 
 /// Small enough for the plain scene and for every effect at negligible strength.
-real common_dt(const scene::SolverKind& kind, const scene::Scene& plain) { return 0.2 * kind.make(plain)->advised_dt(); }
+real common_dt(const scene::SolverKind& kind, const scene::Scene& plain) {
+    return 0.2 * std::min(kind.make(plain)->advised_dt(), 1.0);  // some solvers are stable for any
+}
 
 /// Whether the fields that both have hold the same numbers; +0 and -0 are the same number.
 bool same_numbers(const Watched& a, const Watched& b) {
@@ -87,7 +89,8 @@ private:
 /// Visible fields and passes that the declared plans bring to a step. A first carried field brings the pass that carries fields.
 Names fields_of(const std::vector<EffectPlan>& plans) {
     Names names;
-    for (const EffectPlan& p : plans) names.insert(p.fields.begin(), p.fields.end());
+    for (const EffectPlan& p : plans)
+        for (const auto* list : {&p.fields, &p.shown}) names.insert(list->begin(), list->end());
     return names;
 }
 Names passes_of(const std::vector<EffectPlan>& plans) {

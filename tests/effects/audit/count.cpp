@@ -67,7 +67,7 @@ int audit(const scene::SolverKind& kind, int dim) {
     for (const auto& effect : kind.schema.effects) {
         all.push_back(effect.name);
         const auto plain = validation::plain_scene(kind, dim, cells_along(dim), {effect.name});
-        const real dt = 0.2 * kind.make(plain)->advised_dt();
+        const real dt = 0.2 * std::min(kind.make(plain)->advised_dt(), 1.0);
         const Step without = counted_step(kind, plain, dt),
                    with =
                        counted_step(kind, validation::scene_with(kind, dim, cells_along(dim), {effect.name}, validation::negligible), dt);
@@ -78,7 +78,7 @@ int audit(const scene::SolverKind& kind, int dim) {
     }
     // a plain step again, after every effect has been used in this program
     const auto plain = validation::plain_scene(kind, dim, cells_along(dim));
-    const real dt = 0.2 * kind.make(plain)->advised_dt();
+    const real dt = 0.2 * std::min(kind.make(plain)->advised_dt(), 1.0);
     const long before = total(counted_step(kind, plain, dt).counts);
     {
         const auto used = kind.make(validation::scene_with(kind, dim, cells_along(dim), all, validation::negligible));

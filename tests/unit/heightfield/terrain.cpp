@@ -94,9 +94,11 @@ TEST("formulas: precedence, functions, and where they are wrong") {
     EXPECT_EQ(wrong("2 x"), "2: \"x\" is not expected here");
     EXPECT_EQ(wrong("(1 + x"), "6: a closing bracket is missing");
     EXPECT_EQ(wrong("1 +"), "3: the formula ends where a value is expected");
-    EXPECT_EQ(wrong("sin x"), "0: \"sin\" wants its argument in brackets");
-    EXPECT_EQ(wrong("max(1)"), "5: \"max\" wants 2 arguments");
-    EXPECT_EQ(wrong(std::string(100, '(')), "64: the formula is nested too deeply");
+    EXPECT_EQ(wrong("sin x"), "0: the formula knows no \"sin\"");
+    EXPECT_EQ(wrong("max(1)"), "5: \"max\" wants another number of arguments");
+    EXPECT_EQ(wrong("x = 2"), "2: \"=\" is not expected here") << "a formula changes nothing";
+    EXPECT_EQ(wrong("x, 2"), "0: one value is expected");
+    EXPECT_EQ(f("x <= 2 ? 1 : 0", 2), 1);
 }
 
 TEST("a mistake in a scene's formula stands at its own column") {

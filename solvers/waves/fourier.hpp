@@ -1,0 +1,60 @@
+// A real field on the sheet from the coefficients of its waves (FFTW), row by row with the same plan for every row: threads share rows, and
+// no bit depends on how many there are.
+//
+//     out(i, k) = sum over m, n of c(m, n) exp(2 pi i (m i / nx + n k / nz)),   c(-m, -n) = conj c(m, n)
+#pragma once
+#include "core/parallel.hpp"
+#include "core/types.hpp"
+
+#include <complex>
+#include <memory>
+
+namespace weir::waves {
+
+using Complex = std::complex<real>;
+
+/// The half plane m = 0 .. nx/2, n = 0 .. nz - 1 that is stored; n fastest.
+struct HalfPlane {
+    int nx = 1, nz = 1;
+    int columns() const { return nx / 2 + 1; }
+    std::size_t size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(nz); }
+    std::size_t at(int m, int n) const { return static_cast<std::size_t>(m) * static_cast<std::size_t>(nz) + static_cast<std::size_t>(n); }
+    /// n as a wavenumber: -nz/2 .. nz/2.
+    int signed_n(int n) const { return 2 * n > nz ? n - nz : n; }
+    /// Waves of which a grid sees only one of two phases, sine or cosine.
+    bool ambiguous(int m, int n) const { return 2 * m == nx || 2 * n == nz; }
+};
+
+class Synthesis {
+public:
+    explicit Synthesis(const HalfPlane& plane);
+    ~Synthesis();
+    Synthesis(const Synthesis&) = delete;
+    Synthesis& operator=(const Synthesis&) = delete;
+
+    /// `column(m, at)` writes the nz coefficients of column m; row k of the field goes to out + k stride.
+    template <class F>
+    void operator()(const F& column, real* out, std::size_t stride) {
+        for_columns([&](int m, Complex* at) { column(m, at); });
+        rows(out, stride);
+    }
+    std::size_t bytes() const;
+
+private:
+    struct Plans;
+    template <class F>
+    void for_columns(const F& write) {
+        parallel_for(0, plane_.columns(), [&](int m) {
+            write(m, column_at(m));
+            transform_column(m);
+        });
+    }
+    Complex* column_at(int m) const;
+    void transform_column(int m);
+    void rows(real* out, std::size_t stride);
+
+    HalfPlane plane_;
+    std::unique_ptr<Plans> plans_;
+};
+
+}  // namespace weir::waves

@@ -1,0 +1,213 @@
+// What a scene may say to the solver "waves".
+#include "waves/solver.hpp"
+
+namespace weir::waves {
+
+namespace {
+
+using scene::Key;
+using scene::Type;
+using scene::Variant;
+
+Key positive(const char* name, const char* doc, const char* unit) {
+    return {.name = name, .type = Type::number, .doc = doc, .unit = unit, .required = true, .min = 0, .min_open = true};
+}
+Key optional(const char* name, const char* doc, const char* unit) {
+    Key key = positive(name, doc, unit);
+    key.required = false;
+    return key;
+}
+Key number(const char* name, const char* doc, const char* unit, double fallback) {
+    return {.name = name, .type = Type::number, .doc = doc, .unit = unit, .fallback = fallback};
+}
+Key heading(const char* whose) {
+    Key key = number("heading", "", "rad", 0.0);
+    key.doc = std::string("Where ") + whose + " to, from x towards z; in 2D 0 or pi.";
+    return key;
+}
+Key wind(const char* doc) { return positive("wind", doc, "m/s"); }
+
+Key trains() {
+    return {.name = "trains",
+            .type = Type::tables,
+            .doc = "Trains of waves.",
+            .required = true,
+            .keys = {positive("amplitude", "Half the height from trough to crest; over a bed that in deep water.", "m"),
+                     positive("wavelength", "Distance between crests; over a bed that in deep water.", "m"), heading("it travels"),
+                     number("phase", "Phase at the origin of coordinates at t = 0; 0: a crest.", "rad", 0.0)},
+            .example = "trains = [ { amplitude = 0.5, wavelength = 20.0 } ]"};
+}
+
+Key bed() {
+    const auto list = [](const char* name, const char* doc) {
+        return Key{.name = name, .type = Type::numbers, .doc = doc, .unit = "m", .required = true};
+    };
+    return {
+        .name = "bed",
+        .type = Type::table,
+        .doc = "A bed whose depth changes along x: waves come from deep water, turn and grow as the exact dispersion relation says.",
+        .keys = {list("x", "Places, in increasing order."), list("depth", "Depth at each, greater than 0; straight lines between them.")},
+        .example = "bed = { x = [0.0, 100.0], depth = [20.0, 2.0] }"};
+}
+
+Key spectrum() {
+    return {
+        .name = "spectrum",
+        .type = Type::table,
+        .doc = "How the variance of the surface is divided among waves.",
+        .required = true,
+        .selector = "kind",
+        .variants = {{"pierson_moskowitz",
+                      "A sea that the wind has raised as far as it can (Pierson & Moskowitz 1964): significant height 0.209 wind^2/g.",
+                      {wind("At 19.5 m above the sea.")}},
+                     {"jonswap",
+                      "A sea on its way there (Hasselmann et al. 1973).",
+                      {wind("At 10 m above the sea."),
+                       positive("fetch", "How far the wind has blown over water.", "m"),
+                       {.name = "gamma",
+                        .type = Type::number,
+                        .doc = "How much higher the peak is than Pierson and Moskowitz's; measured: 1 to 7.",
+                        .fallback = 3.3,
+                        .min = 1,
+                        .max = 7}}},
+                     {"phillips",
+                      "(alpha/2) k^-3 exp(-1/(k L)^2), L = wind^2/g (Phillips 1958; Tessendorf 2001): significant height 2 sqrt(alpha) L.",
+                      {wind("Of the breeze."),
+                       {.name = "alpha",
+                        .type = Type::number,
+                        .doc = "Level of the tail.",
+                        .fallback = 8.1e-3,
+                        .min = 0,
+                        .max = 0.1,
+                        .min_open = true}}}},
+        .example = "spectrum = { kind = \"pierson_moskowitz\", wind = 12.0 }"};
+}
+
+std::vector<Variant> models() {
+    return {
+        {"sines", "A sum of sines, each exact to linear theory (Airy).", {trains()}},
+        {"gerstner",
+         "Trochoids: particles go round circles (Gerstner 1802). One train in deep water is exact; over a bed, and with wind, the ocean of "
+         "Fournier and Reeves (1986).",
+         {trains(),
+          bed(),
+          {.name = "lean",
+           .type = Type::number,
+           .doc = "How far the wind leans crests forward: phase a metre of height.",
+           .unit = "rad/m",
+           .fallback = 0.0,
+           .min = 0},
+          {.name = "flatten",
+           .type = Type::number,
+           .doc = "f in the longer axis of orbits near the shore, 1/(1 - e^(-f k h)).",
+           .fallback = 2.0,
+           .min = 0,
+           .min_open = true},
+          {.name = "tilt",
+           .type = Type::number,
+           .doc = "How far orbits near the shore lie along the bed: 0 level, 1 as the paper has them.",
+           .fallback = 1.0,
+           .min = 0,
+           .max = 1}}},
+        {"spectrum",
+         "A wind sea on a tile that repeats, by FFT: the grid's horizontal size is the tile, its cells say how short waves may be.",
+         {spectrum(),
+          heading("the wind blows"),
+          {.name = "spread",
+           .type = Type::number,
+           .doc = "s in cos^2s(angle/2), the spreading over directions (3D).",
+           .fallback = 4.0,
+           .min = 0,
+           .max = 200,
+           .only_dim = 3},
+          {.name = "choppiness",
+           .type = Type::number,
+           .doc = "How far points move sideways, in linear orbits: 0 not at all, 1 as far as water does.",
+           .fallback = 0.0,
+           .min = 0},
+          {.name = "shortest",
+           .type = Type::number,
+           .doc = "Waves shorter than this are left out.",
+           .unit = "m",
+           .fallback = 0.0,
+           .min = 0},
+          {.name = "seed", .type = Type::integer, .doc = "Picks the phases.", .fallback = std::int64_t{1}, .min = 0},
+          {.name = "amplitudes",
+           .type = Type::choice,
+           .doc =
+               "fixed: each wave as high as the spectrum says, so that every sea has its significant height; gaussian: random about that.",
+           .fallback = std::string("fixed"),
+           .choices = {"fixed", "gaussian"}}}},
+        {"stokes",
+         "A steady train by Stokes's expansion (Fenton 1985).",
+         {positive("height", "From trough to crest.", "m"),
+          positive("wavelength", "Distance between crests.", "m"),
+          heading("it travels"),
+          number("phase", "Phase at the origin of coordinates at t = 0; 0: a crest.", "rad", 0.0),
+          {.name = "order", .type = Type::integer, .doc = "Of the expansion in k H/2.", .fallback = std::int64_t{5}, .min = 1, .max = 5}}},
+        {"basin",
+         "Water in a box with upright walls, let go at rest with the surface of the scene's `liquid`: its linear waves, mode by mode.",
+         {}},
+    };
+}
+
+Key waves() {
+    Key key{.name = "waves",
+            .type = Type::table,
+            .doc = "Which waves.",
+            .required = true,
+            .keys = {{.name = "level",
+                      .type = Type::number,
+                      .doc = "Height of the surface at rest; of a basin that of its water.",
+                      .unit = "m"},
+                     optional("depth", "Of the water below the level; deep water where absent. A basin's floor is the grid's.", "m"),
+                     {.name = "velocity", .type = Type::flag, .doc = "Whether velocities are computed too.", .fallback = true}},
+            .selector = "model",
+            .example = "waves = { model = \"sines\", trains = [ { amplitude = 0.5, wavelength = 20.0 } ] }"};
+    key.variants = models();
+    return key;
+}
+
+std::vector<Variant> effects() {
+    return {{"gravity",
+             "What makes waves travel. It points down, against y.",
+             {{.name = "g",
+               .type = Type::numbers,
+               .doc = "Acceleration.",
+               .unit = "m/s^2",
+               .required = true,
+               .length = -1,
+               .example = "g = [0.0, -9.81]"}},
+             {"g"}},
+            {"surface_tension",
+             "What makes ripples travel: omega^2 = (g k + sigma k^3/rho) tanh(k d).",
+             {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0}},
+             {"sigma"}},
+            {"foam",
+             "1 - J/below, between 0 and 1, where the surface is pressed together: J is what is left of a patch's area.",
+             {{.name = "below",
+               .type = Type::number,
+               .doc = "The part of its area below which a patch has foam; at 0 there is none.",
+               .fallback = 0.3,
+               .min = 0,
+               .max = 1}},
+             {"below"}}};
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "waves";
+    schema.doc = "Procedural waves: the surface is a formula of place and time, from one sine to a wind sea of half a million waves.";
+    schema.keys = {waves()};
+    schema.effects = effects();
+    schema.without = {"time.cfl", "time.stop_when_steady", "grid.periodic", "fluid.viscosity", "sides", "solids", "emitters", "initial"};
+    return {schema,
+            [](const scene::Scene& scene) { return std::make_unique<Waves>(scene); },
+            {{"level_set", "velocity", "position", "jacobian"},
+             {"surface", "water"},
+             "waves = { model = \"gerstner\", level = 0.5, trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"}};
+}
+
+}  // namespace weir::waves

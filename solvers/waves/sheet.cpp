@@ -1,0 +1,32 @@
+#include "waves/sheet.hpp"
+
+namespace weir::waves {
+
+Box::Box(const scene::Scene& scene) : dim(scene.dim()) {
+    const auto& n = scene.root().numbers("grid.cells");
+    const auto& size = scene.root().numbers("grid.size");
+    const auto& lower = scene.root().numbers("grid.origin");
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dim); ++a) {
+        cells[a] = static_cast<int>(n[a]);
+        spacing[a] = size[a] / n[a];
+        origin[a] = lower[a];
+    }
+}
+
+Sheet::Sheet(const Box& box, const Wanted& wanted) : height(box.points(), 0) {
+    if (wanted.sideways) {
+        moved_x.assign(box.points(), 0);
+        jacobian.assign(box.points(), 1);
+        if (box.dim == 3) moved_z.assign(box.points(), 0);
+    }
+    if (wanted.velocity)
+        for (int a = 0; a < box.dim; ++a) velocity[static_cast<std::size_t>(a)].assign(box.points(), 0);
+}
+
+std::size_t Sheet::bytes() const {
+    std::size_t values = height.capacity() + moved_x.capacity() + moved_z.capacity() + jacobian.capacity();
+    for (const Values& v : velocity) values += v.capacity();
+    return values * sizeof(real);
+}
+
+}  // namespace weir::waves

@@ -1,0 +1,56 @@
+// The surface as a sheet of points over the cells of the horizontal axes, x fastest, and what a model says of one of its points. In a scene
+// of two dimensions there is one row of points.
+#pragma once
+#include "core/grid.hpp"
+#include "core/types.hpp"
+#include "scene/scene.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace weir::waves {
+
+/// What becomes of the point of the surface that rests at (x, z): where it is, how fast it moves, and how its neighbours were moved.
+struct Motion {
+    Vec<3> moved{};               // [m]
+    Vec<3> velocity{};            // [m/s]
+    real xx = 0, zz = 0, xz = 0;  // derivatives of the sideways displacement
+    /// What became of a patch's area; negative where the surface is folded over.
+    real jacobian() const { return (1 + xx) * (1 + zz) - xz * xz; }
+};
+
+/// Cells of the scene's grid along the three axes, in 2D one along z.
+struct Box {
+    int dim = 2;
+    std::array<int, 3> cells{1, 1, 1};
+    Vec<3> origin{}, spacing{};
+    explicit Box(const scene::Scene& scene);
+    int nx() const { return cells[0]; }
+    int ny() const { return cells[1]; }
+    int nz() const { return cells[2]; }
+    std::size_t points() const { return static_cast<std::size_t>(nx()) * static_cast<std::size_t>(nz()); }
+    real x(int i) const { return origin[0] + (i + 0.5) * spacing[0]; }
+    real y(int j) const { return origin[1] + (j + 0.5) * spacing[1]; }
+    real z(int k) const { return dim == 3 ? origin[2] + (k + 0.5) * spacing[2] : 0; }
+};
+
+using Values = std::vector<real>;
+
+/// What of the surface is wanted; what is not has no values.
+struct Wanted {
+    bool velocity = true;
+    bool sideways = false;  // displacement along x and z, and the Jacobian
+};
+
+struct Sheet {
+    Values height;            // above the mean level [m]
+    Values moved_x, moved_z;  // [m]
+    Values jacobian;
+    std::array<Values, 3> velocity{};  // [m/s]
+    Sheet(const Box& box, const Wanted& wanted);
+    std::size_t bytes() const;
+};
+
+}  // namespace weir::waves

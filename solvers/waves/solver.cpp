@@ -1,0 +1,219 @@
+#include "waves/solver.hpp"
+
+#include "waves/read.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::waves {
+
+Waves::Waves(const scene::Scene& scene)
+    : box_(scene),
+      model_(make_model(scene, box_)),
+      level_(mean_level(scene, box_)),
+      density_(scene.number("fluid.density")),
+      g_(restoring(scene).g),
+      with_velocity_(scene.flag("waves.velocity")),
+      gravity_(scene.effect("gravity") != nullptr),
+      tension_(scene.effect("surface_tension") != nullptr),
+      sheet_(box_, {.velocity = with_velocity_, .sideways = model_->sideways()}) {
+    for (int a = 0; a < box_.dim; ++a) position_[static_cast<std::size_t>(a)].assign(box_.points(), 0);
+    if (const scene::Table* foam = scene.effect("foam")) {
+        if (!model_->sideways())
+            scene.refuse("effects.foam", "these waves have no foam: their points move up and down only, and such a surface does not fold",
+                         "gerstner waves, and a spectrum with choppiness, move sideways");
+        foam_below_ = foam->number("below");
+        foam_.assign(box_.points(), 0);
+    }
+    if (shows_water()) {
+        const std::size_t cells = box_.points() * static_cast<std::size_t>(box_.ny());
+        level_set_.assign(cells, 0);
+        if (with_velocity_)
+            for (int a = 0; a < box_.dim; ++a) water_[static_cast<std::size_t>(a)].assign(cells, 0);
+    }
+    set_time(0);
+    passes_.reset();
+}
+
+StepReport Waves::step(real dt) {
+    set_time(time_ + dt);
+    return {.dt = dt};
+}
+
+void Waves::set_time(real t) {
+    time_ = t;
+    {
+        const auto timed = passes_.time("surface");
+        model_->set_time(t);
+        model_->fill(box_, sheet_);
+        place_surface();
+    }
+    if (shows_water()) fill_water();
+    if (foam_below_) make_foam();
+}
+
+void Waves::place_surface() {
+    const auto nx = static_cast<std::size_t>(box_.nx());
+    parallel_for(0, box_.nz(), [&](int k) {
+        for (int i = 0; i < box_.nx(); ++i) {
+            const std::size_t at = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(k);
+            position_[0][at] = box_.x(i) + (sheet_.moved_x.empty() ? 0 : sheet_.moved_x[at]);
+            position_[1][at] = level_ + sheet_.height[at];
+            if (box_.dim == 3) position_[2][at] = box_.z(k) + (sheet_.moved_z.empty() ? 0 : sheet_.moved_z[at]);
+        }
+    });
+}
+
+/// The distance to the surface along y, negative in the water, and the velocity layer by layer. Under a surface whose points move sideways
+/// its height over a column is looked for.
+void Waves::fill_water() {
+    const auto timed = passes_.time("water");
+    const auto nx = static_cast<std::size_t>(box_.nx()), ny = static_cast<std::size_t>(box_.ny()), row = nx * ny;
+    parallel_for(0, box_.nz(), [&](int k) {
+        for (int i = 0; i < box_.nx(); ++i) {
+            const std::size_t at = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(k);
+            real height = sheet_.height[at];
+            if (model_->sideways()) {
+                const Vec<2> rest = rest_of(*model_, box_.x(i), box_.z(k));
+                height = model_->motion(rest[0], rest[1]).moved[1];
+            }
+            for (int j = 0; j < box_.ny(); ++j)
+                level_set_[static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(j) + row * static_cast<std::size_t>(k)] =
+                    box_.y(j) - level_ - height;
+        }
+    });
+    if (with_velocity_) model_->fill_water(box_, level_, water_);
+}
+
+/// All of it where the surface is folded over, none where a patch keeps the part `below` of its area.
+real Waves::foam_of(real jacobian) const { return *foam_below_ > 0 ? std::clamp(1 - jacobian / *foam_below_, 0.0, 1.0) : 0; }
+
+void Waves::make_foam() {
+    const auto timed = passes_.time(effect_pass("foam"));
+    const auto nx = static_cast<std::size_t>(box_.nx());
+    parallel_for(0, box_.nz(), [&](int k) {
+        for (std::size_t at = static_cast<std::size_t>(k) * nx, end = at + nx; at < end; ++at) foam_[at] = foam_of(sheet_.jacobian[at]);
+    });
+}
+
+FieldSet Waves::fields() const {
+    FieldSet set;
+    GridView& grid = set.grid;
+    grid.dim = box_.dim;
+    for (std::size_t a = 0; a < 3; ++a) {
+        grid.cells[a] = box_.cells[a];
+        grid.origin[a] = box_.origin[a];
+        grid.spacing[a] = box_.spacing[a];
+    }
+    const auto dims = static_cast<std::size_t>(box_.dim);
+    const auto vectors = [&](const std::array<Values, 3>& values) {
+        return std::vector<std::span<const real>>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(dims));
+    };
+    const auto add = [&](const char* name, const char* unit, const std::string& of, std::vector<std::span<const real>> data) {
+        set.fields.push_back({name, unit, of.empty() ? Where::cell : Where::particle, of, std::move(data)});
+    };
+    if (shows_water()) {
+        add(level_set_name, "m", "", {level_set_});
+        if (with_velocity_) add("velocity", "m/s", "", vectors(water_));
+    }
+    const std::string surface = surface_set_name;
+    for (const std::string& of : {std::string(), surface}) {
+        if (of.empty() && shows_water()) continue;
+        if (of.empty())
+            add(surface_height_name, "m", of, {position_[1]});
+        else
+            add("position", "m", of, vectors(position_));
+        if (with_velocity_) add("velocity", "m/s", of, vectors(sheet_.velocity));
+        if (!sheet_.jacobian.empty()) add("jacobian", "", of, {sheet_.jacobian});
+        if (foam_below_) add("foam", "", of, {foam_});
+    }
+    set.sheets.push_back({surface, {box_.nx(), box_.nz()}});
+    return set;
+}
+
+bool Waves::answer(std::string_view field, const Vec<3>& at, std::span<real> values) const {
+    const auto whole = [&](const Vec<3>& v) {
+        for (std::size_t a = 0; a < values.size(); ++a) values[a] = v[a];
+        return true;
+    };
+    if (field == "velocity") return whole(model_->velocity({{at[0], at[1] - level_, at[2]}}));
+    if (Motion m; field == "position" && model_->particle({{at[0], at[1] - level_, at[2]}}, m)) return whole(at + m.moved);
+    const Vec<2> rest = rest_of(*model_, at[0], at[2]);
+    const Motion m = model_->motion(rest[0], rest[1]);
+    if (field == surface_height_name) return values[0] = level_ + m.moved[1], true;
+    if (field == level_set_name) return values[0] = at[1] - level_ - m.moved[1], true;
+    if (field == "jacobian") return values[0] = m.jacobian(), true;
+    if (field == "foam" && foam_below_) return values[0] = foam_of(m.jacobian()), true;
+    return false;
+}
+
+real Waves::least_jacobian() const {
+    if (sheet_.jacobian.empty()) return 1;
+    return -ordered_max(box_.nz(), [&](int k) {
+        const auto row = sheet_.jacobian.begin() + static_cast<std::ptrdiff_t>(k) * box_.nx();
+        return -*std::min_element(row, row + box_.nx());
+    });
+}
+
+/// The part of the sheet's patches that have any.
+real Waves::foam_cover() const {
+    return ordered_sum(box_.nz(),
+                       [&](int k) {
+                           const auto row = foam_.begin() + static_cast<std::ptrdiff_t>(k) * box_.nx();
+                           return static_cast<real>(std::count_if(row, row + box_.nx(), [](real f) { return f > 0; }));
+                       }) /
+           static_cast<real>(foam_.size());
+}
+
+std::string Waves::concern() const {
+    if (foam_below_ || sheet_.jacobian.empty()) return {};
+    const real least = least_jacobian();
+    if (least >= 0) return {};
+    return fmt::format(
+        "the surface is folded over itself at t = {:.4g} s: the Jacobian of its motion falls to {:.2g}; lower the waves' "
+        "steepness or choppiness, or name effects.foam, which marks such places",
+        time_, least);
+}
+
+/// Means over the area above which the surface stands: a point counts as much as its patch has been stretched.
+std::vector<Integral> Waves::integrals() const {
+    const auto nx = static_cast<std::size_t>(box_.nx());
+    const auto mean = [&](const auto& f) {
+        return ordered_sum(box_.nz(), [&](int k) {
+            real sum = 0;
+            for (std::size_t at = static_cast<std::size_t>(k) * nx, end = at + nx; at < end; ++at)
+                sum += f(sheet_.height[at]) * (sheet_.jacobian.empty() ? 1 : sheet_.jacobian[at]);
+            return sum;
+        });
+    };
+    const real area = mean([](real) { return 1.0; }), first = mean([](real h) { return h; }) / area;
+    const real second = mean([](real h) { return h * h; }) / area;
+    const real cell = box_.spacing[0] * (box_.dim == 3 ? box_.spacing[2] : 1);
+    std::vector<Integral> list{{"mean_level", "m", level_ + first},
+                               {"significant_height", "m", 4 * std::sqrt(std::max(0.0, second - first * first))},
+                               {"potential_energy", box_.dim == 3 ? "J" : "J/m", 0.5 * density_ * g_ * second * area * cell},
+                               {"carried_variance", "", model_->carried()}};
+    if (!sheet_.jacobian.empty()) list.push_back({"least_jacobian", "", least_jacobian()});
+    if (foam_below_) list.push_back({"foam_cover", "", foam_cover()});
+    return list;
+}
+
+std::size_t Waves::bytes() const {
+    std::size_t values = foam_.capacity() + level_set_.capacity();
+    for (const auto* vectors : {&position_, &water_})
+        for (const Values& v : *vectors) values += v.capacity();
+    return values * sizeof(real) + sheet_.bytes() + model_->bytes();
+}
+
+std::vector<EffectPlan> Waves::effects() const {
+    std::vector<EffectPlan> plans;
+    if (gravity_) plans.push_back({.name = "gravity", .inside = "surface"});
+    if (tension_) plans.push_back({.name = "surface_tension", .inside = "surface"});
+    if (foam_below_)
+        plans.push_back({.name = "foam", .pass = effect_pass("foam"), .bytes = foam_.capacity() * sizeof(real), .shown = {"foam"}});
+    return plans;
+}
+
+}  // namespace weir::waves
