@@ -16,7 +16,7 @@ constexpr real least_relief = 0.12;    // of the width: lower reliefs are drawn 
 constexpr real section_aspect = 0.32;  // height over width of a section's picture
 constexpr real elevation = 0.9;        // of the eye above the horizon [rad]
 
-const Colour sky = hex(0xf3f5f7);
+const Colour empty_sky = hex(0xf3f5f7);
 
 /// Bed, top (the surface where there is water) and depth of each column.
 struct Relief {
@@ -61,7 +61,7 @@ Colour water_colour(real depth, real deepest) { return mix(hex(0x9fd8e6), hex(0x
 /// A line of columns from the side.
 Canvas section(const View& view, const Relief& r) {
     const int width = view.size * oversampling, height = static_cast<int>(section_aspect * view.size) * oversampling;
-    Canvas canvas(width, height, sky);
+    Canvas canvas(width, height, empty_sky);
     const real margin = 0.12 * (r.high - r.low), y0 = r.low - margin, y1 = r.high + margin;
     parallel_for(0, width, [&](int x) {
         const real i = (x + 0.5) / width * r.nx - 0.5, bed = r.at(r.bed, i, 0), top = r.at(r.top, i, 0);
@@ -93,7 +93,7 @@ public:
         }
     }
     Canvas draw() const {
-        Canvas canvas(width_, height_, sky);
+        Canvas canvas(width_, height_, empty_sky);
         parallel_for(0, width_, [&](int px) {
             const real i = ((px + 0.5 - 0.5 * width_) * metre_ + 0.5 * wide_) / grid_.spacing[0] - 0.5;
             if (i < -0.5 || i > r_.nx - 0.5) return;
@@ -116,7 +116,7 @@ private:
         const real from = std::min(near, near - (ray(py, near) - r_.high) * stretch_ / std::tan(elevation));
         for (real z = from; z > -near - step; z -= step) {
             const real y = ray(py, z), top = r_.at(r_.top, i, row(z));
-            if (z < -near || y < r_.low) return sky;
+            if (z < -near || y < r_.low) return empty_sky;
             if (y > top) continue;
             real in = z, out = z + step;
             for (int n = 0; n < 8; ++n) {
@@ -125,11 +125,11 @@ private:
             }
             return shade(i, row(in));
         }
-        return sky;
+        return empty_sky;
     }
     /// The front side, as if cut by a knife.
     Colour cut(real i, real y) const {
-        if (y < r_.low - 0.04 * (r_.high - r_.low)) return sky;
+        if (y < r_.low - 0.04 * (r_.high - r_.low)) return empty_sky;
         return y <= r_.at(r_.bed, i, r_.nz) ? hex(0x8d7f66) : hex(0x2a6a98);
     }
     Colour shade(real i, real k) const {
