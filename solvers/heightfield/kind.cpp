@@ -26,7 +26,7 @@ Key scheme_keys() {
                      {.name = "limiter",
                       .type = Type::choice,
                       .doc = "Of the slopes of depth, surface and velocity; none: first order.",
-                      .fallback = std::string("van_leer"),
+                      .fallback = std::string("mc"),
                       .choices = {"none", "minmod", "van_leer", "mc"}},
                      {.name = "dry_depth",
                       .type = Type::number,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 
@@ -67,7 +68,8 @@ struct Fluxes {
 /// Takes rows out of one block of memory.
 class Carver {
 public:
-    Carver(real* at, int n) : at_(at), room_((n + 2 * pad + 7) / 8 * 8) {}
+    Carver(real* at, int n)
+        : at_(reinterpret_cast<real*>((reinterpret_cast<std::uintptr_t>(at) + 63) / 64 * 64)), room_((n + 2 * pad + 7) / 8 * 8) {}
     real* row() {
         real* r = at_ + pad;
         at_ += room_;
@@ -84,7 +86,7 @@ public:
         return f;
     }
     static std::size_t size(int n, int rows) {
-        return static_cast<std::size_t>(rows) * static_cast<std::size_t>((n + 2 * pad + 7) / 8 * 8);
+        return 8 + static_cast<std::size_t>(rows) * static_cast<std::size_t>((n + 2 * pad + 7) / 8 * 8);
     }
 
 private:
@@ -156,13 +158,16 @@ private:
         const real *h = from_.h + first, *qx = from_.qx + first, *qz = flat ? from_.qz + first : nullptr, *bed = s_.bed.data() + first;
         real* __restrict depth = to.h, * __restrict surface = to.surface, * __restrict u = to.across, * __restrict w = to.along;
         const real dry = s_.dry;
-        for (int i = 0; i < n_; ++i) {
-            const real d = h[i], over = 1 / (d > dry ? d : dry), wet = d > dry ? over : 0;
+        const int n = n_;
+#pragma GCC ivdep
+        for (int i = 0; i < n; ++i) {
+            const real d = h[i], held = d > dry ? d : dry, wet = d > dry ? 1.0 : 0.0, over = wet / held;
             depth[i] = d;
             surface[i] = d + bed[i];
-            u[i] = qx[i] * wet;
-            w[i] = flat ? qz[i] * wet : 0;
+            u[i] = qx[i] * over;
+            if constexpr (flat) w[i] = qz[i] * over;
         }
+        if constexpr (!flat) std::fill(w, w + n, 0.0);
         for (int end = 0; end < 2; ++end) ghosts_x(end, to);
     }
     void ghosts_x(int end, Values& r) {
