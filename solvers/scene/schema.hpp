@@ -70,6 +70,7 @@ struct SolverSchema {
     std::vector<Key> keys{};  // top level: "scheme", ...
     std::vector<Variant> effects{};
     std::vector<std::string> without{};  // common keys that it has no use for: "time.cfl", "emitters.smoke", "sides.*.temperature"
+    std::string why_without{};           // where it needs saying, why, and what has
 };
 
 /// The keys that every scene has (title, solver, dim, grid, time, fluid, sides, liquid, solids, emitters, initial, probes, output).

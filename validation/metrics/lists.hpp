@@ -16,5 +16,6 @@ std::vector<Metric> particle_metrics();
 std::vector<Metric> phase_metrics();
 std::vector<Metric> lattice_metrics();
 std::vector<Metric> procedural_metrics();
+std::vector<Metric> pond_metrics();
 
 }  // namespace weir::validation
