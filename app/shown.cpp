@@ -57,8 +57,11 @@ std::vector<Shown> shown_by(const scene::SolverKind& kind) {
     }
     const scene::Scene plain = validation::plain_scene(kind, dim, cells);
     add_all(list, kind, plain, "");
+    if (const auto solver = kind.make(plain); !static_cast<const Solver&>(*solver).fields().sheets.empty())  // a surface by itself
+        add_all(list, kind, scene::parse(plain.source(), plain.file(), {kind.schema}, {{"grid.cells", "[8, 1, 8]"}}),
+                "grid.cells = [n, 1, m]");
     const std::string solids = plain.source() + "solids = [ { shape = \"box\", min = [0.3, 0, 0.3], max = [0.7, 0.7, 0.7] } ]\n";
-    add_all(list, kind, scene::parse(solids, plain.file(), {kind.schema}), "solids");
+    if (!scene::is_without(kind.schema, "solids")) add_all(list, kind, scene::parse(solids, plain.file(), {kind.schema}), "solids");
     for (const scene::Variant& effect : kind.schema.effects)
         add_all(list, kind, validation::scene_with(kind, dim, cells, {effect.name}, validation::negligible), "effects." + effect.name);
     return list;

@@ -50,6 +50,7 @@ private:
     void unknown_effect(const Member& member, const Key& key, const std::string& path);
     void wrong_type(const Node& node, const Key& key, const std::string& path);
     void unknown_choice(const Node& node, const Key& key, const std::string& path);
+    const SolverSchema* without(std::string_view path) const;
     std::string place_elsewhere(const std::string& key) const;
     std::vector<std::string> solvers_with(std::string_view key, bool effect) const;
     void report(Place place, std::string message, std::string hint = "", int width = 0);

@@ -158,21 +158,28 @@ void Reader::unknown_key(const Member& member, const Allowed& allowed, const std
                                                       : fmt::format("{}s {} have it", allowed.owner->selector, quote_all(elsewhere));
         return report(member.place, fmt::format("{}{} has no {}; {}", path, kind, quote(member.key), has), known(names));
     }
+    const std::string full = path.empty() ? member.key : path + "." + member.key;
+    if (const SolverSchema* s = without(full); s && !s->why_without.empty())
+        return report(member.place, fmt::format("solver \"{}\" has no use for {}", solver_, full), s->why_without);
     if (const auto others = solvers_with(member.key, false); path.empty() && !others.empty()) {
         if (!solver_.empty())
             report(member.place, fmt::format("solver \"{}\" has no key \"{}\"; {}", solver_, member.key, solvers_have_it(others)),
                    known(names));
         return;
     }
-    const std::string full = path.empty() ? member.key : path + "." + member.key;
-    if (solvers_)
-        for (const SolverSchema& s : *solvers_)
-            if (s.name == solver_ && is_without(s, full))
-                return report(member.place, fmt::format("solver \"{}\" has no use for {}", solver_, full), known(names));
+    if (without(full)) return report(member.place, fmt::format("solver \"{}\" has no use for {}", solver_, full), known(names));
     std::string meant = did_you_mean(member.key, names);
     if (const auto there = place_elsewhere(member.key); meant.empty() && !there.empty()) meant = fmt::format("; did you mean {}?", there);
     report(member.place, fmt::format("unknown key {}{}{}{}", quote(member.key), path.empty() ? "" : " in " + path, kind, meant),
            known(names));
+}
+
+/// The scene's solver, where it is one that has no use for the key.
+const SolverSchema* Reader::without(std::string_view path) const {
+    if (!solvers_) return nullptr;
+    for (const SolverSchema& s : *solvers_)
+        if (s.name == solver_ && is_without(s, path)) return &s;
+    return nullptr;
 }
 
 /// A key that stands in another table ("viscosity" at the top is fluid.viscosity); empty where there is none.

@@ -71,6 +71,7 @@ struct SolverSchema {
     std::vector<Variant> effects{};
     std::vector<std::string> without{};  // common keys that it has no use for: "time.cfl", "emitters.smoke", "sides.*.temperature"
     bool columns = false;                // it has one cell along y, however many a scene that other solvers share names
+    std::string why_without{};           // where it needs saying, why, and what has
 };
 
 /// The keys that every scene has (title, solver, dim, grid, time, fluid, sides, liquid, solids, emitters, initial, probes, output).

@@ -203,6 +203,9 @@ scene::SolverKind kind() {
     schema.keys = {waves()};
     schema.effects = effects();
     schema.without = {"time.cfl", "time.stop_when_steady", "grid.periodic", "fluid.viscosity", "sides", "solids", "emitters", "initial"};
+    schema.why_without =
+        "procedural waves are formulas: they take no steps, meet no walls, bodies or sources, and do not overturn; \"mac_water\", \"sph\" "
+        "and \"pbf\" are liquids that do";
     return {schema,
             [](const scene::Scene& scene) { return std::make_unique<Waves>(scene); },
             {{"level_set", "velocity", "position", "jacobian"},

@@ -17,5 +17,6 @@ std::vector<Metric> phase_metrics();
 std::vector<Metric> lattice_metrics();
 std::vector<Metric> height_field_metrics();
 std::vector<Metric> procedural_metrics();
+std::vector<Metric> pond_metrics();
 
 }  // namespace weir::validation

@@ -96,6 +96,27 @@ TEST_IN_2D_AND_3D("with output.faces each face component stands at its face, to 
     }
 }
 
+TEST_IN_2D_AND_3D("a sheet of points is written as a surface: a line in 2D, quadrilaterals between its rows in 3D") {
+    TemporaryFolder folder;
+    const std::string wave = "waves = { model = \"gerstner\", trains = [ { amplitude = 0.05, wavelength = 1.0 } ] }\n";
+    weir::Simulation simulation(weir::scene::parse(
+        "solver = \"waves\"\ndim = " + std::to_string(D) +
+            "\ngrid = { cells = " + (D == 2 ? "[9, 1], size = [2, 1]" : "[9, 1, 5], size = [2, 1, 1]") + " }\ntime = { end = 1 }\n" + wave,
+        "sheet.toml", weir::sim::schemas()));
+    Frames frames(folder, {});
+    frames.write(simulation.fields(), 0);
+    const auto surface = weir::test::read_particles(folder.path() / "frames/surface_000000.vtp");
+    const auto fields = simulation.fields();
+    const auto& x = fields.find("surface", "position")->data;
+    ASSERT_EQ(static_cast<std::size_t>(surface->GetNumberOfPoints()), x[0].size());
+    for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+        for (int a = 0; a < D; ++a) EXPECT_EQ(surface->GetPoint(i)[a], x[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)]);
+    EXPECT_EQ(surface->GetNumberOfLines(), D == 2 ? 1 : 0);
+    EXPECT_EQ(surface->GetNumberOfPolys(), D == 2 ? 0 : 8 * 4);
+    EXPECT_EQ(surface->GetNumberOfVerts(), 0);
+    EXPECT_NE(surface->GetPointData()->GetArray("jacobian"), nullptr);
+}
+
 TEST("markers are vertices at their positions") {
     TemporaryFolder folder;
     auto simulation = fake_simulation("time = { end = 1.0 }");
