@@ -12,8 +12,8 @@
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {flow::kind(), water::kind(), studies::transport_kind(), studies::poisson_kind(),
-                                                         pbf::kind(),  sph::kind(), waves::kind()};
+    static const std::vector<scene::SolverKind> kinds = {
+        flow::kind(), water::kind(), studies::transport_kind(), studies::poisson_kind(), pbf::kind(), sph::kind(), waves::kind()};
     return kinds;
 }
 
