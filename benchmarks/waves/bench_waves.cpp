@@ -1,4 +1,5 @@
-// Milliseconds a frame of an ocean of 512 x 512 points, from its waves to its surface, on one thread and two; and what each part of it costs.
+// Milliseconds a frame of an ocean of 512 x 512 points, from its waves to its surface, on one thread and two; and what each part of it
+// costs.
 //   bench_waves [--cells N] [--frames N]
 #include "core/parallel.hpp"
 #include "waves/solver.hpp"
@@ -57,7 +58,8 @@ int main(int argc, char** argv) {
     for (const Ocean& ocean : oceans) {
         const std::string text = fmt::format(
             "solver = \"waves\"\ndim = 3\ngrid = {{ cells = [{0}, 1, {0}], size = [500.0, 20.0, 500.0], origin = [0.0, -10.0, 0.0] }}\n"
-            "time = {{ end = 100.0 }}\neffects.gravity = {{ g = [0.0, -9.81, 0.0] }}\n{2}waves = {{ model = \"spectrum\", spectrum = {{ kind "
+            "time = {{ end = 100.0 }}\neffects.gravity = {{ g = [0.0, -9.81, 0.0] }}\n{2}waves = {{ model = \"spectrum\", spectrum = {{ "
+            "kind "
             "= \"pierson_moskowitz\", wind = 12.0 }}, {1} }}\n",
             cells, ocean.waves, ocean.effects);
         const double start = now();

@@ -210,7 +210,7 @@ scene::SolverKind kind() {
             [](const scene::Scene& scene) { return std::make_unique<Waves>(scene); },
             {{"level_set", "velocity", "position", "jacobian"},
              {"surface", "water"},
-             "waves = { model = \"gerstner\", level = 0.5, trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"}};
+             "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"}};
 }
 
 }  // namespace weir::waves

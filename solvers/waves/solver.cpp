@@ -15,6 +15,7 @@ Waves::Waves(const scene::Scene& scene)
       level_(mean_level(scene, box_)),
       density_(scene.number("fluid.density")),
       g_(restoring(scene).g),
+      end_(scene.number("time.end")),
       with_velocity_(scene.flag("waves.velocity")),
       gravity_(scene.effect("gravity") != nullptr),
       tension_(scene.effect("surface_tension") != nullptr),

@@ -16,7 +16,8 @@ public:
     explicit Waves(const scene::Scene& scene);
 
     StepReport step(real dt) override;
-    real advised_dt() const override { return infinity; }
+    /// Nothing limits a step: the whole scene may be one.
+    real advised_dt() const override { return end_; }
     bool checks_itself() const override { return true; }
     std::string concern() const override;
     FieldSet fields() const override;
@@ -46,7 +47,7 @@ private:
 
     Box box_;
     std::unique_ptr<Model> model_;
-    real level_, density_, g_, time_ = 0;
+    real level_, density_, g_, end_, time_ = 0;
     bool with_velocity_, gravity_, tension_;
     std::optional<real> foam_below_;  // the Jacobian below which there is foam
     Sheet sheet_;

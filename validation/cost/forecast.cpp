@@ -107,7 +107,8 @@ Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKi
     r.count = count_of(scene, simulation.fields()).first;
     std::vector<double> seconds;
     double spent = 0, simulated = 0, on_the_wall = 0;
-    for (int i = -untimed_steps; i < most_steps && (i < fewest_steps || spent < enough_seconds) && !simulation.finished(); ++i) {
+    for (int i = -untimed_steps; i < most_steps && (i < fewest_steps || (spent < enough_seconds && !simulation.finished()));
+         ++i) {  // past its end where it is one step
         if (i == 0) simulation.solver().passes().reset();
         const double start = computing_seconds(), wall = wall_seconds();
         const real dt = simulation.step().dt;

@@ -1,4 +1,5 @@
 #include "unit/waves/support.hpp"
+#include "waves/random.hpp"
 
 #include <algorithm>
 
@@ -116,6 +117,15 @@ TEST("a finer grid has the same sea, and shorter waves beside; another seed has 
     EXPECT_NEAR(at("[96, 1, 72]", ""), height, 1e-12);
     EXPECT_GT(std::abs(at("[48, 1, 36]", ", seed = 2") - height), 0.01);
     EXPECT_GT(std::abs(at("[48, 1, 36]", ", amplitudes = \"gaussian\"") - height), 0.001);
+}
+
+TEST("random numbers are whole-number arithmetic: the same on any machine, as worked out apart from this code") {
+    EXPECT_EQ(uniform(1, 3, -2, 0), 0x1.a379aa94f3110p-1);
+    EXPECT_EQ(uniform(7, -40, 0, 1), 0x1.71671e7b89504p-4);
+    real sum = 0;
+    for (int m = -50; m < 50; ++m)
+        for (int n = -50; n < 50; ++n) sum += uniform(1, m, n, 0);
+    EXPECT_NEAR(sum / 1e4, 0.5, 0.01);  // sqrt(1/12)/100 = 0.003
 }
 
 TEST("most waves of a sea with a narrow spread travel where the wind blows") {
