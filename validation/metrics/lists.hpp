@@ -15,5 +15,6 @@ std::vector<Metric> obstacle_metrics();
 std::vector<Metric> particle_metrics();
 std::vector<Metric> phase_metrics();
 std::vector<Metric> lattice_metrics();
+std::vector<Metric> substance_metrics();
 
 }  // namespace weir::validation
