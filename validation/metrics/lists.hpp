@@ -16,5 +16,6 @@ std::vector<Metric> particle_metrics();
 std::vector<Metric> phase_metrics();
 std::vector<Metric> lattice_metrics();
 std::vector<Metric> substance_metrics();
+std::vector<Metric> melting_metrics();
 
 }  // namespace weir::validation

@@ -7,7 +7,7 @@
     X(taylor_green) X(taylor_green_3d) X(poiseuille) X(couette) X(kovasznay) X(poisson_mms) X(cavity) X(cavity_3d) \
     X(heated_cavity) X(zalesak) X(single_vortex) X(rotating_gaussian) X(standing_wave) X(hydrostatic) X(thermal) X(plume) \
     X(dam_break_martin_moyce) X(dam_break_front) X(dam_break_koshizuka_oka) X(stretching_drop) X(rotating_patch) X(static_drop) \
-    X(kernel_lattice) X(phase_diagram) X(van_der_waals)
+    X(kernel_lattice) X(phase_diagram) X(van_der_waals) X(stefan) X(ice_in_water)
 // clang-format on
 
 #define DECLARE(name) REFERENCE(name);
