@@ -14,9 +14,10 @@ using poisson::Cell;
 
 constexpr real smallest_liquid = 1e-3;   // ε: of the same size as in Voller & Prakash 1987; the drag of pure ice is C/ε
 constexpr real least_mobility = 1e-3;    // less is none: the pressure's matrix knows no weaker face
-constexpr int most_iterations = 100;     // of Newton's method
+constexpr int most_iterations = 40;      // of Newton's method
+constexpr int most_halvings = 12;        // of a step
 constexpr real least_part = 0.125;       // of a Newton step
-constexpr real newton_tolerance = 1e-9;  // of the heat that melts a kilogramme; no heat is lost by it
+constexpr real newton_tolerance = 1e-8;  // of the heat that melts a kilogramme; no heat is lost by it
 constexpr int most_solve_iterations = 5000;
 constexpr real solve_ahead = 1e-3;  // of what Newton asks for is left by a linear solve, whose norm weighs cells by their diagonal
 
@@ -107,47 +108,66 @@ real Heat<D>::through_sides(const Padded<D>& T) const {
 
 template <int D>
 void Heat<D>::conduct(MacState<D>& s, real dt) {
-    auto& h = s["enthalpy"];
-    const real a = dt / s.rho;
     set_source(s);
-    set_conductances(s, h);
-    const Padded<D>& T = explicit_ ? s.field("temperature").before : T_;
     if (explicit_) {
+        auto& h = s["enthalpy"];
+        const auto& T = s.field("temperature").before;
+        set_conductances(s, h);
         flow(T, residual_);
+        const real a = dt / s.rho;
         for_each_cell(s.extent(), [&](const Index<D>& I) { h(I) += a * (residual_(I) + source(I)); });
+        count(s, T, dt);
     } else {
-        implicit(s, a);
+        implicit(s, dt, 0);
     }
-    added_ += dt * s.u.cell_volume() * through_sides(T);
-    if (!source_.empty()) added_ += dt * s.u.cell_volume() * sum_over(s.extent(), [&](const Index<D>& I) { return source_(I); });
     note(s);
 }
 
-/// H = H* + a (∇·(k ∇T(H)) + q) by Newton's method: the linear part is solved where the temperature can change, for a cell on the plateau
-/// keeps its own until it leaves it. Each iterate is H* plus fluxes that cancel between cells, so that no heat is lost however it ends.
-/// Where a cell goes to and fro between plateau and liquid, steps of a part of Newton's end that.
 template <int D>
-void Heat<D>::implicit(MacState<D>& s, real a) {
+void Heat<D>::count(const MacState<D>& s, const Padded<D>& T, real dt) {
+    added_ += dt * s.u.cell_volume() * through_sides(T);
+    if (!source_.empty()) added_ += dt * s.u.cell_volume() * sum_over(s.extent(), [&](const Index<D>& I) { return source_(I); });
+}
+
+/// H = H* + (dt/ρ) (∇·(k ∇T(H)) + q). Where Newton's method goes round in circles, as it may while many cells leave their plateau at once,
+/// the step is taken in two halves.
+template <int D>
+void Heat<D>::implicit(MacState<D>& s, real dt, int halvings) {
     auto& h = s["enthalpy"];
-    const real goal = newton_tolerance * std::max(melting_.h_liquid - melting_.h_solid, melting_.c_liquid);
     for_each_cell(s.extent(), [&](const Index<D>& I) { start_(I) = h(I); });
+    set_conductances(s, h);
+    if (solve(h, dt / s.rho)) return count(s, T_, dt);
+    if (halvings == most_halvings) throw NumericalFailure("temperature", "the implicit conduction of heat did not converge");
+    for_each_cell(s.extent(), [&](const Index<D>& I) { h(I) = start_(I); });
+    for (int half = 0; half < 2; ++half) implicit(s, 0.5 * dt, halvings + 1);
+}
+
+/// Newton's method from H* = H: the linear part is solved where the temperature can change, for a cell on the plateau keeps its own until
+/// it leaves it. Each iterate is H* plus fluxes that cancel between cells, so that no heat is lost however it ends. Where a cell goes to
+/// and fro between plateau and liquid, steps of a part of Newton's often end that. Whether it converged.
+template <int D>
+bool Heat<D>::solve(Grid<real, D>& h, real a) {
+    const Index<D> n = h.extent();
+    const real goal = newton_tolerance * std::max(melting_.h_liquid - melting_.h_solid, melting_.c_liquid);
     real part = 1, last = infinity;
-    for (int iteration = 0;; ++iteration) {
-        for_each_cell(s.extent(), [&](const Index<D>& I) { T_(I) = melting_.temperature(h(I)); });
+    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+        for_each_cell(n, [&](const Index<D>& I) { T_(I) = melting_.temperature(h(I)); });
         fill_ghosts(T_, boundary_);
         flow(T_, residual_);
-        for_each_cell(s.extent(), [&](const Index<D>& I) { residual_(I) = start_(I) + a * (residual_(I) + source(I)) - h(I); });
-        const real left = max_over(s.extent(), [&](const Index<D>& I) { return std::abs(residual_(I)); });
-        if (left <= goal) break;
-        if (iteration == most_iterations || !std::isfinite(left))
-            throw NumericalFailure("temperature", "the implicit conduction of heat did not converge; shorter steps do");
+        for_each_cell(n, [&](const Index<D>& I) { residual_(I) = start_(I) + a * (residual_(I) + source(I)) - h(I); });
+        const real left = max_over(n, [&](const Index<D>& I) { return std::abs(residual_(I)); });
+        if (!std::isfinite(left)) throw NumericalFailure("temperature", "the enthalpy is not finite");
+        if (left <= goal) {
+            for_each_cell(n, [&](const Index<D>& I) { h(I) += residual_(I); });
+            return true;
+        }
         part = left < last ? std::min(real(1), 2 * part) : std::max(least_part, part / 2);
         last = left;
         correct(a, h, std::clamp(solve_ahead * goal / left, 1e-10, 1e-3));
         flow(direction_, image_);
-        for_each_cell(s.extent(), [&](const Index<D>& I) { h(I) += part * (residual_(I) + a * image_(I)); });
+        for_each_cell(n, [&](const Index<D>& I) { h(I) += part * (residual_(I) + a * image_(I)); });
     }
-    for_each_cell(s.extent(), [&](const Index<D>& I) { h(I) += residual_(I); });
+    return false;
 }
 
 /// direction_ = δT of (c − a ∇·k∇) δT = residual, 0 on the plateau, to a part `tolerance`: conjugate gradients with the diagonal.
@@ -167,18 +187,21 @@ void Heat<D>::correct(real a, const Grid<real, D>& h, real tolerance) {
         direction_(I) = rest_(I) * inverse_(I);
     });
     fill_ghosts(direction_, correction_);
-    const auto product = [&] { return sum_over(n, [&](const Index<D>& I) { return rest_(I) * rest_(I) * inverse_(I); }); };
-    real rz = product();
+    real rz = sum_over(n, [&](const Index<D>& I) { return rest_(I) * rest_(I) * inverse_(I); });
     const real goal = tolerance * tolerance * rz;
     for (int iteration = 0; rz > goal; ++iteration) {
         if (iteration == most_solve_iterations)
             throw NumericalFailure("temperature", "the linear solve of the conduction of heat did not converge");
         flow(direction_, image_);
-        for_each_cell(n, [&](const Index<D>& I) { image_(I) = capacity_(I) > 0 ? capacity_(I) * direction_(I) - a * image_(I) : 0; });
-        const real step = rz / sum_over(n, [&](const Index<D>& I) { return image_(I) * direction_(I); });
-        for_each_cell(n, [&](const Index<D>& I) { change_(I) += step * direction_(I), rest_(I) -= step * image_(I); });
-        const real last = rz;
-        rz = product();
+        const real curvature = sum_over(n, [&](const Index<D>& I) {
+            image_(I) = capacity_(I) > 0 ? capacity_(I) * direction_(I) - a * image_(I) : 0;
+            return image_(I) * direction_(I);
+        });
+        const real step = rz / curvature, last = rz;
+        rz = sum_over(n, [&](const Index<D>& I) {
+            change_(I) += step * direction_(I), rest_(I) -= step * image_(I);
+            return rest_(I) * rest_(I) * inverse_(I);
+        });
         for_each_cell(n, [&](const Index<D>& I) { direction_(I) = rest_(I) * inverse_(I) + rz / last * direction_(I); });
         fill_ghosts(direction_, correction_);
     }

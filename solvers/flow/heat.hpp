@@ -69,7 +69,9 @@ private:
     void set_source(const MacState<D>& s);
     void set_conductances(const MacState<D>& s, const Grid<real, D>& h);
     void note(MacState<D>& s);
-    void implicit(MacState<D>& s, real a);
+    void implicit(MacState<D>& s, real dt, int halvings);
+    bool solve(Grid<real, D>& h, real a);
+    void count(const MacState<D>& s, const Padded<D>& T, real dt);
     void correct(real a, const Grid<real, D>& h, real tolerance);
     void flow(const Padded<D>& T, Grid<real, D>& out) const;
     real through_sides(const Padded<D>& T) const;

@@ -110,6 +110,24 @@ TEST_IN_2D_AND_3D("where all is ice nothing moves, and the flow around it is fre
     EXPECT_LT(report.max_divergence, 0.02 / 1000 * report.residual_max + 1e-12 * fastest / s.u.h[0]);
 }
 
+TEST("implicit conduction gets through steps of any length, to the lever rule's end") {
+    set_threads(1);
+    for (const real dt : {1.0, 10.0, 100.0, 1000.0}) {
+        FlowSolver<2> flow(test::mac_scene(
+            "solver = \"mac\"\ndim = 2\ngrid = { cells = [32, 32], size = [0.01, 0.01] }\ntime = { end = 1.0 }\nfluid = { density = 1000.0 "
+            "}\n"
+            "initial = { temperature = { name = \"ball\", centre = [0.005, 0.005], radius = 0.003, value = 290.0, outside = 315.0 } }\n" +
+            wax));
+        const real heat = integral_of(flow, "heat"), volume = 1e-4, water = integral_of(flow, "liquid_volume") / volume;
+        for (real t = 0; t < 2000; t += dt) flow.step(dt);
+        EXPECT_NEAR(integral_of(flow, "heat"), heat, 1e-12 * std::abs(heat)) << dt;
+        // What the water gives until it is at 300 K, less what the ice takes to be, melts ice. Newton's tolerance is 1e-8 of the heat of
+        // fusion a step.
+        const real melts = (water * 4000 * 15 - (1 - water) * 2000 * 10) / 3.34e5;
+        EXPECT_NEAR(integral_of(flow, "liquid_volume") / volume, water + melts, 1e-6) << dt;
+    }
+}
+
 TEST("explicit and implicit conduction melt alike where steps are short") {
     set_threads(1);
     const auto melted = [](const char* conduction) {
