@@ -19,7 +19,7 @@ constexpr real melting_end = 251.165;      // there ice Ih meets ice III and wat
 constexpr real sublimation_begin = 50;     // [K]
 constexpr real ice_density = 916.7094922;  // IAPWS R10-06(2009) at the triple point
 // At constant temperature, of ice (R10-06) and of water at 0 °C (IAPWS-95) [1/Pa]: without them the heat of fusion along the line of
-// melting would be wrong by 7% at 15 MPa already, since its Δv is a small difference.
+// melting would be wrong by 6% at 15 MPa already, since its Δv is a small difference.
 constexpr real ice_compressibility = 1.1779e-10, water_compressibility = 5.0885e-10;
 
 /// a x^e
