@@ -25,6 +25,12 @@ Key sides_key() {
                                 .doc = "uniform; parabolic: the mean of 6 s (1 - s); kovasznay: the exact wake at Re = 1 / viscosity.",
                                 .fallback = std::string("uniform"),
                                 .choices = inflow_profiles()}}}};
+            side.variants.push_back({"wall",
+                                     "",
+                                     {{.name = "heat_flux",
+                                       .type = Type::number,
+                                       .doc = "Heat that passes into the fluid. Only where `substance` is named.",
+                                       .unit = "W/m^2"}}});
             sides.keys.push_back(std::move(side));
         }
     return sides;
@@ -39,6 +45,7 @@ scene::SolverKind kind() {
     std::vector<Key> methods = AdvectionOptions::keys();
     methods.push_back(PoissonChoice::key());
     schema.keys = {scheme_key(std::move(methods)), sides_key(), initial_keys()};
+    for (Key& key : Heat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = schemas_of(effect_kinds());
     return {schema,
             make_without_surface<FlowSolver>,

@@ -25,6 +25,7 @@ StepReport FlowSolver<D>::step(real dt) {
         advect_velocity(dt);           // Du/Dt = 0
         blend(stage);                  // γ and ζ of a Runge-Kutta stage
         apply(Stage::carried, part);   // (I − dt κ∇²) q = ...
+        conduct(part);                 // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
         arrive(dt);                    // u += what is left of dt f(u, q)
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
         move_solids(t += part);        // u·n = u_solid·n
@@ -43,6 +44,7 @@ namespace {
 template <int D>
 FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& scene) {
     FieldPlan plan = effects.plan();
+    if (Heat<D>::named(scene)) Heat<D>::needs(plan);
     Emitters<D>::needs(scene, plan);
     for (const auto& name : initial_fields(scene)) plan.advected(name);
     return plan;
@@ -105,6 +107,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     : effects_(make_effects<D>(effect_kinds(), scene)),
       state_(scene, field_plan(effects_, scene)),
       solids_(scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>(), state_),
+      heat_(Heat<D>::named(scene) ? std::make_unique<Heat<D>>(scene, state_) : nullptr),
       options_(scene.root().table("scheme")),
       characteristics_(options_),
       trace_(state_.before, state_.u, state_.sides, options_.trace),
@@ -125,6 +128,10 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         field.before = Padded<D>(state_.extent());
         if (field.name == "temperature") field.values.fill(ambient_temperature(scene));
         set_initial_field(field.values, state_.u, scene, field.name);
+    }
+    if (heat_) {
+        if (solids_.moving()) scene.refuse("solids", "solids that move and a substance that melts are not simulated together");
+        heat_->start(state_, scene);
     }
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
@@ -193,6 +200,7 @@ void FlowSolver<D>::advect_fields(real dt) {
     if (state_.fields.empty()) return;
     const auto timed = passes_.time("advect fields");
     for (auto& field : state_.fields) {
+        if (field.derived) continue;
         if (options_.scheme != Scheme::conservative) {
             characteristics_.advect(field.before, field.boundary, all_cells<D>(state_.extent()), trace_, dt, field.values);
             continue;
@@ -238,7 +246,8 @@ void FlowSolver<D>::blend(const Substep& stage) {
     if (options_.scheme != Scheme::conservative) return;
     const auto timed = passes_.time("blend");
     for (int a = 0; a < D; ++a) velocity_blend_[static_cast<std::size_t>(a)].blend(stage, state_.before[a], state_.u[a]);
-    for (std::size_t i = 0; i < state_.fields.size(); ++i) field_blend_[i].blend(stage, state_.fields[i].before, state_.fields[i].values);
+    for (std::size_t i = 0; i < state_.fields.size(); ++i)
+        if (!state_.fields[i].derived) field_blend_[i].blend(stage, state_.fields[i].before, state_.fields[i].values);
 }
 
 template <int D>
@@ -253,9 +262,26 @@ void FlowSolver<D>::move_solids(real t) {
 }
 
 template <int D>
+void FlowSolver<D>::conduct(real dt) {
+    if (!heat_) return;
+    const auto timed = passes_.time("heat");
+    heat_->conduct(state_, dt);
+}
+
+/// Where ice resists, the velocity follows the pressure less than elsewhere: the matrix knows by how much.
+template <int D>
+void FlowSolver<D>::slow(real dt) {
+    if (!heat_) return;
+    const auto timed = passes_.time("ice");
+    if (heat_->slow(state_, dt)) projection_.set_matrix(state_);
+}
+
+template <int D>
 void FlowSolver<D>::project(real dt) {
+    slow(dt);
     const auto timed = passes_.time("project");
     report_ = &projection_.project(state_, dt);
+    if (heat_) heat_->give_back(state_);
     impulse_ += dt * pressure_force(state_);
 }
 
@@ -321,12 +347,14 @@ StepReport FlowSolver<D>::report(real dt) {
 template <int D>
 real FlowSolver<D>::advised_dt() const {
     const real fastest = last_rate();
-    return std::min(fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_));
+    return std::min({fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_), heat_ ? heat_->max_dt(state_) : infinity});
 }
 
 /// Central fluxes are stable while no fluid crosses more than √3 cells a step; paths traced back have no such limit.
 template <int D>
 StepLimit FlowSolver<D>::stable_dt() const {
+    if (const real most = heat_ ? heat_->stable_dt(state_) : infinity; most < infinity)
+        return {most, "explicit conduction of heat is stable up to it"};
     if (options_.scheme != Scheme::conservative) return {};
     const real fastest = last_rate();
     return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
@@ -335,6 +363,7 @@ StepLimit FlowSolver<D>::stable_dt() const {
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
     FieldSet set = field_set(state_);
+    if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
         vorticity(state_, vorticity_);
         FieldView view{"vorticity", "1/s", Where::cell, "", {}};
@@ -354,6 +383,8 @@ FieldSet FlowSolver<D>::fields() const {
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
     auto list = flow::integrals(state_);
+    if (heat_)
+        for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
     if (!solids_.any()) return list;
     if (state_.find("smoke")) {
         list.push_back({"smoke_removed", D == 2 ? "m^2" : "m^3", smoke_removed_});
@@ -372,12 +403,14 @@ template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
     state_.save(to);
     to.put_value("impulse", impulse_);
+    if (heat_) heat_->save(to);
     to.put_value("smoke_in_solids", std::array<real, 2>{smoke_removed_, smoke_continued_});
 }
 
 template <int D>
 void FlowSolver<D>::restore(const Checkpoint& from) {
     state_.restore(from);
+    if (heat_) heat_->restore(from, state_);
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (from.has("smoke_in_solids")) {
@@ -397,6 +430,7 @@ std::size_t FlowSolver<D>::bytes() const {
     for (const auto& blend : field_blend_) total += blend.bytes();
     for (const auto& component : carried_.face) total += component.bytes();
     total += was_solid_.size();
+    if (heat_) total += heat_->bytes();
     return total;
 }
 

@@ -3,6 +3,7 @@
 #include "core/passes.hpp"
 #include "core/solver.hpp"
 #include "flow/effects.hpp"
+#include "flow/heat.hpp"
 #include "scene/solver_kind.hpp"
 #include "staggered/advection.hpp"
 #include "staggered/conservative.hpp"
@@ -11,7 +12,7 @@
 #include "staggered/state.hpp"
 #include "staggered/trace.hpp"
 
-#include <optional>
+#include <memory>
 
 namespace weir::flow {
 
@@ -55,6 +56,8 @@ private:
     void advect_velocity(real dt);
     void blend(const Substep& stage);
     void move_solids(real t);
+    void conduct(real dt);
+    void slow(real dt);
     void project(real dt);
     void hold();
     void clear_solids();
@@ -66,6 +69,7 @@ private:
     Effects<MacState<D>> effects_;
     MacState<D> state_;
     SolidPlacement<D> solids_;
+    std::unique_ptr<Heat<D>> heat_;  // none where the scene names no substance
     AdvectionOptions options_;
     CharacteristicAdvection<D> characteristics_;
     GridBacktrace<D> trace_;

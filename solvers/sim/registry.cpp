@@ -13,8 +13,9 @@
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {flow::kind(), water::kind(), studies::transport_kind(), studies::poisson_kind(),
-                                                         pbf::kind(),  sph::kind(),   heightfield::kind(), waves::kind()};
+    static const std::vector<scene::SolverKind> kinds = {
+        flow::kind(),        water::kind(), studies::transport_kind(),    studies::poisson_kind(), pbf::kind(), sph::kind(),
+        heightfield::kind(), waves::kind(), studies::phase_diagram_kind()};
     return kinds;
 }
 

@@ -23,7 +23,7 @@ real sum_over_faces(const MacState<D>& s, int a, F f) {
     return s.u.cell_volume() * sum_over(s.u[a].extent(), [&](const Index<D>& I) { return face_share(s, a, I) * f(s.u[a](I)); });
 }
 
-std::string unit_of(const std::string& field) { return field == "temperature" ? "K" : ""; }
+std::string unit_of(const std::string& field) { return field == "temperature" ? "K" : field == "enthalpy" ? "J/kg" : ""; }
 
 }  // namespace
 

@@ -134,7 +134,7 @@ Projection<D>::Projection(const PoissonChoice& choice, const MacState<D>& s)
         matrix_.periodic[static_cast<std::size_t>(a)] = s.sides.periodic(a);
         open = open || s.sides.open(a, 0) || s.sides.open(a, 1);
     }
-    if (open || s.solid.any())
+    if (open || s.solid.any() || !s.mobility[0].empty())
         for (int a = 0; a < D; ++a) matrix_.weight[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent(), 1);
     set_matrix(s);
 }
@@ -148,7 +148,7 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
             const int end = I[a] == 0 ? 0 : I[a] == s.u.cells[a] ? 1 : -1;
             const real open = s.solid.any() ? s.solid.open[static_cast<std::size_t>(a)](I) : 1;
             const real side = end < 0 || s.sides.periodic(a) ? 1 : s.sides.open(a, end) ? 2 : 0;  // 2: p = 0 half a cell away
-            weight(I) = side * open;
+            weight(I) = side * open * (s.mobility[0].empty() ? 1 : s.mobility[static_cast<std::size_t>(a)](I));
         });
     }
     solver_->setup(matrix_);

@@ -101,6 +101,7 @@ template <int D>
 std::size_t MacState<D>::bytes() const {
     std::size_t total = u.bytes() + p.size() * sizeof(real) + cells.size();
     for (const auto& grid : solid.open) total += 2 * grid.size() * sizeof(real);
+    for (const auto& grid : mobility) total += grid.size() * sizeof(real);
     for (const auto& field : fields) total += field.values.size() * sizeof(real) + field.before.bytes() + field.held.size() * sizeof(Held);
     for (const auto& component : before.face) total += component.bytes();
     for (const auto& field : scratch) total += field.values.size() * sizeof(real);

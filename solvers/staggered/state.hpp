@@ -28,6 +28,7 @@ struct NamedField {
     Padded<D> before;          // as it was when the (sub)step began, with ghosts; allocated by solvers that use it
     Boundary<D> boundary;      // what the sides do to it
     std::vector<Held> held{};  // throughout this step, in the order in which they are set
+    bool derived = false;      // follows from another field: not carried itself
 
     void hold() {
         for (const Held& h : held) values[h.cell] = h.value;
@@ -54,6 +55,8 @@ struct MacState {
     std::vector<NamedField<D>> fields;    // carried by the flow
     std::vector<NamedField<D>> scratch;
     geometry::Sides<D> sides;
+    /// How far a face follows the pressure, in [0, 1]; empty: all of them do.
+    std::array<Grid<real, D>, D> mobility;
     real rho = 1;   // density [kg/m³]
     real nu = 0;    // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
     real time = 0;  // [s]

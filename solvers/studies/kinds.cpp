@@ -1,7 +1,9 @@
 #include "studies/kinds.hpp"
 
+#include "matter/substance.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/kind.hpp"
+#include "studies/phase_diagram.hpp"
 #include "studies/poisson_problem.hpp"
 #include "studies/transport.hpp"
 
@@ -30,6 +32,16 @@ scene::SolverKind poisson_kind() {
     schema.keys = {scheme_key({PoissonChoice::key()}), problem};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial"};
     return {schema, make_without_surface<PoissonProblemSolver>};
+}
+
+scene::SolverKind phase_diagram_kind() {
+    scene::SolverSchema schema;
+    schema.name = "phase_diagram";
+    schema.doc = "A substance in the plane of temperature (x, in K) and pressure (y, its decimal logarithm, in Pa), without any flow.";
+    schema.dims = {2};
+    schema.keys = {matter::substance_key(), PhaseDiagram::samples_key()};
+    schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
+    return {schema, [](const scene::Scene& scene) { return std::make_unique<PhaseDiagram>(scene); }};
 }
 
 }  // namespace weir::studies

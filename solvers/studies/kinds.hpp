@@ -4,7 +4,8 @@
 
 namespace weir::studies {
 
-scene::SolverKind transport_kind();  // "transport": advection through a prescribed flow
-scene::SolverKind poisson_kind();    // "poisson": one pressure problem
+scene::SolverKind transport_kind();      // "transport": advection through a prescribed flow
+scene::SolverKind poisson_kind();        // "poisson": one pressure problem
+scene::SolverKind phase_diagram_kind();  // "phase_diagram": what a substance is, by temperature and pressure
 
 }  // namespace weir::studies

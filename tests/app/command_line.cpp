@@ -33,6 +33,9 @@ TEST("--version, list and describe answer with exit 0") {
     EXPECT_NE(weir_says({"list", "solvers"}).text.find("mac"), std::string::npos);
     EXPECT_NE(weir_says({"list", "effects"}).text.find("buoyancy"), std::string::npos);
     EXPECT_NE(weir_says({"describe", "time.cfl"}).text.find("cfl"), std::string::npos);
+    EXPECT_NE(weir_says({"describe", "substance", "water"}).text.find("at 373.124 K 2.25667e+06 J/kg make vapour of liquid"),
+              std::string::npos);
+    EXPECT_NE(weir_says({"describe", "substance", "own"}).text.find("fusion"), std::string::npos);
 }
 
 TEST("what cannot be printed is no success: exit 2, with the system's reason") {
@@ -87,7 +90,8 @@ TEST("--backend runs particles on the reference; what it has not got, and an unk
 TEST("docs/fields.md is what weir list fields --markdown writes") {
     const auto answer = weir_says({"list", "fields", "--markdown"});
     EXPECT_EQ(answer.code, 0);
-    EXPECT_EQ(answer.text, weir::test::text_of(std::string(WEIR_SOURCE_DIR) + "/docs/fields.md")) << "run: weir list fields --markdown > docs/fields.md";
+    EXPECT_EQ(answer.text, weir::test::text_of(std::string(WEIR_SOURCE_DIR) + "/docs/fields.md"))
+        << "run: weir list fields --markdown > docs/fields.md";
 }
 
 TEST("--explain says so where a scene is not valid without an effect, whose cost is then no difference of two runs") {

@@ -146,6 +146,32 @@ std::map<std::string, Said> everything() {
         all(of_the_surface, Lines{at_the_wall}),
         {"flow = { name = \"enright\", period = 1 }"}};
     said["poisson"] = {{"problem = \"N1\""}, all(of_the_run, probes("pressure"), poisson, Lines{at_the_wall}), of_the_surface};
+    const std::string states =
+        "solid = { density = 900, heat_capacity = 2000, conductivity = 0.3 }, liquid = { density = 800, "
+        "heat_capacity = 2500, conductivity = 0.2, expansion = 1e-3 }, vapour = { heat_capacity = 1500, "
+        "conductivity = 0.02 }";
+    const std::string wax =
+        "substance = { name = \"own\", triple = [300, 1000], critical = [700, 2e6], fusion = 2e5, vaporisation = 1e6, " + states +
+        " }\nfluid.density = 850\ninitial.temperature = { name = \"constant\", value = 310 }\n";
+    const std::string fluids[] = {
+        "substance = { name = \"ideal_gas\", gas_constant = 287, heat_capacity = 1005, conductivity = 0.026 }",
+        "substance = { name = \"van_der_waals\", gas_constant = 461, critical = [647, 2.2e7], liquid = { heat_capacity = 4200, "
+        "conductivity = 0.6 }, vapour = { heat_capacity = 2000, conductivity = 0.02 } }"};
+    for (const std::string& line :
+         {"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }\n" + std::string(),
+          wax + "heat = { pressure = 2e3, conduction = \"explicit\", drag = 1e5 }",
+          wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }",
+          wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"})
+        said["mac"].lines.push_back(line);
+    for (const std::string& line : fluids) said["mac"].refused.push_back(line);
+    said["phase_diagram"] = {
+        {"substance = \"water\""},
+        all(of_the_run, probes("state"),
+            Lines{"samples = { temperature = [300], pressure = [1e5] }",
+                  "substance = { name = \"own\", triple = [300, 1000], critical = [700, 2e6], fusion = 2e5, vaporisation = 1e6, " + states +
+                      " }",
+                  fluids[0], fluids[1]}),
+        all(of_the_surface, Lines{at_the_wall})};
     said["pbf"] = {
         liquid,
         all(of_the_run, particles, solids, particle_velocities, of_the_surface, Lines{walls[0]}, open_sides,

@@ -126,7 +126,7 @@ const std::map<std::string, int>& level() {
         {"solvers/tallcell", 5},      {"solvers/heightfield", 5}, {"solvers/waves", 5},         {"solvers/sph", 5},
         {"solvers/pbf", 5},           {"solvers/coupling", 6},    {"solvers/sim", 7},           {"solvers/output", 7},
         {"validation/references", 8}, {"validation/metrics", 8},  {"validation/harness", 9},    {"validation/page", 10},
-        {"validation/report", 11},    {"validation/cost", 12},    {"validation/stability", 12},
+        {"validation/report", 11},    {"validation/cost", 12},    {"validation/stability", 12}, {"solvers/matter", 3},
     };
     return table;
 }

@@ -52,10 +52,16 @@ Panel centreline_panel(const RunRecord& run, const Reference& ref, int c) {
 struct Heat {
     real hot, cold, alpha, L, height;
 };
+/// Of the effect, or of the liquid where the scene names a substance [m^2/s].
+real diffusivity_of(const scene::Scene& scene) {
+    if (const auto* diffusion = scene.effect("diffusion")) return diffusion->number("temperature");
+    return scene.number("substance.liquid.conductivity") / (scene.number("fluid.density") * scene.number("substance.liquid.heat_capacity"));
+}
+
 Heat heat_of(const RunRecord& run) {
     const auto& size = run.scene->root().numbers("grid.size");
-    return {run.scene->number("sides.x_min.temperature"), run.scene->number("sides.x_max.temperature"),
-            run.scene->effect("diffusion")->number("temperature"), size.at(0), size.at(1)};
+    return {run.scene->number("sides.x_min.temperature"), run.scene->number("sides.x_max.temperature"), diffusivity_of(*run.scene),
+            size.at(0), size.at(1)};
 }
 
 /// Mean over y of the heat flux u T - alpha dT/dx through plane i of x faces, over alpha dT / L: the Nusselt number of that plane.

@@ -55,10 +55,20 @@ REFERENCE(cavity_3d) {
 }
 
 // Air between a hot and a cold wall. Ra = g beta dT L^3 / (nu alpha) picks the row; speeds in the table are in units of alpha / L.
+namespace {
+
+/// Of the effect, or of the liquid where the scene names a substance [m^2/s].
+real diffusivity_of(const scene::Scene& scene) {
+    if (const auto* diffusion = scene.effect("diffusion")) return diffusion->number("temperature");
+    return scene.number("substance.liquid.conductivity") / (scene.number("fluid.density") * scene.number("substance.liquid.heat_capacity"));
+}
+
+}  // namespace
+
 REFERENCE(heated_cavity) {
     const scene::Table* buoyancy = scene.effect("buoyancy");
     const real hot = scene.number("sides.x_min.temperature"), cold = scene.number("sides.x_max.temperature");
-    const real L = scene.vec<2>("grid.size")[0], alpha = scene.effect("diffusion")->number("temperature");
+    const real L = scene.vec<2>("grid.size")[0], alpha = diffusivity_of(scene);
     const real Ra = buoyancy->number("beta") * (hot - cold) * L * L * L / (scene.number("fluid.viscosity") * alpha);
     const Table all = read_table(data / "heated_cavity_devahldavis1983.csv");
     Reference ref{.source = "de Vahl Davis 1983, and an own Newton solve with Richardson extrapolation"};

@@ -1,0 +1,94 @@
+// Heat with melting and freezing by the enthalpy method (Voller & Prakash 1987): what is kept and carried is the specific enthalpy H,
+//     ρ (∂H/∂t + u·∇H) = ∇·(k ∇T(H)) + q,
+// T(H) is the substance's curve at the pressure of the scene, on whose plateau a cell is part ice and part melt; f is the part of melt. Ice
+// resists the flow by Carman and Kozeny's drag, −C (1 − f)²/(f³ + ε) u, taken implicitly and together with the pressure, so that where all
+// is ice nothing moves:
+//     u = β (u* − (dt/ρ) ∇p),  β = 1 / (1 + (dt/ρ) C (1 − f)²/(f³ + ε)),  ∇·(β ∇p) = (ρ/dt) ∇·(β u*).
+#pragma once
+#include "core/grid.hpp"
+#include "core/solver.hpp"
+#include "flow/effects.hpp"
+#include "staggered/ghosts.hpp"
+
+#include <optional>
+
+namespace weir::flow {
+
+/// Solid and liquid of a heat curve, as the loops over cells use them.
+struct Melting {
+    real T = 0;                      // of melting [K]
+    real h_solid = 0, h_liquid = 0;  // the ends of the plateau [J/kg]
+    real c_solid = 0, c_liquid = 0;  // [J/(kg K)]
+    real k_solid = 0, k_liquid = 0;  // [W/(m K)]
+    real boils_above = infinity;     // [J/kg]
+
+    real temperature(real h) const { return h < h_solid ? T + (h - h_solid) / c_solid : h > h_liquid ? T + (h - h_liquid) / c_liquid : T; }
+    real liquid(real h) const { return h >= h_liquid ? 1 : h <= h_solid ? 0 : (h - h_solid) / (h_liquid - h_solid); }
+    /// At the temperature of melting, that of the liquid.
+    real enthalpy(real at) const { return at < T ? h_solid + c_solid * (at - T) : h_liquid + c_liquid * (at - T); }
+    /// dH/dT; 0 on the plateau, where the temperature does not change.
+    real capacity(real h) const { return h < h_solid ? c_solid : h > h_liquid ? c_liquid : 0; }
+    real conductivity(real share) const { return k_solid + share * (k_liquid - k_solid); }
+};
+
+template <int D>
+class Heat {
+public:
+    static bool named(const scene::Scene& scene) { return scene.has("substance"); }
+    static std::vector<scene::Key> keys();
+    /// The fields that it carries or keeps.
+    static void needs(FieldPlan& plan);
+
+    /// Refuses what it cannot be told together with: `state` has its solids.
+    Heat(const scene::Scene& scene, MacState<D>& state);
+    /// Enthalpies from the temperatures at the start, which it refuses below 0 K and above boiling.
+    void start(MacState<D>& s, const scene::Scene& scene);
+    /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it. With the temperature of before, or with that after the step.
+    void conduct(MacState<D>& s, real dt);
+    /// u* becomes β u*, and the state's mobility is β. Whether that may have changed.
+    bool slow(MacState<D>& s, real dt);
+    /// After the projection, which has taken all of (dt/ρ) ∇p away: gives back 1 − β of it.
+    void give_back(MacState<D>& s) const;
+    /// Beyond which explicit conduction breaks [s]; and with it the time to the next switch of a heater.
+    real stable_dt(const MacState<D>& s) const;
+    real max_dt(const MacState<D>& s) const;
+
+    const Grid<real, D>& liquid() const { return liquid_; }
+    std::vector<Integral> integrals(const MacState<D>& s) const;
+    void save(Checkpoint& to) const { to.put_value("heat_added", added_); }
+    void restore(const Checkpoint& from, MacState<D>& s);
+    std::size_t bytes() const;
+
+private:
+    struct Heater {
+        real start, end, density;  // [s], [s], [W/m³]
+        std::vector<std::size_t> cells;
+    };
+    void read_heaters(const scene::Scene& scene, const MacState<D>& s);
+    void read_sides(const scene::Scene& scene, MacState<D>& s);
+    void set_source(const MacState<D>& s);
+    void set_conductances(const MacState<D>& s, const Grid<real, D>& h);
+    void note(MacState<D>& s);
+    void implicit(MacState<D>& s, real dt, int halvings);
+    bool solve(Grid<real, D>& h, real a);
+    void count(const MacState<D>& s, const Padded<D>& T, real dt);
+    void correct(real a, const Grid<real, D>& h, real tolerance);
+    void flow(const Padded<D>& T, Grid<real, D>& out) const;
+    real through_sides(const Padded<D>& T) const;
+    real source(const Index<D>& I) const { return source_.empty() ? 0 : source_(I); }
+
+    Melting melting_;
+    real drag_;  // C [kg/(m³ s)]
+    bool explicit_;
+    Boundary<D> boundary_, no_flux_, correction_;
+    std::vector<Heater> heaters_;
+    Grid<real, D> source_, wall_source_;  // [W/m³]; empty where the scene has none
+    Grid<real, D> liquid_, start_, residual_, change_, image_, rest_, capacity_, inverse_;
+    Padded<D> k_, T_, direction_;
+    std::array<Grid<real, D>, D> conductance_;  // k/h² of faces [W/(m³ K)]
+    MacVelocity<D> slowed_;                     // β u*
+    bool slows_ = false;                        // anywhere, in the last step
+    real added_ = 0;                            // by sides and heaters since the start [J, in 2D a metre]
+};
+
+}  // namespace weir::flow

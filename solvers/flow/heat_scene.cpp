@@ -1,0 +1,214 @@
+// What a scene says of heat to the solver "mac": the substance, how it conducts, what sides and heaters give, temperatures at the start.
+#include "core/error.hpp"
+#include "flow/heat.hpp"
+#include "geometry/shape.hpp"
+#include "matter/substance.hpp"
+#include "scene/names.hpp"
+
+#include <algorithm>
+
+namespace weir::flow {
+
+namespace {
+
+using poisson::Cell;
+using scene::Key;
+using scene::Type;
+
+Melting melting_of(const scene::Scene& scene) {
+    const auto substance = matter::substance_of(scene);
+    const real p = scene.number("heat.pressure");
+    const auto curve = [&] {
+        try {
+            return substance->heat_curve(p);
+        } catch (const BadInput& error) {
+            scene.refuse("heat.pressure", error.what());
+        }
+    }();
+    if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
+        scene.refuse("heat.pressure",
+                     std::string("at ") + scene::number_text(p) + " Pa " + substance->name() + " is never a liquid that freezes",
+                     "solver \"mac\" knows solid and liquid");
+    Melting m;
+    m.T = curve.begins_at(1), m.h_solid = curve.highest(0), m.h_liquid = curve.lowest(1);
+    m.c_solid = curve.heat_capacity(0), m.c_liquid = curve.heat_capacity(1);
+    m.k_solid = substance->conduction(thermo::State::solid).conductivity;
+    m.k_liquid = substance->conduction(thermo::State::liquid).conductivity;
+    if (curve.states() > 2) m.boils_above = curve.highest(1);
+    const real ice = substance->colder_density(thermo::Boundary::melting, m.T),
+               melt = substance->warmer_density(thermo::Boundary::melting, m.T);
+    const real rho = scene.number("fluid.density");
+    if (rho < 0.9 * std::min(ice, melt) || rho > 1.1 * std::max(ice, melt))
+        scene.refuse("fluid.density",
+                     "fluid.density is " + scene::number_text(rho) + " kg/m^3, which is no density of " + substance->name(),
+                     "solid " + scene::number_text(std::round(ice * 10) / 10) + ", liquid " +
+                         scene::number_text(std::round(melt * 10) / 10) + " kg/m^3: this solver takes one for both");
+    return m;
+}
+
+/// Conditions of a correction, or of a conductivity: nothing passes but around a periodic axis.
+template <int D>
+Boundary<D> without_values(Boundary<D> boundary) {
+    for (auto& axis : boundary.end)
+        for (auto& rule : axis)
+            if (rule.kind != EndRule::Kind::periodic) rule = {EndRule::Kind::neumann, 0, {}};
+    return boundary;
+}
+
+std::string side_path(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
+
+}  // namespace
+
+template <int D>
+std::vector<Key> Heat<D>::keys() {
+    Key substance = matter::substance_key();
+    substance.required = false;
+    substance.doc += " Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike.";
+    return {substance,
+            {.name = "heat",
+             .type = Type::table,
+             .doc = "How a substance takes up heat. Only where `substance` is named.",
+             .keys = {{.name = "pressure",
+                       .type = Type::number,
+                       .doc = "At which it melts and boils.",
+                       .unit = "Pa",
+                       .fallback = 101325.0,
+                       .min = 0,
+                       .min_open = true},
+                      {.name = "conduction",
+                       .type = Type::choice,
+                       .doc = "explicit limits the step to about rho c h^2/(6 dim k); implicit does not, and is first order in time.",
+                       .fallback = std::string("implicit"),
+                       .choices = {"implicit", "explicit"}},
+                      {.name = "drag",
+                       .type = Type::number,
+                       .doc = "C of Carman and Kozeny's drag C (1 - f)^2/(f^3 + 0.001) in cells that are part solid.",
+                       .unit = "kg/(m^3 s)",
+                       .fallback = 1.6e6,
+                       .min = 0,
+                       .min_open = true}}},
+            {.name = "heaters",
+             .type = Type::tables,
+             .doc = "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.",
+             .keys = {{.name = "power",
+                       .type = Type::number,
+                       .doc = "Heat given off; in 2D by a metre of depth. Negative: a cooler.",
+                       .unit = "W",
+                       .required = true},
+                      {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
+                      {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
+             .selector = "shape",
+             .variants_from = &scene::shapes}};
+}
+
+template <int D>
+void Heat<D>::needs(FieldPlan& plan) {
+    plan.advected("enthalpy").advected("temperature");
+}
+
+template <int D>
+Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
+    : melting_(melting_of(scene)), drag_(scene.number("heat.drag")), explicit_(scene.text("heat.conduction") == "explicit") {
+    if (scene.effect("cooling"))
+        scene.refuse("effects.cooling", "cooling changes a temperature, and here heat is what is kept",
+                     "heaters with a negative power, or sides with a temperature");
+    if (const auto* diffusion = scene.effect("diffusion"); diffusion && diffusion->has("temperature"))
+        scene.refuse("effects.diffusion.temperature", "the substance conducts heat by its own conductivity");
+    for (std::size_t i = 0; i < scene.root().tables("emitters").size(); ++i)
+        if (scene.root().tables("emitters")[i].has("temperature"))
+            scene.refuse("emitters[" + std::to_string(i) + "].temperature", "an emitter that sets a temperature makes heat of nothing",
+                         "heaters have a power");
+    auto& temperature = s.field("temperature");
+    temperature.derived = true;
+    for (auto* grid : {&liquid_, &start_, &residual_, &change_, &image_, &rest_, &capacity_, &inverse_}) *grid = Grid<real, D>(s.extent());
+    for (auto* padded : {&k_, &T_, &direction_}) *padded = Padded<D>(s.extent());
+    for (int a = 0; a < D; ++a) {
+        conductance_[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent());
+        s.mobility[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent(), 1);
+    }
+    slowed_ = MacVelocity<D>(s.u.cells, s.u.h, s.u.origin);
+    boundary_ = temperature.boundary, no_flux_ = without_values(boundary_), correction_ = boundary_.homogeneous();
+    read_sides(scene, s);
+    read_heaters(scene, s);
+}
+
+/// What flows in brings the enthalpy of its temperature. A flux into the fluid is a source in the cells beside its wall.
+template <int D>
+void Heat<D>::read_sides(const scene::Scene& scene, MacState<D>& s) {
+    auto& enthalpy = s.field("enthalpy").boundary;
+    for (int a = 0; a < D; ++a)
+        for (int end = 0; end < 2; ++end) {
+            const auto& side = s.sides.side(a, end);
+            const std::string path = side_path(a, end);
+            auto& rule = enthalpy.end[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)];
+            const bool passes = side.kind == geometry::SideKind::inflow || side.kind == geometry::SideKind::outflow;
+            if (side.temperature) {
+                const real T = *side.temperature;
+                if (!(T > 0))
+                    scene.refuse(path + ".temperature", "a temperature of " + scene::number_text(T) + " K", "temperatures are above 0 K");
+                const real h = melting_.enthalpy(T);
+                if (h > melting_.boils_above)
+                    scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils",
+                                 "solver \"mac\" has no vapour");
+                if (passes) rule = {EndRule::Kind::dirichlet, h, {}};
+            }
+            if (!scene.has(path + ".heat_flux")) continue;
+            if (side.temperature) scene.refuse(path + ".heat_flux", "the wall has a temperature: how much heat passes follows from it");
+            const real flux = scene.number(path + ".heat_flux");
+            if (wall_source_.empty()) wall_source_ = Grid<real, D>(s.extent());
+            for_each_cell(s.extent(), [&](const Index<D>& I) {
+                if (I[a] == (end == 0 ? 0 : s.extent()[a] - 1) && s.cells(I) == Cell::fluid) wall_source_(I) += flux / s.u.h[a];
+            });
+        }
+}
+
+template <int D>
+void Heat<D>::read_heaters(const scene::Scene& scene, const MacState<D>& s) {
+    const auto& tables = scene.root().tables("heaters");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const auto& table = tables[i];
+        const std::string path = "heaters[" + std::to_string(i) + "]";
+        Heater heater{table.number("start"), table.number_or("end", infinity), 0, {}};
+        if (!(heater.end > heater.start)) scene.refuse(path + ".end", path + ".end is not after its start");
+        const auto shape = geometry::make_shape<D>(table);
+        bool covers = false;
+        for (std::size_t c = 0; c < product(s.extent()); ++c) {
+            const Index<D> I = index_of<D>(s.extent(), c);
+            if (!shape->contains(s.u.cell_centre(I))) continue;
+            covers = true;
+            if (s.cells(I) == Cell::fluid) heater.cells.push_back(c);
+        }
+        if (heater.cells.empty())
+            scene.refuse(path, covers ? "the heater lies inside solids: no heat leaves it" : "the heater covers the centre of no cell");
+        heater.density = table.number("power") / (static_cast<real>(heater.cells.size()) * s.u.cell_volume());
+        heaters_.push_back(std::move(heater));
+    }
+    if (!heaters_.empty() || !wall_source_.empty()) source_ = Grid<real, D>(s.extent());
+}
+
+template <int D>
+void Heat<D>::start(MacState<D>& s, const scene::Scene& scene) {
+    auto &h = s["enthalpy"], &T = s["temperature"];
+    const real coldest = -max_over(s.extent(), [&](const Index<D>& I) { return -T(I); });
+    const char* place = scene.has("initial.temperature") ? "initial.temperature" : "substance";
+    if (!(coldest > 0))
+        scene.refuse(place, "somewhere it is " + scene::number_text(coldest) + " K at the start", "temperatures are above 0 K");
+    for_each_cell(s.extent(), [&](const Index<D>& I) { h(I) = melting_.enthalpy(T(I)); });
+    const real most = max_over(s.extent(), [&](const Index<D>& I) { return h(I); });
+    if (most > melting_.boils_above)
+        scene.refuse(place, "at " + scene::number_text(melting_.temperature(most)) + " K the liquid boils", "solver \"mac\" has no vapour");
+    note(s);
+}
+
+#define WEIR_INSTANTIATE(D)                                                       \
+    template std::vector<Key> Heat<D>::keys();                                    \
+    template void Heat<D>::needs(FieldPlan&);                                     \
+    template Heat<D>::Heat(const scene::Scene&, MacState<D>&);                    \
+    template void Heat<D>::read_sides(const scene::Scene&, MacState<D>&);         \
+    template void Heat<D>::read_heaters(const scene::Scene&, const MacState<D>&); \
+    template void Heat<D>::start(MacState<D>&, const scene::Scene&);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::flow

@@ -1,0 +1,108 @@
+// What a substance is at temperature T and pressure p: its state, the lines between states, densities and heats. Lines obey Clapeyron's
+// equation, dp/dT = L / (T Δv), by which latent heats follow from slopes and densities, or slopes from latent heats.
+#pragma once
+#include "core/types.hpp"
+#include "thermo/heat_curve.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace weir::thermo {
+
+struct Point {
+    real T = 0, p = 0;  // [K], [Pa]
+};
+
+/// The line between two states: of solid and vapour, solid and liquid, liquid and vapour.
+enum class Boundary { sublimation, melting, saturation };
+const char* name_of(Boundary boundary);
+
+/// Constants of one state.
+struct Conduction {
+    real heat_capacity = 0;  // at constant pressure [J/(kg K)]
+    real conductivity = 0;   // [W/(m K)]
+};
+
+class Substance {
+public:
+    virtual ~Substance() = default;
+    virtual const char* name() const = 0;
+
+    /// Where the three states meet, and where liquid and vapour become one; none where the substance has no such point.
+    virtual std::optional<Point> triple() const { return {}; }
+    virtual std::optional<Point> critical() const { return {}; }
+    /// Where the formulas hold; beyond, state() and heat_curve() throw BadInput, which names the limit.
+    virtual Point lowest() const { return {}; }
+    virtual Point highest() const { return {infinity, infinity}; }
+
+    virtual bool has(Boundary boundary) const = 0;
+    /// The temperatures between which the line runs [K].
+    virtual std::pair<real, real> ends(Boundary boundary) const = 0;
+    virtual real pressure(Boundary boundary, real T) const = 0;  // [Pa]
+    virtual real slope(Boundary boundary, real T) const = 0;     // dp/dT [Pa/K]
+    /// The inverse of pressure(), to round-off. Throws BadInput where the line does not reach p.
+    virtual real temperature(Boundary boundary, real p) const;
+
+    /// Density [kg/m^3]: of a liquid that of saturation at T, of a vapour at its own pressure.
+    virtual real density(State state, const Point& at) const = 0;
+    /// Of the two states on a line, the one without and the one with the latent heat [kg/m^3].
+    virtual real colder_density(Boundary boundary, real T) const;
+    virtual real warmer_density(Boundary boundary, real T) const;
+    /// L = T dp/dT (1/ρ_warmer − 1/ρ_colder) [J/kg]
+    virtual real latent_heat(Boundary boundary, real T) const;
+
+    virtual Conduction conduction(State state) const = 0;
+    /// Of the liquid (of a gas, the gas) at constant pressure, −(1/ρ) ∂ρ/∂T [1/K].
+    virtual real expansion(real T) const = 0;
+
+    /// On a line the state is the warmer one. Above the critical pressure the liquid ends at the critical temperature; above that
+    /// temperature and below that pressure there is vapour.
+    virtual State state(const Point& at) const;
+    /// Enthalpy against temperature at one pressure. The liquid at the triple point (else at boiling, else the gas at 0 K) has none.
+    virtual HeatCurve heat_curve(real p) const;
+
+protected:
+    void check_range(const Point& at) const;
+};
+
+using SubstancePtr = std::shared_ptr<const Substance>;
+
+/// Water by the formulas of IAPWS: SR1-86(1992) saturation, R14-08(2011) sublimation and melting (water.cpp has the equations).
+SubstancePtr water();
+
+/// Water where liquid and vapour are in balance, enthalpies included: u = h − p/ρ is what a closed vessel takes up.
+struct Saturation {
+    real p, dpdT;                           // [Pa], [Pa/K]
+    real liquid_density, vapour_density;    // [kg/m^3]
+    real liquid_enthalpy, vapour_enthalpy;  // of zero internal energy in the liquid at the triple point [J/kg]
+};
+Saturation water_at_saturation(real T);
+
+/// A substance by constants. The line of saturation goes through both points by Clausius and Clapeyron's equation with a constant latent
+/// heat and an ideal vapour, ln(p/p₃) = (L/R) (1/T₃ − 1/T): so the gas constant follows. Sublimation has the same R, melting is
+/// p − p₃ = (L/Δv) ln(T/T₃), and upright where solid and liquid weigh the same.
+struct Constants {
+    Point triple, critical;
+    real fusion = 0, vaporisation = 0;           // latent heats [J/kg]
+    real solid_density = 0, liquid_density = 0;  // [kg/m^3]
+    Conduction solid, liquid, vapour;
+    real expansion = 0;  // of the liquid [1/K]
+};
+/// What of the constants cannot be: the name of one of them ("triple", "critical", "fusion") and what is wrong with it.
+struct Fault {
+    std::string constant, message;
+};
+std::vector<Fault> faults(const Constants& constants);
+/// Throws BadInput with the first fault.
+SubstancePtr of_constants(const Constants& constants);
+
+/// The gas of p = ρ R T.
+SubstancePtr ideal_gas(real gas_constant, const Conduction& vapour);
+
+/// The fluid of p = ρ R T / (1 − b ρ) − a ρ² with the critical point given; boiling by Maxwell's rule of equal areas.
+SubstancePtr van_der_waals(real gas_constant, const Point& critical, const Conduction& liquid, const Conduction& vapour);
+
+}  // namespace weir::thermo

@@ -1,0 +1,171 @@
+// Heat, melting and freezing of the solver "mac": what it keeps, what ice stops, and what its loops compute with.
+#include "flow/heat.hpp"
+
+#include "core/parallel.hpp"
+#include "support/grid_solvers.hpp"
+#include "support/test.hpp"
+#include "thermo/substance.hpp"
+
+namespace weir::flow {
+
+namespace {
+
+/// A substance that melts at 300 K, of one density.
+const std::string wax =
+    "[substance]\nname = \"own\"\ntriple = [300.0, 1000.0]\ncritical = [800.0, 5e6]\nfusion = 3.34e5\nvaporisation = 2.2e6\n"
+    "solid = { density = 1000.0, heat_capacity = 2000.0, conductivity = 2.0 }\n"
+    "liquid = { density = 1000.0, heat_capacity = 4000.0, conductivity = 0.6 }\nvapour = { heat_capacity = 2000.0 }\n";
+
+/// Ice at the left of water that is the warmer the farther from it, so that it turns, with a warm wall, a heater and a source of heat in
+/// another wall: all terms.
+std::string stirred(int dim, const std::string& more = "") {
+    const std::string d = std::to_string(dim), box = test::list(dim, "0.03"), cells = test::list(dim, "12");
+    return "solver = \"mac\"\ndim = " + d + "\ngrid = { cells = " + cells + ", size = " + box +
+           " }\ntime = { end = 1.0 }\nfluid = { density = 1000.0, viscosity = 1e-6 }\n"
+           "sides = { x_min = { kind = \"wall\", slip = \"no\", temperature = 310.0 }, x_max = { kind = \"wall\", heat_flux = 300.0 } }\n"
+           "initial = { temperature = { name = \"linear\", value = 299.0, gradient = " +
+           (dim == 2 ? "[1000.0, 0.0]" : "[1000.0, 0.0, 0.0]") + ", at = " + test::list(dim, "0.01") +
+           " } }\nheaters = [ { shape = \"sphere\", centre = " + test::list(dim, "0.024") +
+           ", radius = 0.003, power = 1.0 } ]\neffects = { viscosity = {}, buoyancy = { beta = 3e-3, ambient = 300.0 } }\n"
+           "scheme = { advection = \"conservative\", flux = \"central\" }\n" +
+           more + wax;
+}
+
+template <int D>
+real integral_of(const FlowSolver<D>& flow, const std::string& name) {
+    for (const auto& integral : flow.integrals())
+        if (integral.name == name) return integral.value;
+    return std::nan("");
+}
+
+}  // namespace
+
+TEST("temperature and share of liquid are those of the substance's curve") {
+    const auto curve = thermo::water()->heat_curve(101325);
+    Melting m;
+    m.T = curve.begins_at(1), m.h_solid = curve.highest(0), m.h_liquid = curve.lowest(1);
+    m.c_solid = curve.heat_capacity(0), m.c_liquid = curve.heat_capacity(1);
+    for (real h = -5e5; h < 4e5; h += 313.7) {
+        const auto warmth = curve.warmth(h);
+        EXPECT_NEAR(m.temperature(h), warmth.T, 1e-12 * warmth.T);  // some roundings
+        EXPECT_NEAR(m.liquid(h), curve.share(thermo::State::liquid, warmth), 1e-15);
+        EXPECT_NEAR(m.temperature(m.enthalpy(warmth.T)), warmth.T, 1e-12 * warmth.T);
+    }
+}
+
+TEST_IN_2D_AND_3D("heat in the box is what was there and what sides and heaters gave, through a flow that melts ice") {
+    set_threads(1);
+    for (const char* conduction : {"implicit", "explicit"}) {
+        FlowSolver<D> flow(test::mac_scene(stirred(D, "heat = { pressure = 1e5, conduction = \"" + std::string(conduction) + "\" }\n")));
+        const real heat = integral_of(flow, "heat"), liquid = integral_of(flow, "liquid_volume");
+        for (int i = 0; i < 20; ++i) flow.step(0.02);
+        const real added = integral_of(flow, "heat_added");
+        EXPECT_GT(std::abs(added), 0.1 * (D == 2 ? 1 : 0.03)) << conduction;
+        // Of the sums of up to 1728 cells with 3e5 J/kg each, every step rounds once a cell: 1e-16 times the steps and a few terms.
+        EXPECT_NEAR(integral_of(flow, "heat"), heat + added, 1e-13 * std::abs(heat) * 20) << conduction;
+        EXPECT_NE(integral_of(flow, "liquid_volume"), liquid) << conduction;
+    }
+}
+
+TEST_IN_2D_AND_3D("a heater gives its power while it works, and a wall its flux times its area") {
+    set_threads(1);
+    const auto heat_after_a_second = [](const std::string& more) {
+        const auto scene = test::mac_scene(
+            "solver = \"mac\"\ndim = " + std::to_string(D) + "\ngrid = { cells = " + test::list(D, "6") +
+            ", size = " + test::list(D, "0.3") + " }\ntime = { end = 1.0, max_dt = 0.21 }\n" +
+            "fluid = { density = 1000.0 }\ninitial = { temperature = { name = \"constant\", value = 310.0 } }\n" + more + wax);
+        FlowSolver<D> flow(scene);
+        const real before = integral_of(flow, "heat");
+        while (flow.time() < 1 - 1e-9) flow.step(std::min({0.21, flow.advised_dt(), 1 - flow.time()}));
+        return integral_of(flow, "heat") - before;
+    };
+    const std::string ball = "heaters = [ { shape = \"sphere\", centre = " + test::list(D, "0.1") + ", radius = 0.1, ";
+    // Sums of 216 cells at 1e5 J/kg lose digits of 1e-16 of 1e6 J.
+    EXPECT_NEAR(heat_after_a_second(ball + "power = 10.0 } ]\n"), 10, 1e-6);
+    EXPECT_NEAR(heat_after_a_second(ball + "power = 10.0, start = 0.25, end = 0.75 } ]\n"), 5, 1e-6);
+    EXPECT_NEAR(heat_after_a_second("sides.y_max = { kind = \"wall\", heat_flux = 200.0 }\n"), 200 * std::pow(0.3, D - 1), 1e-6);
+}
+
+TEST_IN_2D_AND_3D("where all is ice nothing moves, and the flow around it is free of divergence") {
+    set_threads(1);
+    FlowSolver<D> flow(test::mac_scene(stirred(D)));
+    StepReport report;
+    for (int i = 0; i < 10; ++i) report = flow.step(0.02);
+    const auto& s = flow.state();
+    const auto fields = flow.fields();
+    const auto liquid = fields.find("liquid")->data[0];
+    const auto at = [&](const Index<D>& I) { return liquid[s.p.linear(I)]; };
+    real fastest = 0;
+    int frozen = 0;
+    for (int a = 0; a < D; ++a)
+        for_each_in(e<D>(a), s.extent(), [&](const Index<D>& I) {
+            fastest = std::max(fastest, std::abs(s.u[a](I)));
+            if (std::min(at(I), at(I - e<D>(a))) > 0) return;
+            ++frozen;
+            EXPECT_EQ(s.u[a](I), 0);
+        });
+    EXPECT_GT(frozen, 10);
+    EXPECT_GT(fastest, 1e-4);
+    // The pressure's residual times dt/rho, and the rounding of u beside weak faces.
+    EXPECT_LT(report.max_divergence, 0.02 / 1000 * report.residual_max + 1e-12 * fastest / s.u.h[0]);
+}
+
+TEST("implicit conduction gets through steps of any length, to the lever rule's end") {
+    set_threads(1);
+    for (const real dt : {1.0, 10.0, 100.0, 1000.0}) {
+        FlowSolver<2> flow(test::mac_scene(
+            "solver = \"mac\"\ndim = 2\ngrid = { cells = [32, 32], size = [0.01, 0.01] }\ntime = { end = 1.0 }\nfluid = { density = 1000.0 "
+            "}\n"
+            "initial = { temperature = { name = \"ball\", centre = [0.005, 0.005], radius = 0.003, value = 290.0, outside = 315.0 } }\n" +
+            wax));
+        const real heat = integral_of(flow, "heat"), volume = 1e-4, water = integral_of(flow, "liquid_volume") / volume;
+        for (real t = 0; t < 2000; t += dt) flow.step(dt);
+        EXPECT_NEAR(integral_of(flow, "heat"), heat, 1e-12 * std::abs(heat)) << dt;
+        // What the water gives until it is at 300 K, less what the ice takes to be, melts ice. Newton's tolerance is 1e-8 of the heat of
+        // fusion a step.
+        const real melts = (water * 4000 * 15 - (1 - water) * 2000 * 10) / 3.34e5;
+        EXPECT_NEAR(integral_of(flow, "liquid_volume") / volume, water + melts, 1e-6) << dt;
+    }
+}
+
+TEST("explicit and implicit conduction melt alike where steps are short") {
+    set_threads(1);
+    const auto melted = [](const char* conduction) {
+        FlowSolver<2> flow(
+            test::mac_scene("solver = \"mac\"\ndim = 2\ngrid = { cells = [32, 1], size = [0.032, 0.001] }\ntime = { end = 1.0 }\n"
+                            "fluid = { density = 1000.0 }\nsides = { x_min = { kind = \"wall\", temperature = 320.0 } }\n"
+                            "initial = { temperature = { name = \"constant\", value = 295.0 } }\nheat = { pressure = 1e5, conduction = \"" +
+                            std::string(conduction) + "\" }\n" + wax));
+        for (int i = 0; i < 1500; ++i) flow.step(0.1);
+        return integral_of(flow, "liquid_volume");
+    };
+    const real a = melted("explicit"), b = melted("implicit");
+    EXPECT_GT(a, 2e-6);
+    EXPECT_NEAR(a / b, 1, 2e-3);  // both are of first order in a step that is a thousandth of the time
+}
+
+TEST_IN_2D_AND_3D("the same bits with one and with three threads, and after a restart") {
+    const auto scene = test::mac_scene(stirred(D));
+    set_threads(1);
+    FlowSolver<D> one(scene), restarted(scene);
+    for (int i = 0; i < 2; ++i) one.step(0.02);
+    Checkpoint checkpoint;
+    one.save(checkpoint);
+    restarted.restore(checkpoint);
+    for (int i = 0; i < 2; ++i) one.step(0.02), restarted.step(0.02);
+    set_threads(3);
+    FlowSolver<D> three(scene);
+    for (int i = 0; i < 4; ++i) three.step(0.02);
+    set_threads(1);
+    EXPECT_TRUE(test::same_bits(one, three));
+    EXPECT_TRUE(test::same_bits(one, restarted));
+    EXPECT_EQ(integral_of(one, "heat_added"), integral_of(restarted, "heat_added"));
+}
+
+TEST("without a substance no face has a mobility and no field is derived") {
+    FlowSolver<2> flow(test::mac_scene(test::unit_box(2, 8, "effects = { buoyancy = { beta = 0.1 } }\n")));
+    EXPECT_TRUE(flow.state().mobility[0].empty());
+    for (const auto& field : flow.state().fields) EXPECT_FALSE(field.derived);
+}
+
+}  // namespace weir::flow

@@ -1,0 +1,109 @@
+// Melting and freezing: fronts, what ice and water come to, and the balance of heat.
+#include "validation/metrics/lists.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::validation {
+namespace {
+
+/// How far the front has come: the liquid's volume over the box's height, which does not jump from cell to cell.
+Curve front(const RunRecord& run) {
+    Curve curve = run.series("liquid_volume");
+    const auto& size = run.scene->root().numbers("grid.size");
+    for (real& y : curve.y)
+        for (std::size_t d = 1; d < size.size(); ++d) y /= size[d];
+    return curve;
+}
+
+real exact_front(const Reference& ref, real t) { return ref.number("speed") * std::sqrt(t); }
+
+Panel front_panel(const RunRecord& run, const Reference& ref) {
+    Curve ours = front(run), exact{.label = ref.source, .points = true};
+    ours.label = "weir";
+    for (int i = 1; i <= 20; ++i) exact.x.push_back(run.time * i / 20), exact.y.push_back(exact_front(ref, exact.x.back()));
+    return {.title = "The front of melting", .x = {"t [s]"}, .y = {"x [m]"}, .curves = {exact, ours}};
+}
+
+/// What a box of ice and water at two temperatures comes to, by the lever rule.
+struct Balance {
+    real T, liquid;
+};
+Balance lever(const RunRecord& run, const Reference& ref) {
+    const auto number = [&](const char* name) { return ref.number(name); };
+    const auto& size = run.scene->root().numbers("grid.size");
+    real volume = 1;
+    for (const real s : size) volume *= s;
+    const real water = run.series("liquid_volume").y.front() / volume, ice = 1 - water;
+    const real to_melting = water * number("c_liquid") * (number("warm") - number("melts"));  // [J/kg of all]
+    const real to_warm = ice * number("c_solid") * (number("melts") - number("cold")), to_melt = ice * number("fusion");
+    const real left = to_melting - to_warm;
+    if (left >= to_melt) return {number("melts") + (left - to_melt) / number("c_liquid"), 1};
+    if (left < 0 && -left > water * number("fusion")) return {number("melts") + (left + water * number("fusion")) / number("c_solid"), 0};
+    return {number("melts"), water + left / number("fusion")};
+}
+
+real lever_temperature(const RunRecord& run, const Reference& ref) {
+    const real T = lever(run, ref).T;
+    real worst = 0;
+    for (const real value : run.field("temperature").data[0]) worst = std::max(worst, std::abs(value - T));
+    return worst / (ref.number("warm") - ref.number("cold"));
+}
+
+real lever_liquid(const RunRecord& run, const Reference& ref) {
+    const auto& size = run.scene->root().numbers("grid.size");
+    real volume = 1;
+    for (const real s : size) volume *= s;
+    return std::abs(run.series("liquid_volume").y.back() / volume - lever(run, ref).liquid);
+}
+
+/// Largest |heat − heat at the start − heat added| of any moment, over the largest heat of any.
+real balance_error(const RunRecord& run, const Reference&) {
+    const Curve heat = run.series("heat"), added = run.series("heat_added");
+    real worst = 0, most = 0;
+    for (std::size_t i = 0; i < heat.size(); ++i) {
+        const real error = std::abs(heat.y[i] - heat.y.front() - added.y[i]);
+        if (!(error <= worst)) worst = error;
+        most = std::max({most, std::abs(heat.y[i]), std::abs(added.y[i])});
+    }
+    return worst / most;
+}
+
+/// Largest difference of any cell's temperature at the end from the one that it began with.
+real return_error(const RunRecord& run, const Reference&) {
+    const real began = run.scene->number("initial.temperature.value");
+    real worst = 0;
+    for (const real T : run.field("temperature").data[0]) worst = std::max(worst, std::abs(T / began - 1));
+    return worst;
+}
+
+}  // namespace
+
+std::vector<Metric> melting_metrics() {
+    return {
+        {.name = "stefan.front_error",
+         .unit = "",
+         .doc = "How far the front is from the exact one at the end, relative.",
+         .measure = [](const RunRecord& run,
+                       const Reference& ref) { return std::abs(front(run).y.back() / exact_front(ref, run.time) - 1); },
+         .figure = front_panel},
+        {.name = "lever.temperature_error",
+         .unit = "",
+         .doc = "Largest difference of the temperature at the end from the lever rule's, over that of ice and water at the start.",
+         .measure = lever_temperature},
+        {.name = "lever.liquid_error",
+         .unit = "",
+         .doc = "How far the share of liquid at the end is from the lever rule's.",
+         .measure = lever_liquid},
+        {.name = "heat.balance_error",
+         .unit = "",
+         .doc = "Largest difference between the heat in the box and what was there and was added, over the largest heat.",
+         .measure = balance_error},
+        {.name = "heat.return_error",
+         .unit = "",
+         .doc = "Largest relative difference of the temperature at the end from the uniform one at the start.",
+         .measure = return_error},
+    };
+}
+
+}  // namespace weir::validation

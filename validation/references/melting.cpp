@@ -1,0 +1,66 @@
+// Melting by conduction: Stefan's and Neumann's moving fronts, and what ice in water comes to in a box that no heat leaves. The substance
+// is one of the scene's own, of one density, so that it melts at its triple point's temperature whatever the pressure.
+#include "validation/harness/reference.hpp"
+
+#include <cmath>
+
+using namespace weir;
+using namespace weir::validation;
+
+namespace {
+
+struct Wax {
+    real T, L, c_solid, c_liquid, k_solid, k_liquid, rho;
+    explicit Wax(const scene::Scene& scene)
+        : T(scene.root().numbers("substance.triple").at(0)),
+          L(scene.number("substance.fusion")),
+          c_solid(scene.number("substance.solid.heat_capacity")),
+          c_liquid(scene.number("substance.liquid.heat_capacity")),
+          k_solid(scene.number("substance.solid.conductivity")),
+          k_liquid(scene.number("substance.liquid.conductivity")),
+          rho(scene.number("fluid.density")) {
+        const real solid = scene.number("substance.solid.density"), liquid = scene.number("substance.liquid.density");
+        if (solid != liquid || rho != liquid) throw BadInput("the exact solutions of melting are for one density of solid and liquid");
+    }
+};
+
+/// The zero of a function that rises from below to above, by bisection.
+template <class F>
+real zero_of(F f, real lo, real hi) {
+    for (int i = 0; i < 200; ++i) (f(0.5 * (lo + hi)) < 0 ? lo : hi) = 0.5 * (lo + hi);
+    return 0.5 * (lo + hi);
+}
+
+}  // namespace
+
+/// x = s(t) = 2 λ √(α t) (Neumann; Carslaw & Jaeger 1959, 11.2), with n = √(α_l/α_s):
+///     St_l/(e^λ² erf λ) − St_s/(n e^(n² λ²) erfc(n λ)) = λ √π
+REFERENCE(stefan) {
+    const Wax w(scene);
+    const real hot = scene.number("sides.x_min.temperature"), cold = scene.number("initial.temperature.value");
+    const real alpha = w.k_liquid / (w.rho * w.c_liquid), alpha_solid = w.k_solid / (w.rho * w.c_solid), n = std::sqrt(alpha / alpha_solid);
+    const real St = w.c_liquid * (hot - w.T) / w.L, St_solid = w.c_solid * (w.T - cold) / w.L;
+    const real lambda = zero_of(
+        [&](real l) {
+            return l * std::sqrt(pi) - St / (std::exp(l * l) * std::erf(l)) + St_solid / (n * std::exp(n * n * l * l) * std::erfc(n * l));
+        },
+        1e-6, 5);
+    Reference ref{.source = "Stefan 1891; Neumann (Carslaw & Jaeger 1959)"};
+    ref.numbers = {{"lambda", lambda}, {"speed", 2 * lambda * std::sqrt(alpha)}};
+    ref.scalars["temperature"] = [=](const Vec<3>& x, real t) {
+        const real eta = x[0] / (2 * std::sqrt(alpha * t));
+        return eta < lambda ? hot - (hot - w.T) * std::erf(eta) / std::erf(lambda)
+                            : cold + (w.T - cold) * std::erfc(n * eta) / std::erfc(n * lambda);
+    };
+    return ref;
+}
+
+/// The lever rule: a ball of ice in water, all heat kept. Shares by the ball's area; the run's own cells decide (`initial_ice`).
+REFERENCE(ice_in_water) {
+    const Wax w(scene);
+    const scene::Table& ball = scene.root().table("initial.temperature");
+    Reference ref{.source = "the lever rule"};
+    ref.numbers = {{"melts", w.T},         {"fusion", w.L},         {"cold", ball.number("value")}, {"warm", ball.number("outside")},
+                   {"c_solid", w.c_solid}, {"c_liquid", w.c_liquid}};
+    return ref;
+}
