@@ -207,7 +207,10 @@ std::map<std::string, Said> everything() {
                   "scheme = { model = \"shallow_water\", limiter = \"mc\", dry_depth = 1e-5 }", "time.cfl = 0.4",
                   "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]",
                   "effects.friction = { law = \"manning\", n = 0.03 }", "effects.friction = { law = \"quadratic\", c = 0.003 }",
-                  "effects.rain = { rate = 0.001, over = [0, 1], start = 0, end = 1 }"}),
+                  "effects.rain = { rate = 0.001, over = [0, 1], start = 0, end = 1 }", "effects.damping.rate = 0.1",
+                  "scheme.model = \"columns\"\neffects.gravity.g = [0, -1]\nfloats = [ { size = [0.2, 0.2], at = [0.3, 0.45], density = "
+                  "0.5, heave = true, "
+                  "motion = { kind = \"constant\", velocity = [0, 0] } } ]"}),
         all(Lines{walls[1], at_the_wall, "liquid = [ { shape = \"sphere\", centre = [0.5, 0.7], radius = 0.1 } ]"}),
         {"liquid = []\ninitial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1\", z = \"0.1\" } }",
          "liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"}};
