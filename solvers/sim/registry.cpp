@@ -4,6 +4,7 @@
 #include "pbf/solver.hpp"
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
+#include "tallcell/solver.hpp"
 #include "water/solver.hpp"
 
 #include <stdexcept>
@@ -12,7 +13,7 @@ namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
     static const std::vector<scene::SolverKind> kinds = {flow::kind(), water::kind(), studies::transport_kind(), studies::poisson_kind(),
-                                                         pbf::kind(),  sph::kind()};
+                                                         pbf::kind(),  sph::kind(),   tallcell::kind()};
     return kinds;
 }
 

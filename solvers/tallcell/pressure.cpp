@@ -474,6 +474,21 @@ real TallPressure<D>::energy(const Grid<real, D>& phi, const MacState<D>& state)
 }
 
 template <int D>
+void TallPressure<D>::show_heights(Grid<real, D>& to) const {
+    const Knots& knots = A_.knots;
+    parallel_for(0, layout_.columns(), [&](int c) {
+        const Line cell = line(to, c);
+        int row = 0;
+        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+            for (; row < knots.row[at(i)]; ++row) to[cell(row)] = 0;
+            const int length = std::max(1, knots.length[at(i)]);
+            for (int j = 0; j < length; ++j) to[cell(row++)] = length * frame_.h[layout_.up];
+        }
+        for (; row < layout_.rows; ++row) to[cell(row)] = 0;
+    });
+}
+
+template <int D>
 std::size_t TallPressure<D>::samples() const {
     return 2 * (w_[0].size() + w_[1].size());
 }

@@ -62,6 +62,8 @@ public:
         const auto& starts = run_start_[at(h)];
         return std::span(runs_[at(h)]).subspan(at(starts[at(column)]), at(starts[at(column) + 1] - starts[at(column)]));
     }
+    /// Of every cell: how high the element is in which it lies [m]; 0 outside the liquid.
+    void show_heights(Grid<real, D>& to) const;
     std::size_t samples() const;
     std::size_t bytes() const;
 
