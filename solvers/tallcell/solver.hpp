@@ -76,7 +76,7 @@ private:
     SolidPlacement<D> solids_;
     Effects<MacState<D>> effects_;
     Vec<D> gravity_{};
-    int up_ = 1;  // the axis against gravity, along which cells may be tall
+    int up_ = 1;  // the axis that gravity is most along, as are tall cells
     Grid<std::uint8_t, D> closed_;
     FacesInSolids<D> in_solids_;
     LevelSet<D> surface_;

@@ -21,16 +21,12 @@ Vec<D> gravity_of(const scene::Scene& scene) {
     return gravity ? gravity->template vec<D>("g") : Vec<D>{};
 }
 
-/// The axis against gravity. Cells are tall along it, so gravity along no axis has none.
+/// The axis that gravity is most along: cells are tall along it.
 template <int D>
-int up_axis(const scene::Scene& scene) {
-    const Vec<D> g = gravity_of<D>(scene);
-    int up = 1, axes = 0;
+int up_axis(const Vec<D>& g) {
+    int up = 1;
     for (int a = 0; a < D; ++a)
-        if (g[a] != 0) up = a, ++axes;
-    if (axes > 1 || g[up] > 0)
-        scene.refuse("effects.gravity.g",
-                     "cells are tall along gravity: it must point down one axis, as in [0, -9.81" + std::string(D == 3 ? ", 0]" : "]"));
+        if (std::abs(g[a]) > std::abs(g[up])) up = a;
     return up;
 }
 
@@ -44,7 +40,7 @@ TallCells<D>::TallCells(const scene::Scene& scene)
       solids_(solids_of<D>(scene), state_),
       effects_(make_effects<D>(body_forces(), scene)),
       gravity_(gravity_of<D>(scene)),
-      up_(up_axis<D>(scene)),
+      up_(up_axis<D>(gravity_)),
       pressure_(frame_, up_, options_.poisson) {
     refuse_what_it_cannot(scene);
     const int reach = static_cast<int>(std::ceil(options_.cfl));
@@ -75,6 +71,9 @@ void TallCells<D>::refuse_what_it_cannot(const scene::Scene& scene) const {
         for (const int end : {0, 1}) {
             const auto kind = state_.sides.side(a, end).kind;
             const std::string side = std::string("sides.") + axis_name[a] + (end == 0 ? "_min" : "_max");
+            if (kind == geometry::SideKind::moving_wall)
+                scene.refuse(side, "nothing drags the liquid along here: tall cells know no friction",
+                             "solver \"mac_water\" has the effect viscosity");
             if (kind == geometry::SideKind::inflow)
                 scene.refuse(side, "tall cells know no inflow", "solver \"mac_water\" has sides through which liquid flows in");
             if (kind == geometry::SideKind::outflow && (a != up_ || end == 0))
