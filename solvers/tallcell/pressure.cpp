@@ -474,6 +474,22 @@ real TallPressure<D>::energy(const Grid<real, D>& phi, const MacState<D>& state)
 }
 
 template <int D>
+typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) const {
+    RunsUp runs;
+    if (a == layout_.up) {
+        runs.knots_ = &A_.knots;
+        runs.k_ = A_.knots.start[at(column)] - 1, runs.end_ = A_.knots.start[at(column) + 1];
+        runs.advance();
+        return runs;
+    }
+    const int h = layout_.axes[0] == a ? 0 : 1;
+    runs.runs_ = &runs_[at(h)];
+    runs.k_ = run_start_[at(h)][at(column)], runs.end_ = run_start_[at(h)][at(column) + 1];
+    runs.faces_ = layout_.lower(column, h) >= 0;
+    return runs;
+}
+
+template <int D>
 void TallPressure<D>::show_heights(Grid<real, D>& to) const {
     const Knots& knots = A_.knots;
     parallel_for(0, layout_.columns(), [&](int c) {

@@ -8,7 +8,6 @@
 #include "tallcell/multigrid.hpp"
 #include "tallcell/samples.hpp"
 
-#include <span>
 #include <vector>
 
 namespace weir::tallcell {
@@ -57,13 +56,32 @@ public:
     const ColumnMatrix& matrix() const { return A_; }
     const std::vector<real>& potential() const { return q_; }
     ColumnMultigrid& solver() { return solver_; }
-    /// The runs of the faces on the lower side of a column along horizontal axis h.
-    std::span<const Run> runs(int h, int column) const {
-        const auto& starts = run_start_[at(h)];
-        return std::span(runs_[at(h)]).subspan(at(starts[at(column)]), at(starts[at(column) + 1] - starts[at(column)]));
-    }
     /// Of every cell: how high the element is in which it lies [m]; 0 outside the liquid.
     void show_heights(Grid<real, D>& to) const;
+    /// The runs of faces along axis a above one another, on the lower side of a column (its own vertical faces where a is up), bottom up.
+    class RunsUp {
+    public:
+        /// Moves to the run that has this row, or is above it; whether it has it. Rows only grow.
+        bool reaches(int row) {
+            while (k_ < end_ && run().row + run().count <= row) advance();
+            return k_ < end_ && run().row <= row;
+        }
+        Run run() const { return knots_ ? Run{knots_->row[at(k_)] + 1, knots_->length[at(k_)], k_, k_} : (*runs_)[at(k_)]; }
+        /// Not so at a wall, whose faces have a velocity of their own.
+        bool any_faces() const { return faces_; }
+
+    private:
+        friend class TallPressure;
+        void advance() {
+            ++k_;
+            while (knots_ && k_ < end_ && knots_->length[at(k_)] < 2) ++k_;
+        }
+        const Knots* knots_ = nullptr;
+        const std::vector<Run>* runs_ = nullptr;
+        int k_ = 0, end_ = 0;
+        bool faces_ = true;
+    };
+    RunsUp runs_up(int a, int column) const;
     std::size_t samples() const;
     std::size_t bytes() const;
 

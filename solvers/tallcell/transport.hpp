@@ -18,10 +18,14 @@ public:
 
 private:
     template <class Value>
-    void for_faces(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real near, MacVelocity<D>& to,
-                   Value&& value) const;
-    real departed(int a, const Vec<D>& x, real dt) const;
-    real corrected(int a, const Vec<D>& x, real here, real dt) const;
+    void for_faces(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
+                   MacVelocity<D>& to, Value&& value) const;
+    real at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const;
+    Stencil<D> stencil(const Vec<D>& s) const;
+    Vec<D> moved(const Vec<D>& s, const Vec<D>& here, real dt) const;
+    Vec<D> speed(const Vec<D>& s) const;
+    real departed(int a, const Vec<D>& s, real dt) const;
+    real corrected(int a, const Vec<D>& s, real here, real dt) const;
 
     Frame<D> frame_;
     bool maccormack_ = true;
