@@ -85,11 +85,12 @@ std::size_t ColumnMatrix::bytes() const {
 }
 
 std::size_t ColumnMultigrid::bytes() const {
-    std::size_t total = (r_.capacity() + p_.capacity() + Ap_.capacity()) * sizeof(real);
+    std::size_t total = (r_.capacity() + p_.capacity() + Ap_.capacity() + z_.capacity()) * sizeof(real);
     for (const Level& level : levels_) {
         total += level.coarse.bytes() + level.parent.capacity() * sizeof(int);
-        for (const auto* list : {&level.share, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
-            total += list->capacity() * sizeof(real);
+        total += level.share.capacity() * sizeof(real) + level.first.capacity() * sizeof(int);
+        for (const auto* list : {&level.entry, &level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
+            total += list->capacity() * sizeof(float);
         for (const auto& list : level.colours) total += list.capacity() * sizeof(int);
     }
     return total;
@@ -120,7 +121,11 @@ void ColumnMultigrid::colour(const ColumnMatrix& A, Level& level) {
 
 void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
     const auto count = at(A.knots.count());
-    for (auto* list : {&level.inverse, &level.ratio, &level.x, &level.b, &level.r}) resize_scratch(*list, count);
+    for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
+        resize_scratch(*list, count);
+    resize_scratch(level.entry, A.entry.size());
+    resize_scratch(level.first, count + 1);
+    level.first[count] = static_cast<int>(A.entry.size());
     parallel_for(0, A.knots.columns(), [&](int c) {
         real next = 0, before = 0;  // entry and pivot of the knot below
         for (int k = A.knots.start[at(c)]; k < A.knots.start[at(c) + 1]; ++k) {
@@ -130,8 +135,12 @@ void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
             const bool sound = pivot > 64 * std::numeric_limits<real>::epsilon() * diagonal;
             before = sound ? pivot : 0;
             next = A.vertical_next[i] + A.horizontal_next[i];
-            level.inverse[i] = sound ? 1 / pivot : 0;
-            level.ratio[i] = next * level.inverse[i];
+            level.inverse[i] = static_cast<float>(sound ? 1 / pivot : 0);
+            level.ratio[i] = static_cast<float>(sound ? next / pivot : 0);
+            level.diagonal[i] = static_cast<float>(diagonal);
+            level.next[i] = static_cast<float>(next);
+            level.first[i] = A.begin[at(A.faces() * k)];
+            for (int e = level.first[i]; e < A.begin[at(A.faces() * (k + 1))]; ++e) level.entry[at(e)] = static_cast<float>(A.entry[at(e)]);
         }
     });
 }
@@ -298,19 +307,35 @@ void ColumnMultigrid::add_entries(const ColumnMatrix& A, const Level& level, Col
 
 /// x of a column from b and the columns beside it: L D Lᵀ, upwards and down again. `alone`: those beside are zero.
 void ColumnMultigrid::solve_column(const ColumnMatrix& A, Level& level, int column, bool alone) {
-    const int first = A.knots.start[at(column)], last = A.knots.start[at(column) + 1], faces = A.faces();
-    real *x = level.x.data(), below = 0;
-    const real *b = level.b.data(), *ratio = level.ratio.data(), *inverse = level.inverse.data(), *entry = A.entry.data();
-    const int *begin = A.begin.data(), *beside = A.beside.data();
+    const int first = A.knots.start[at(column)], last = A.knots.start[at(column) + 1];
+    float *x = level.x.data(), below = 0;
+    const float *b = level.b.data(), *ratio = level.ratio.data(), *inverse = level.inverse.data(), *entry = level.entry.data();
+    const int *begin = level.first.data(), *beside = A.beside.data();
     for (int i = first; i < last; ++i) {
-        real sum = b[i];
+        float sum = b[i];
         if (!alone)
-            for (int e = begin[faces * i]; e < begin[faces * (i + 1)]; ++e) sum -= entry[e] * x[beside[e]];
+            for (int e = begin[i]; e < begin[i + 1]; ++e) sum -= entry[e] * x[beside[e]];
         if (i > first) sum -= ratio[i - 1] * below;
         x[i] = below = sum;
     }
-    real above = 0;
+    float above = 0;
     for (int i = last - 1; i >= first; --i) x[i] = above = x[i] * inverse[i] - ratio[i] * above;
+}
+
+/// r = b − A x
+void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
+    const float *x = level.x.data(), *b = level.b.data(), *entry = level.entry.data(), *next = level.next.data();
+    const int *begin = level.first.data(), *beside = A.beside.data();
+    parallel_for(0, A.knots.columns(), [&](int c) {
+        const int first = A.knots.start[at(c)], last = A.knots.start[at(c) + 1];
+        for (int i = first; i < last; ++i) {
+            float sum = b[i] - level.diagonal[at(i)] * x[i];
+            if (i > first) sum -= next[i - 1] * x[i - 1];
+            if (i + 1 < last) sum -= next[i] * x[i + 1];
+            for (int e = begin[i]; e < begin[i + 1]; ++e) sum -= entry[e] * x[beside[e]];
+            level.r[at(i)] = sum;
+        }
+    });
 }
 
 void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero) {
@@ -327,22 +352,22 @@ void ColumnMultigrid::cycle(std::size_t l, const ColumnMatrix& A) {
         solve_column(A, level, 0, true);
         return;
     }
-    std::fill(level.x.begin(), level.x.end(), 0.0);
+    std::fill(level.x.begin(), level.x.end(), 0.0f);
     for (int s = 0; s < sweeps_; ++s) sweep(A, level, true, s == 0);
-    multiply(A, level.x, level.r);
+    residual(A, level);
     Level& next = levels_[l + 1];
     const ColumnMatrix& coarse = next.coarse;
     parallel_for(0, coarse.knots.columns(), [&](int C) {
         for (int K = coarse.knots.start[at(C)]; K < coarse.knots.start[at(C) + 1]; ++K) next.b[at(K)] = 0;
         for_each_child(A, coarse, C, [&](int c) {
             for (int i = A.knots.start[at(c)]; i < A.knots.start[at(c) + 1]; ++i)
-                for_each_parent(level, i, [&](int K, real w) { next.b[at(K)] += w * (level.b[at(i)] - level.r[at(i)]); });
+                for_each_parent(level, i, [&](int K, real w) { next.b[at(K)] += static_cast<float>(w) * level.r[at(i)]; });
         });
     });
     cycle(l + 1, coarse);
     for_each_knot(A.knots, [&](std::size_t i) {
         const auto K = at(level.parent[i]);
-        const real share = level.share[i];
+        const float share = static_cast<float>(level.share[i]);
         level.x[i] += (1 - share) * next.x[K] + (share > 0 ? share * next.x[K + 1] : 0);
     });
     for (int s = 0; s < sweeps_; ++s) sweep(A, level, false, false);
@@ -363,14 +388,18 @@ void ColumnMultigrid::multiply(const ColumnMatrix& A, const std::vector<real>& x
 }
 
 void ColumnMultigrid::precondition(const ColumnMatrix& A, const std::vector<real>& r, std::vector<real>& z) {
-    std::copy(r.begin(), r.end(), levels_[0].b.begin());
+    Level& level = levels_[0];
+    real largest = 0;  // single precision has no room for what is very small
+    for (std::size_t i = 0; i < r.size(); ++i) largest = std::max(largest, std::abs(r[i]));
+    const real scale = largest > 0 ? largest : 1;
+    for_each_knot(A.knots, [&](std::size_t i) { level.b[i] = static_cast<float>(r[i] / scale); });
     cycle(0, A);
-    std::copy(levels_[0].x.begin(), levels_[0].x.end(), z.begin());
+    for_each_knot(A.knots, [&](std::size_t i) { z[i] = scale * static_cast<real>(level.x[i]); });
 }
 
 const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const std::vector<real>& b, std::vector<real>& x) {
     const auto count = at(A.knots.count());
-    for (auto* list : {&r_, &p_, &Ap_}) resize_scratch(*list, count);
+    for (auto* list : {&r_, &p_, &Ap_, &z_}) resize_scratch(*list, count);
     report_ = {};
     const auto norm_of = [&](const std::vector<real>& v) { return std::sqrt(dot(A.knots, v, v)); };
     const auto residual = [&] {
@@ -387,22 +416,21 @@ const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const std::
         size = scale;
     }
     report_.residual_before = scale > 0 ? size / scale : 0;
-    std::vector<real>& z = levels_[0].x;
-    real rz = 0;
+    std::vector<real>& z = z_;
+    real rz = 0, alpha = 0;
     while (size > options_.tolerance * scale) {
         if (report_.iterations == options_.max_iterations) {
             if (options_.fixed_iterations) break;
             throw NumericalFailure("pressure", "the residual is still " + std::to_string(size / scale) + " of the right-hand side after " +
                                                    std::to_string(report_.iterations) + " iterations");
         }
-        std::copy(r_.begin(), r_.end(), levels_[0].b.begin());
-        cycle(0, A);
-        const real rz_before = rz;
+        precondition(A, r_, z);
+        // Polak and Ribière's form, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p: single precision leaves the preconditioner not quite the same.
+        const real beta = report_.iterations == 0 ? 0 : -alpha * dot(A.knots, z, Ap_) / rz;
         rz = dot(A.knots, r_, z);
-        const real beta = report_.iterations == 0 ? 0 : rz / rz_before;
         for_each_knot(A.knots, [&](std::size_t i) { p_[i] = z[i] + (beta == 0 ? 0 : beta * p_[i]); });
         multiply(A, p_, Ap_);
-        const real alpha = rz / dot(A.knots, p_, Ap_);
+        alpha = rz / dot(A.knots, p_, Ap_);
         if (!std::isfinite(alpha)) throw NumericalFailure("pressure", "conjugate gradients broke down");
         for_each_knot(A.knots, [&](std::size_t i) {
             x[i] += alpha * p_[i];

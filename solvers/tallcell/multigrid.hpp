@@ -61,11 +61,13 @@ public:
 
 private:
     struct Level {
-        ColumnMatrix coarse;               // unused on the finest level, whose matrix is the caller's
-        std::vector<int> parent;           // knot of the next coarser level at or below this one
-        std::vector<real> share;           // of the parent's next knot
-        std::vector<real> inverse, ratio;  // L D Lᵀ of the columns' blocks
-        std::vector<real> x, b, r;
+        ColumnMatrix coarse;      // unused on the finest level, whose matrix is the caller's
+        std::vector<int> parent;  // knot of the next coarser level at or below this one
+        std::vector<real> share;  // of the parent's next knot
+        // What a cycle reads, in single precision: a preconditioner need be no more exact, and memory is what its time goes to.
+        std::vector<int> first;                                    // of a knot's entries
+        std::vector<float> entry, diagonal, next, inverse, ratio;  // L D Lᵀ of the columns' blocks
+        std::vector<float> x, b, r;
         std::vector<std::vector<int>> colours;  // columns of one colour are not neighbours
     };
     static void colour(const ColumnMatrix& A, Level& level);
@@ -77,12 +79,13 @@ private:
     static void add_entries(const ColumnMatrix& A, const Level& level, ColumnMatrix& to);
     void cycle(std::size_t l, const ColumnMatrix& A);
     static void sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero);
+    static void residual(const ColumnMatrix& A, Level& level);
     static void solve_column(const ColumnMatrix& A, Level& level, int column, bool alone);
 
     poisson::Options options_;
     int sweeps_;
     std::vector<Level> levels_;
-    std::vector<real> r_, p_, Ap_;
+    std::vector<real> r_, p_, Ap_, z_;
     poisson::Report report_;
 };
 

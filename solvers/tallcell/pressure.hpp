@@ -66,6 +66,8 @@ public:
             while (k_ < end_ && run().row + run().count <= row) advance();
             return k_ < end_ && run().row <= row;
         }
+        /// Whether any is left.
+        bool ahead() const { return k_ < end_; }
         Run run() const { return knots_ ? Run{knots_->row[at(k_)] + 1, knots_->length[at(k_)], k_, k_} : (*runs_)[at(k_)]; }
         /// Not so at a wall, whose faces have a velocity of their own.
         bool any_faces() const { return faces_; }

@@ -1,5 +1,7 @@
 #include "tallcell/transport.hpp"
 
+#include <limits>
+
 namespace weir::tallcell {
 
 template <int D>
@@ -23,12 +25,12 @@ void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& 
     copy(before_);
     const real h = frame_.h_max();
     if (!maccormack_) {
-        for_faces(mesh, phi, sides, dt, 2 * h, u, [&](int a, const Vec<D>& s, real) { return departed(a, s, dt); });
+        pass<false>(mesh, phi, sides, dt, 2 * h, u, nullptr);
         return;
     }
     copy(predicted_);
-    for_faces(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_, [&](int a, const Vec<D>& s, real) { return departed(a, s, dt); });
-    for_faces(mesh, phi, sides, dt, 2 * h, u, [&](int a, const Vec<D>& s, real here) { return corrected(a, s, here, dt); });
+    pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_, nullptr);
+    pass<true>(mesh, phi, sides, dt, 2 * h, u, &predicted_);
 }
 
 namespace {
@@ -72,10 +74,10 @@ struct Inside {
         return along(u, a, [](real lower, real upper, real f) { return lower + f * (upper - lower); });
     }
     real least(const Grid<real, D>& u, int a) const {
-        return along(u, a, [](real lower, real upper, real) { return std::min(lower, upper); });
+        return along(u, a, [](real lower, real upper, real f) { return f > 0 ? std::min(lower, upper) : lower; });
     }
     real most(const Grid<real, D>& u, int a) const {
-        return along(u, a, [](real lower, real upper, real) { return std::max(lower, upper); });
+        return along(u, a, [](real lower, real upper, real f) { return f > 0 ? std::max(lower, upper) : lower; });
     }
 };
 
@@ -135,7 +137,8 @@ real Transport<D>::corrected(int a, const Vec<D>& s, real here, real dt) const {
         value = inside.value(before_[a], a), low = inside.least(before_[a], a), high = inside.most(before_[a], a);
     } else {
         const Stencil<D> around = stencil(from);
-        for_each_sample(around, a, before_[a].extent(), [&](std::ptrdiff_t i, real) {
+        for_each_sample(around, a, before_[a].extent(), [&](std::ptrdiff_t i, real weight) {
+            if (weight == 0) return;
             const real u = before_[a][static_cast<std::size_t>(i)];
             low = std::min(low, u), high = std::max(high, u);
         });
@@ -144,55 +147,183 @@ real Transport<D>::corrected(int a, const Vec<D>& s, real here, real dt) const {
     return std::clamp(value + 0.5 * (here - back), low, high);
 }
 
-/// to = value(a, s, u(s)) on faces with φ < near beside them. Inside tall cells: at the Gauss points, by plain semi-Lagrangian advection,
-/// and all rows share their change. Eight columns go up together, since what stands beside one another stands together in memory.
+namespace {
+
 template <int D>
-template <class Value>
-void Transport<D>::for_faces(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
-                             MacVelocity<D>& to, Value&& value) const {
+Vec<D> face_place(int a, const Index<D>& I) {
+    Vec<D> s;
+    for (int d = 0; d < D; ++d) s[d] = I[d] + (d == a ? 0.0 : 0.5);
+    return s;
+}
+
+}  // namespace
+
+/// Rows of a tall cell all change as their run's Gauss points do, linearly between.
+template <int D>
+void Transport<D>::move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to) const {
+    I[up] = run.row;
+    Vec<D> s = face_place(a, I);
+    const real bottom = s[up];
+    // Euler's trace: deep below the surface paths are straight for as long as a step takes.
+    const auto change = [&](real row) {
+        s[up] = bottom + (row - run.row);
+        const Vec<D> k = speed(s);
+        return at_point(before_[a], a, s - dt * k) - k[a] * frame_.h[a];
+    };
+    const Pair both{change(run.middle() - run.spread()), change(run.middle() + run.spread())};
+    const std::size_t first = to.linear(I), stride = static_cast<std::size_t>(to.stride(up));
+    spread_rows(0, run.count, both, [&](int row, real by) {
+        const std::size_t face = first + static_cast<std::size_t>(row) * stride;
+        to[face] = before_[a][face] + by;
+    });
+}
+
+/// Eight faces beside one another along x, all at least two cells from the ends of the other axes. False, and nothing done, where a point
+/// moves farther than a cell.
+template <int D>
+template <bool Correct>
+bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) const {
+    const auto component = [](int b) { return static_cast<std::size_t>(b); };
+    Moved<D> k, half, from;
+    real farthest = 0;
+    for (int b = 0; b < D; ++b) {
+        const auto& u = before_[b];
+        const real* q = u.data() + u.linear(I);
+        const std::ptrdiff_t below = u.stride(a), above = u.stride(b);
+        const real scale = frame_.inv_h[b] * dt;
+        real far = 0;
+#pragma omp simd reduction(max : far)
+        for (int i = 0; i < row_lanes; ++i) {
+            const real v = b == a ? q[i] : 0.25 * ((q[i] + q[i - below]) + (q[i + above] + q[i + above - below]));
+            k[component(b)][static_cast<std::size_t>(i)] = scale * v;
+            far = std::max(far, std::abs(scale * v));
+        }
+        farthest = std::max(farthest, far);
+    }
+    if (!(farthest <= 1)) return false;
+    const auto trace = [&](real sign) {
+        for (std::size_t b = 0; b < D; ++b)
+            for (std::size_t i = 0; i < row_lanes; ++i) half[b][i] = 0.5 * sign * k[b][i];
+        real far = 0;
+        for (int b = 0; b < D; ++b) {
+            const auto& u = before_[b];
+            Eight v;
+            sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(half, a, b), v);
+            for (std::size_t i = 0; i < row_lanes; ++i) {
+                from[component(b)][i] = sign * dt * frame_.inv_h[b] * v[i];
+                far = std::max(far, std::abs(from[component(b)][i]));
+            }
+        }
+        return far <= 1;
+    };
+    if (!trace(-1)) return false;
+    const auto& u = before_[a];
+    const std::size_t first = u.linear(I);
+    const std::ptrdiff_t sy = u.stride(1), sz = D == 3 ? u.stride(D - 1) : 0;
+    const auto departure = hats_of<D>(from, a, a);
+    sample_near<D>(u.data() + first, sy, sz, departure, to);
+    if constexpr (Correct) {
+        Eight low, high, back;
+        bounds_near<D>(u.data() + first, sy, sz, departure, low, high);
+        if (!trace(1)) return false;
+        sample_near<D>(predicted_[a].data() + first, sy, sz, hats_of<D>(from, a, a), back);
+        for (std::size_t i = 0; i < row_lanes; ++i) to[i] = std::min(std::max(to[i] + 0.5 * (u[first + i] - back[i]), low[i]), high[i]);
+    }
+    return true;
+}
+
+namespace {
+
+/// A column on its way up: places in memory of its lowest face and cell, and the run that comes next or has begun.
+template <int D>
+struct ColumnUp {
+    typename TallPressure<D>::RunsUp runs;
+    Index<D> foot;
+    std::size_t face, cell;
+    std::ptrdiff_t below;  // to the cell on the other side of the face
+    int begin = 0, end = 0;
+    bool moves = false;
+};
+
+}  // namespace
+
+/// One pass over all faces with φ < near beside them, and over the runs of tall cells, which are advected once (`runs_from`: where that has
+/// been done). Eight columns go up together, since what stands beside one another stands together in memory.
+template <int D>
+template <bool Correct>
+void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
+                        MacVelocity<D>& to, const MacVelocity<D>* runs_from) const {
     const Layout<D>& layout = mesh.layout();
-    const int up = layout.up;
-    const auto centre = [&](int a, const Index<D>& I) {
-        Vec<D> s;
-        for (int d = 0; d < D; ++d) s[d] = I[d] + (d == a ? 0.0 : 0.5);
-        return s;
-    };
-    const auto tall = [&](int a, Index<D> I, const Run& run) {
-        I[up] = run.row;
-        Vec<D> s = centre(a, I);
-        const real bottom = s[up];
-        const auto change = [&](real row) {
-            s[up] = bottom + (row - run.row);
-            return departed(a, s, dt) - at_point(before_[a], a, s);
-        };
-        const Pair both{change(run.middle() - run.spread()), change(run.middle() + run.spread())};
-        const std::size_t first = to[a].linear(I), stride = static_cast<std::size_t>(to[a].stride(up));
-        spread_rows(0, run.count, both, [&](int row, real by) {
-            const std::size_t face = first + static_cast<std::size_t>(row) * stride;
-            to[a][face] = before_[a][face] + by;
-        });
-    };
-    const auto regular = [&](int a, Index<D> I, int row) {
-        I[up] = row;
-        if (std::min(phi(frame_.near(I, a, -1)), phi(frame_.near(I, a, 0))) < near) to[a](I) = value(a, centre(a, I), before_[a](I));
-    };
-    constexpr int together = 8;
-    const int blocks = (layout.columns() + together - 1) / together;
+    const int up = layout.up, blocks = (layout.columns() + row_lanes - 1) / row_lanes;
+    constexpr int never = std::numeric_limits<int>::max();
     for (int a = 0; a < D; ++a) {
         const int first = a == up ? 1 : 0, last = a == up && sides.open(up, 1) ? layout.rows + 1 : layout.rows;
+        const auto face_stride = static_cast<std::size_t>(to[a].stride(up)), cell_stride = static_cast<std::size_t>(phi.stride(up));
         parallel_for(0, blocks, [&](int block) {
-            const int begin = block * together, end = std::min(layout.columns(), begin + together);
-            std::array<typename TallPressure<D>::RunsUp, together> runs;
-            for (int c = begin; c < end; ++c) runs[static_cast<std::size_t>(c - begin)] = mesh.runs_up(a, c);
-            for (int row = first; row < last; ++row)
-                for (int c = begin; c < end; ++c) {
-                    auto& next = runs[static_cast<std::size_t>(c - begin)];
-                    if (!next.any_faces()) continue;
-                    if (!next.reaches(row))
-                        regular(a, layout.foot(c), row);
-                    else if (next.run().row == row)
-                        tall(a, layout.foot(c), next.run());
+            const int c0 = block * row_lanes, count = std::min(layout.columns() - c0, row_lanes);
+            std::array<ColumnUp<D>, row_lanes> columns;
+            for (int i = 0; i < count; ++i) {
+                ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
+                column.runs = mesh.runs_up(a, c0 + i);
+                column.foot = layout.foot(c0 + i);
+                column.face = to[a].linear(column.foot);
+                column.cell = phi.linear(column.foot);
+                column.below = a == up ? -static_cast<std::ptrdiff_t>(cell_stride)
+                                       : static_cast<std::ptrdiff_t>(phi.linear(frame_.near(column.foot, a, -1))) -
+                                             static_cast<std::ptrdiff_t>(column.cell);
+                if (!column.runs.any_faces()) column.end = never;  // a wall: as if all of it lay in one run that others move
+            }
+            const auto next_run = [&](ColumnUp<D>& column, int row) {
+                const bool more = column.runs.reaches(row) || column.runs.ahead();
+                column.begin = more ? column.runs.run().row : never, column.end = more ? column.begin + column.runs.run().count : never;
+                if (!more) return;
+                if (!runs_from) return move_run(a, column.foot, up, column.runs.run(), dt, to[a]);
+                for (int r = column.begin; r < column.end; ++r) {
+                    const std::size_t face = column.face + static_cast<std::size_t>(r) * face_stride;
+                    to[a][face] = (*runs_from)[a][face];
                 }
+            };
+            const bool beside = layout.axes[0] == 0 && count == row_lanes && columns[0].foot[0] + row_lanes <= frame_.cells[0];
+            for (int row = first; row < last;) {
+                int until = last, moving = 0;
+                for (int i = 0; i < count; ++i) {
+                    ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
+                    if (row >= column.end) next_run(column, row);
+                    column.moves = row < column.begin;
+                    if (!column.moves) {
+                        until = std::min(until, column.end);
+                        continue;
+                    }
+                    until = row + 1;
+                    const std::size_t cell = column.cell + static_cast<std::size_t>(std::min(row, layout.rows - 1)) * cell_stride;
+                    const std::size_t below =
+                        row == layout.rows ? cell : static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + column.below);
+                    column.moves = std::min(phi[cell], phi[below]) < near;
+                    moving += column.moves;
+                }
+                if (moving > 0) {
+                    Index<D> I = columns[0].foot;
+                    I[up] = row;
+                    bool inner = beside;
+                    for (int d = 1; d < D; ++d) inner = inner && I[d] >= 2 && I[d] + 2 < frame_.cells[d];
+                    Eight value;
+                    const bool together = inner && move_eight<Correct>(a, I, dt, value);
+                    for (int i = 0; i < count; ++i) {
+                        const ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
+                        if (!column.moves) continue;
+                        I = column.foot;
+                        I[up] = row;
+                        real& u = to[a][column.face + static_cast<std::size_t>(row) * face_stride];
+                        if (together && I[0] >= 2 && I[0] + 2 < frame_.cells[0])
+                            u = value[static_cast<std::size_t>(i)];
+                        else if constexpr (Correct)
+                            u = corrected(a, face_place(a, I), before_[a](I), dt);
+                        else
+                            u = departed(a, face_place(a, I), dt);
+                    }
+                }
+                row = until;
+            }
         });
     }
     sync_periodic(to, sides);

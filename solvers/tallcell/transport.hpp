@@ -3,6 +3,7 @@
 // their run do, linearly between: what rows the mesh restricts to its samples is that of the lattice plus the samples' own change.
 #pragma once
 #include "surface/marker_motion.hpp"
+#include "tallcell/near_rows.hpp"
 #include "tallcell/pressure.hpp"
 
 namespace weir::tallcell {
@@ -17,9 +18,12 @@ public:
     std::size_t bytes() const { return before_.bytes() + predicted_.bytes(); }
 
 private:
-    template <class Value>
-    void for_faces(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
-                   MacVelocity<D>& to, Value&& value) const;
+    template <bool Correct>
+    void pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
+              MacVelocity<D>& to, const MacVelocity<D>* runs_from) const;
+    void move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to) const;
+    template <bool Correct>
+    bool move_eight(int a, const Index<D>& I, real dt, Eight& to) const;
     real at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const;
     Stencil<D> stencil(const Vec<D>& s) const;
     Vec<D> moved(const Vec<D>& s, const Vec<D>& here, real dt) const;

@@ -46,7 +46,7 @@ TEST_IN_2D_AND_3D("the preconditioner is symmetric and positive") {
     real aMb = 0, bMa = 0, aMa = 0;
     for (std::size_t i = 0; i < a.size(); ++i) aMb += a[i] * Mb[i], bMa += b[i] * Ma[i], aMa += a[i] * Ma[i];
     EXPECT_GT(aMa, 0);
-    EXPECT_NEAR(aMb, bMa, 1e-12 * aMa);
+    EXPECT_NEAR(aMb, bMa, 3e-6 * aMa);  // single precision, 2^-24, through some fifty operations one after another
 }
 
 }  // namespace
