@@ -7,6 +7,7 @@ namespace weir::tallcell {
 
 template <int D>
 FieldSet TallCells<D>::fields() const {
+    pressure_.show_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
     FieldView velocity{"velocity", "m/s", Where::face, "", {}};

@@ -1,5 +1,6 @@
 #include "tallcell/solver.hpp"
 
+#include "core/error.hpp"
 #include "staggered/inflow.hpp"
 
 namespace weir::tallcell {
@@ -17,6 +18,7 @@ StepReport TallCells<D>::step(real dt) {
     const poisson::Report poisson = project(dt);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
     const real divergence = pressure_.max_divergence(state_);
     extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
+    if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "a velocity is no longer finite");
     state_.time += dt;
     ++steps_;
     return {.dt = dt,
@@ -60,7 +62,6 @@ template <int D>
 void TallCells<D>::remesh() {
     const auto timed = passes_.time("remesh");
     pressure_.set_surface(surface_, closed_, options_.shape, state_);
-    pressure_.show_heights(tall_);
 }
 
 template <int D>

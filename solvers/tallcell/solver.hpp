@@ -39,6 +39,7 @@ public:
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
+    bool checks_itself() const override { return true; }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
@@ -84,7 +85,7 @@ private:
     Transport<D> transport_;
     Extrapolation<D> extrapolate_;
     FaceMarks<D> known_;
-    Grid<real, D> tall_;  // rows of the element that a cell lies in, as shown
+    mutable Grid<real, D> tall_;  // height of the element that a cell lies in [m], made when it is shown
     real volume_target_ = 0, volume_shift_ = 0;
     real rate_ = 0;  // max |u|/h over known faces [1/s]
     std::int64_t steps_ = 0;

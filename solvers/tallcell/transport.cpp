@@ -13,24 +13,15 @@ Transport<D>::Transport(const Frame<D>& frame, const MacVelocity<D>& u, bool mac
 template <int D>
 void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt,
                               MacVelocity<D>& u) {
-    const auto copy = [&](MacVelocity<D>& to) {
-        for (int a = 0; a < D; ++a) {
-            const std::size_t planes = static_cast<std::size_t>(u[a].extent()[D - 1]), plane = u[a].size() / planes;
-            parallel_for(0, static_cast<int>(planes), [&](int k) {
-                const std::size_t first = static_cast<std::size_t>(k) * plane;
-                std::copy_n(u[a].data() + first, plane, to[a].data() + first);
-            });
-        }
-    };
-    copy(before_);
+    up_ = mesh.layout().up, open_above_ = sides.open(up_, 1);
+    for (int a = 0; a < D; ++a) before_[a].swap(u[a]);  // every face of u is written below
     const real h = frame_.h_max();
     if (!maccormack_) {
         pass<false>(mesh, phi, sides, dt, 2 * h, u, nullptr);
         return;
     }
-    copy(predicted_);
-    pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_, nullptr);
-    pass<true>(mesh, phi, sides, dt, 2 * h, u, &predicted_);
+    pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_, &u);
+    pass<true>(mesh, phi, sides, dt, 2 * h, u, nullptr);
 }
 
 namespace {
@@ -160,7 +151,7 @@ Vec<D> face_place(int a, const Index<D>& I) {
 
 /// Rows of a tall cell all change as their run's Gauss points do, linearly between.
 template <int D>
-void Transport<D>::move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to) const {
+void Transport<D>::move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const {
     I[up] = run.row;
     Vec<D> s = face_place(a, I);
     const real bottom = s[up];
@@ -175,6 +166,7 @@ void Transport<D>::move_run(int a, Index<D> I, int up, const Run& run, real dt, 
     spread_rows(0, run.count, both, [&](int row, real by) {
         const std::size_t face = first + static_cast<std::size_t>(row) * stride;
         to[face] = before_[a][face] + by;
+        if (also) (*also)[face] = to[face];
     });
 }
 
@@ -247,12 +239,13 @@ struct ColumnUp {
 
 }  // namespace
 
-/// One pass over all faces with φ < near beside them, and over the runs of tall cells, which are advected once (`runs_from`: where that has
-/// been done). Eight columns go up together, since what stands beside one another stands together in memory.
+/// One pass over all faces. Those with φ < near beside them move; the others stay as they are. Runs of tall cells are advected once, in the
+/// first pass (`runs_too`: where they are to stand as well). Eight columns go up together, since what stands beside one another stands
+/// together in memory.
 template <int D>
 template <bool Correct>
 void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
-                        MacVelocity<D>& to, const MacVelocity<D>* runs_from) const {
+                        MacVelocity<D>& to, MacVelocity<D>* runs_too) const {
     const Layout<D>& layout = mesh.layout();
     const int up = layout.up, blocks = (layout.columns() + row_lanes - 1) / row_lanes;
     constexpr int never = std::numeric_limits<int>::max();
@@ -271,17 +264,18 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                 column.below = a == up ? -static_cast<std::ptrdiff_t>(cell_stride)
                                        : static_cast<std::ptrdiff_t>(phi.linear(frame_.near(column.foot, a, -1))) -
                                              static_cast<std::ptrdiff_t>(column.cell);
-                if (!column.runs.any_faces()) column.end = never;  // a wall: as if all of it lay in one run that others move
+                if (column.runs.any_faces()) continue;
+                column.end = never;  // a wall: as if all of it lay in one run, which others move
+                for (int row = 0; row < layout.rows; ++row) {
+                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
+                    to[a][face] = before_[a][face];
+                }
             }
             const auto next_run = [&](ColumnUp<D>& column, int row) {
                 const bool more = column.runs.reaches(row) || column.runs.ahead();
                 column.begin = more ? column.runs.run().row : never, column.end = more ? column.begin + column.runs.run().count : never;
-                if (!more) return;
-                if (!runs_from) return move_run(a, column.foot, up, column.runs.run(), dt, to[a]);
-                for (int r = column.begin; r < column.end; ++r) {
-                    const std::size_t face = column.face + static_cast<std::size_t>(r) * face_stride;
-                    to[a][face] = (*runs_from)[a][face];
-                }
+                if constexpr (!Correct)
+                    if (more) move_run(a, column.foot, up, column.runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
             };
             const bool beside = layout.axes[0] == 0 && count == row_lanes && columns[0].foot[0] + row_lanes <= frame_.cells[0];
             for (int row = first; row < last;) {
@@ -300,6 +294,8 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                         row == layout.rows ? cell : static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + column.below);
                     column.moves = std::min(phi[cell], phi[below]) < near;
                     moving += column.moves;
+                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
+                    if (!column.moves) to[a][face] = before_[a][face];
                 }
                 if (moving > 0) {
                     Index<D> I = columns[0].foot;
@@ -326,7 +322,22 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
             }
         });
     }
+    keep_sides(to);
     sync_periodic(to, sides);
+}
+
+/// Faces on the sides of the domain that no column has on its lower side.
+template <int D>
+void Transport<D>::keep_sides(MacVelocity<D>& to) const {
+    for (int a = 0; a < D; ++a) {
+        Index<D> lo{}, hi = to[a].extent();
+        hi[a] = 1;
+        for_each_in(lo, hi, [&](Index<D> I) {
+            if (I[a] == 0 && a == up_) to[a](I) = before_[a](I);
+            I[a] = frame_.cells[a];
+            if (a != up_ || !open_above_) to[a](I) = before_[a](I);
+        });
+    }
 }
 
 template class Transport<2>;

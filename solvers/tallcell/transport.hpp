@@ -20,8 +20,9 @@ public:
 private:
     template <bool Correct>
     void pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
-              MacVelocity<D>& to, const MacVelocity<D>* runs_from) const;
-    void move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to) const;
+              MacVelocity<D>& to, MacVelocity<D>* runs_too) const;
+    void keep_sides(MacVelocity<D>& to) const;
+    void move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const;
     template <bool Correct>
     bool move_eight(int a, const Index<D>& I, real dt, Eight& to) const;
     real at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const;
@@ -32,7 +33,8 @@ private:
     real corrected(int a, const Vec<D>& s, real here, real dt) const;
 
     Frame<D> frame_;
-    bool maccormack_ = true;
+    bool maccormack_ = true, open_above_ = false;
+    int up_ = 1;
     int reach_ = 1;  // cells that a point may travel in one step
     MacVelocity<D> before_, predicted_;
 };
