@@ -1,5 +1,6 @@
 #include "tallcell/transport.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace weir::tallcell {
@@ -170,6 +171,50 @@ void Transport<D>::move_run(int a, Index<D> I, int up, const Run& run, real dt, 
     });
 }
 
+/// The same of eight columns beside one another along x that have the same run. False, and nothing done, where a point comes too near to a
+/// side or moves too far.
+template <int D>
+bool Transport<D>::move_run_of_eight(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const {
+    for (int d = 1; d < D; ++d)
+        if (d != up && (I[d] < 2 || I[d] + 2 >= frame_.cells[d])) return false;
+    const auto at = [](int i) { return static_cast<std::size_t>(i); };
+    std::array<Eight, 2> change;
+    for (const int point : {0, 1}) {
+        const real y = run.middle() + (point == 0 ? -run.spread() : run.spread());
+        I[up] = static_cast<int>(std::lround(y));
+        if (I[up] < 2 || I[up] + 2 >= frame_.cells[up]) return false;
+        Moved<D> d{};
+        d[at(up)].fill(y - I[up]);
+        Moved<D> from = d;
+        Eight here{}, k{};
+        for (int b = 0; b < D; ++b) {
+            const auto& u = before_[b];
+            sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(d, a, b), k);
+            if (b == a) here = k;
+            for (std::size_t i = 0; i < row_lanes; ++i) {
+                from[at(b)][i] -= dt * frame_.inv_h[b] * k[i];
+                if (!(std::abs(from[at(b)][i]) <= 1)) return false;
+            }
+        }
+        const auto& u = before_[a];
+        sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(from, a, a), change[at(point)]);
+        for (std::size_t i = 0; i < row_lanes; ++i) change[at(point)][i] -= here[i];
+    }
+    I[up] = run.row;
+    const std::size_t first = to.linear(I), stride = static_cast<std::size_t>(to.stride(up));
+    const real c = 0.5 * (run.count - 1), sigma = run.count > 1 ? run.spread() : 1;
+    for (int row = 0; row < run.count; ++row) {
+        const std::size_t face = first + at(row) * stride;
+        const real xi = (row - c) / sigma;
+        for (std::size_t i = 0; i < row_lanes; ++i) {
+            const real by = 0.5 * ((change[0][i] + change[1][i]) + xi * (change[1][i] - change[0][i]));
+            to[face + i] = before_[a][face + i] + by;
+            if (also) (*also)[face + i] = to[face + i];
+        }
+    }
+    return true;
+}
+
 /// Eight faces beside one another along x, all at least two cells from the ends of the other axes. False, and nothing done, where a point
 /// moves farther than a cell.
 template <int D>
@@ -273,16 +318,36 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
             }
             const auto next_run = [&](ColumnUp<D>& column, int row) {
                 const bool more = column.runs.reaches(row) || column.runs.ahead();
-                column.begin = more ? column.runs.run().row : never, column.end = more ? column.begin + column.runs.run().count : never;
-                if constexpr (!Correct)
-                    if (more) move_run(a, column.foot, up, column.runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
+                column.begin = more ? column.runs.run().row : never;
+                column.end = more ? column.begin + column.runs.run().count : never;
+                return more;
+            };
+            const auto move_one = [&](const ColumnUp<D>& column) {
+                move_run(a, column.foot, up, column.runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
+            };
+            /// All eight columns come to their next run; where it has the same rows in all, it moves in all at once.
+            const auto next_runs = [&](int row) {
+                bool alike = true;
+                for (auto& column : columns) {
+                    next_run(column, row);
+                    alike = alike && column.begin == columns[0].begin && column.end == columns[0].end;
+                }
+                if (Correct) return;
+                alike = alike && columns[0].begin != never &&
+                        move_run_of_eight(a, columns[0].foot, up, columns[0].runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
+                for (auto& column : columns) {
+                    const bool at_side = column.foot[0] < 2 || column.foot[0] + 2 >= frame_.cells[0];
+                    if (column.begin != never && (!alike || at_side)) move_one(column);
+                }
             };
             const bool beside = layout.axes[0] == 0 && count == row_lanes && columns[0].foot[0] + row_lanes <= frame_.cells[0];
             for (int row = first; row < last;) {
                 int until = last, moving = 0;
+                if (beside && std::all_of(columns.begin(), columns.end(), [&](const auto& column) { return row >= column.end; }))
+                    next_runs(row);
                 for (int i = 0; i < count; ++i) {
                     ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
-                    if (row >= column.end) next_run(column, row);
+                    if (row >= column.end && next_run(column, row) && !Correct) move_one(column);
                     column.moves = row < column.begin;
                     if (!column.moves) {
                         until = std::min(until, column.end);

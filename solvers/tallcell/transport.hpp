@@ -23,6 +23,7 @@ private:
               MacVelocity<D>& to, MacVelocity<D>* runs_too) const;
     void keep_sides(MacVelocity<D>& to) const;
     void move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const;
+    bool move_run_of_eight(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const;
     template <bool Correct>
     bool move_eight(int a, const Index<D>& I, real dt, Eight& to) const;
     real at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const;
