@@ -1,6 +1,7 @@
 #include "core/parallel.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace weir {
 
@@ -15,7 +16,7 @@ int threads() {
     return worth_of_work > 0 ? std::min(worth_of_work, available) : available;
 }
 
-void set_threads(int count) { chosen_threads = std::max(0, count); }
+int set_threads(int count) { return std::exchange(chosen_threads, std::max(0, count)); }
 
 ThreadsWorth::ThreadsWorth(long cells) : before_(worth_of_work) {
     worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_a_thread, 1, 1 << 20));

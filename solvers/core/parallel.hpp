@@ -14,7 +14,7 @@ namespace weir {
 /// OpenMP's runtime lets them: a program that embeds the library sets GOMP_SPINCOUNT (or OMP_WAIT_POLICY) in its environment before it
 /// starts, since libgomp reads them before main.
 int threads();
-void set_threads(int count);  // 0: the default again
+int set_threads(int count);  // 0: the default again; gives back what had been set
 
 /// While it lives, loops of the calling thread are those of a problem of so many cells: below cells_a_thread for each thread, waiting for
 /// one another takes longer than the work that is shared. Without effect where a number of threads was set.

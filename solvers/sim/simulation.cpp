@@ -92,6 +92,11 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }
 
+int Simulation::threads() const {
+    const ThreadsWorth worth(cells_of(scene_));
+    return weir::threads();
+}
+
 StepReport Simulation::step() { return step_towards(next_target()); }
 
 void Simulation::run_until(real t) {

@@ -48,6 +48,8 @@ public:
     bool has_frames() const { return every_ < infinity; }  // others than the first and the last
     std::int64_t frame() const { return frame_; }
 
+    /// Threads that a step takes: as many as were set, else those that the scene has work for (ThreadsWorth).
+    int threads() const;
     FieldSet fields() const { return static_cast<const Solver&>(*solver_).fields(); }
     Solver& solver() { return *solver_; }
     const Solver& solver() const { return *solver_; }

@@ -56,15 +56,18 @@ void take_device(CostPoint& point, const scene::Scene& scene) {
 /// The threads that a method asks for, while it is measured.
 class OwnThreads {
 public:
-    explicit OwnThreads(std::optional<int> count) : before_(threads()) {
-        if (count) set_threads(*count > 0 ? *count : omp_get_num_procs());
+    explicit OwnThreads(std::optional<int> count) : named_(count) {
+        if (count) before_ = set_threads(*count > 0 ? *count : omp_get_num_procs());
     }
-    ~OwnThreads() { set_threads(before_); }
+    ~OwnThreads() {
+        if (named_) set_threads(before_);
+    }
     OwnThreads(const OwnThreads&) = delete;
     OwnThreads& operator=(const OwnThreads&) = delete;
 
 private:
-    int before_;
+    std::optional<int> named_;
+    int before_ = 0;
 };
 
 /// Medians, so that one disturbed run says nothing.
@@ -101,7 +104,7 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
             RunOptions run = run_options(study, method, options);
             run.at_start = [&](const RunRecord& start) { check_metric(study.error, start, reference); };
             const RunRecord record = run_scene(std::move(scene), run, solvers);
-            point.steps = record.steps(), point.bytes = record.simulation->solver().bytes();
+            point.threads = record.simulation->threads(), point.steps = record.steps(), point.bytes = record.simulation->solver().bytes();
             if (record.failure) {
                 point.failure = (record.seconds > run.time_limit ? "stopped at " : "diverged at ") + *record.failure;
                 break;

@@ -26,7 +26,7 @@ struct CostPoint {
     std::size_t bytes = 0;                 // held by the solver
     std::optional<std::string> failure{};  // why there is no error or no price, as the table says it
     bool on_front = false;                 // nothing else in the study is both cheaper and more accurate
-    int threads = 0;                       // that it ran on
+    int threads = 0;                       // that a step took: fewer than there are where a setting has little work
     std::string device{};                  // where its backend is a device: which
     std::string device_kind{};             // GPU, CPU, accelerator
 

@@ -48,15 +48,23 @@ std::vector<std::string> notes(const StudyResult& result) {
     std::vector<std::string> list;
     std::set<std::string> devices;
     std::set<int> threads;
+    const auto one_number = [&](const CostPoint& of) {  // of threads, for all settings of the method
+        return std::all_of(result.points.begin(), result.points.end(),
+                           [&](const CostPoint& p) { return p.method != of.method || !p.was_run() || p.threads == of.threads; });
+    };
+    const auto on_processor = [](const CostPoint& p) { return p.device.empty() && p.was_run(); };
     for (const CostPoint& p : result.points) {
         if (!p.device.empty() && devices.insert(p.device).second)
             list.push_back(fmt::format("{}: {}{}.", methods_where(result, [&](const CostPoint& q) { return q.device == p.device; }),
                                        p.device, p.device_kind == "GPU" ? "" : "; this is no GPU"));
-        if (p.device.empty() && p.threads != result.threads && p.was_run() && threads.insert(p.threads).second)
-            list.push_back(fmt::format("{}: {} thread{}.",
-                                       methods_where(result, [&](const CostPoint& q) { return q.threads == p.threads; }), p.threads,
-                                       p.threads == 1 ? "" : "s"));
+        if (on_processor(p) && p.threads != result.threads && one_number(p) && threads.insert(p.threads).second)
+            list.push_back(fmt::format(
+                "{}: {} thread{}.",
+                methods_where(result, [&](const CostPoint& q) { return on_processor(q) && q.threads == p.threads && one_number(q); }),
+                p.threads, p.threads == 1 ? "" : "s"));
     }
+    if (const auto mixed = methods_where(result, [&](const CostPoint& q) { return on_processor(q) && !one_number(q); }); !mixed.empty())
+        list.push_back(fmt::format("{}: settings with little work take fewer threads (column threads).", mixed));
     list.push_back(result.source.empty() ? "Compared with no reference: the error is one that every run shows of itself."
                                          : fmt::format("Compared with: {}.", result.source));
     return list;

@@ -164,8 +164,11 @@ std::string chart_legend(const Panel& p) {
 
 std::string map_svg(const Map& m) {
     constexpr double cell_h = 34, x0 = 104, y0 = 34, letter = 7.4;
-    double cell_w = 82;
-    for (const std::string& x : m.x) cell_w = std::max(cell_w, letter * static_cast<double>(x.size()) + 12);
+    double cell_w = 56;  // no wider than what stands in it, so that a map of many columns can be read on a narrow page
+    const auto room_for = [&](const std::string& text) { cell_w = std::max(cell_w, letter * static_cast<double>(text.size()) + 12); };
+    for (const std::string& x : m.x) room_for(x);
+    for (const auto& column : m.cells)
+        for (const MapCell& c : column) room_for(c.text);
     const double w = x0 + cell_w * static_cast<double>(m.x.size()) + 16, rows = static_cast<double>(m.y.size());
     const double below = y0 + cell_h * rows, legend = below + 56, full = std::max(w, 560.0);
     std::string s = opening(full, legend + 22 * static_cast<double>(m.kinds.size() + 1) + 4, m.title);

@@ -189,6 +189,17 @@ TEST("a backend that is not here leaves its row with the reason, and the study g
     EXPECT_EQ(notes(result).front(), "here: 3 threads.");
 }
 
+TEST("a setting is measured, and its row says so, on the threads that it has work for, whatever the method before it had") {
+    const test::TemporaryFolder folder;
+    const auto study = add(folder.path(), head + "[[methods]]\nname = \"own\"\nthreads = 3\n[[methods]]\nname = \"small\"\n");
+    const int before = set_threads(0);
+    const StudyResult result = measure_study(read_study(study, Size::ci), {.repeats = 1}, test::fake_kinds());
+    EXPECT_EQ(set_threads(before), 0) << "a study chooses for nobody after it";
+    ASSERT_EQ(result.points.size(), 2u);
+    EXPECT_EQ(result.points[0].threads, 3);
+    EXPECT_EQ(result.points[1].threads, 1) << "32 cells";
+}
+
 TEST("a run that ends with finite nonsense has diverged, where the study says what nonsense is") {
     const test::TemporaryFolder folder;
     const auto study = add(folder.path(), head + "diverged_above = 2.0\ndiverged_why = \"wrong by itself\"\n[[methods]]\nname = \"a\"\n");
