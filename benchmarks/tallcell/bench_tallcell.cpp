@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <string>
@@ -27,7 +27,7 @@ struct Size {
 struct Entry {
     std::string name;
     std::unique_ptr<Solver> solver;
-    std::vector<real> step_ms;
+    std::vector<real> step_ms, processor_ms;
     std::map<std::string, std::vector<real>> pass_ms;
     int iterations = 0;
 };
@@ -44,6 +44,9 @@ std::unique_ptr<Solver> build(const scene::SolverKind& kind, const Size& size, c
 }
 
 real seconds() { return std::chrono::duration<real>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Of this process: with one thread, what a step takes of a processor, whatever else the machine is doing.
+real processor_seconds() { return static_cast<real>(std::clock()) / CLOCKS_PER_SEC; }
 
 real median(std::vector<real> list) {
     std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
@@ -75,10 +78,11 @@ real rms(const std::vector<real>& a, const std::vector<real>& b) {
 
 void step(Entry& entry, real dt, bool measured) {
     entry.solver->passes().reset();
-    const real start = seconds();
+    const real start = seconds(), processor = processor_seconds();
     const StepReport report = entry.solver->step(dt);
     if (!measured) return;
     entry.step_ms.push_back(1e3 * (seconds() - start));
+    entry.processor_ms.push_back(1e3 * (processor_seconds() - processor));
     entry.iterations += report.iterations;
     for (const auto& pass : entry.solver->passes().list()) entry.pass_ms[pass.name].push_back(1e3 * pass.seconds);
 }
@@ -86,7 +90,7 @@ void step(Entry& entry, real dt, bool measured) {
 void run(const Size& size, int steps, bool csv) {
     std::vector<Entry> entries;
     const auto add = [&](const std::string& name, const scene::SolverKind& kind, const std::string& scheme) {
-        entries.push_back({name, build(kind, size, scheme), {}, {}, 0});
+        entries.push_back({name, build(kind, size, scheme), {}, {}, {}, 0});
     };
     add("uniform (mac_water, grid)", water::kind(), "transfer = \"grid\"");
     add("tall, stacked", tallcell::kind(), fmt::format("columns = \"stacked\", layers = {}", size.layers));
@@ -105,6 +109,7 @@ void run(const Size& size, int steps, bool csv) {
         };
         for (const auto& [name, ms] : entry.pass_ms) row(name, ms);
         row("step", entry.step_ms);
+        row("processor, a step", entry.processor_ms);
         if (csv) continue;
         fmt::print(
             "{:<26} {:.1f} iterations a solve, {:.0f} MiB, {:.2f} times the uniform grid's speed, surface {:.4f} cells (rms) from its\n\n",
