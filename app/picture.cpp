@@ -16,6 +16,7 @@ struct PictureArguments {
     std::string result, field, out;
     double time = -1, range = 0;
     int size = 900, sheet = 1;
+    bool grid = false;
 };
 
 /// One frame, or `sheet` frames evenly spread over the run's times.
@@ -45,11 +46,13 @@ int draw(const PictureArguments& arguments) {
     for (const std::size_t number : frames_of(output::frame_times(folder), arguments)) {
         auto frame = output::read_frame(folder, number, scene.dim());
         picture::particles_as_markers(frame, scene);
+        if (arguments.field.empty() || arguments.field == "water") picture::level_set_as_markers(frame);
+        if (arguments.grid && scene.dim() != 2) throw BadInput("the grid is drawn in pictures of 2D runs");
         const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
         const bool columns = picture::is_of_columns(frame);
         if (field == "water" && !columns && !frame.particles.count("markers") && !picture::has_sea(frame))
             throw BadInput("this run has no markers, and no surface, to draw as water");
-        const picture::View view{scene, frame, field, arguments.size, arguments.range};
+        const picture::View view{scene, frame, field, arguments.size, arguments.range, arguments.grid};
         pictures.push_back(columns ? picture::draw_columns(view) : scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
     }
     const std::filesystem::path out = arguments.out.empty() ? folder / "picture.png" : std::filesystem::path(arguments.out);
@@ -71,6 +74,7 @@ void add_picture(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 20));
     picture->add_option("--range", arguments->range, "Value of the brightest colour (default: the frame's own)");
     picture->add_option("--size", arguments->size, "Pixels of the longer side")->check(CLI::Range(32, 8192));
+    picture->add_flag("--grid", arguments->grid, "Draw the cells that hold liquid, tall ones as they are (2D)");
     picture->add_option("--out", arguments->out, "File to write (default: RESULT/picture.png)");
     picture->callback([arguments, &exit_code] { exit_code = draw(*arguments); });
 }

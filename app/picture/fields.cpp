@@ -50,6 +50,26 @@ void particles_as_markers(output::FrameData& frame, const scene::Scene& scene) {
     }
 }
 
+void level_set_as_markers(output::FrameData& frame) {
+    const auto phi = frame.cells.find(level_set_name);
+    if (phi == frame.cells.end() || frame.particles.count("markers") > 0) return;
+    const auto lattice = sim::Lattice::of_cells(frame.grid);
+    const auto& n = frame.grid.cells;
+    output::Components x(3);
+    std::array<int, 3> I;
+    for (I[2] = 0; I[2] < n[2]; ++I[2])
+        for (I[1] = 0; I[1] < n[1]; ++I[1])
+            for (I[0] = 0; I[0] < n[0]; ++I[0])
+                for (int part = 0; part < 1 << frame.grid.dim; ++part) {
+                    std::array<real, 3> at{};
+                    for (std::size_t a = 0; a < static_cast<std::size_t>(frame.grid.dim); ++a)
+                        at[a] = frame.grid.origin[a] + frame.grid.spacing[a] * (I[a] + (part >> a & 1 ? 0.75 : 0.25));
+                    if (sim::sample(phi->second[0], lattice, {{at[0], at[1], at[2]}}) >= 0) continue;
+                    for (std::size_t a = 0; a < 3; ++a) x[a].push_back(at[a]);
+                }
+    frame.particles["markers"]["position"] = std::move(x);
+}
+
 std::string best_field(const output::FrameData& frame) {
     if (frame.particles.count("markers") || frame.particles.count(surface_set_name) || is_of_columns(frame)) return "water";
     for (const char* name : {"smoke", "temperature"})

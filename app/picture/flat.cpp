@@ -1,5 +1,6 @@
 // 2D pictures: smoke, colour maps of fields, water from its markers, solids in front.
 #include "app/picture/view.hpp"
+#include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "geometry/solids.hpp"
 #include "sim/sampling.hpp"
@@ -133,6 +134,35 @@ void draw_solids(const View& view, const Plane& plane, Canvas& canvas) {
     });
 }
 
+/// Lines around the grid cells that hold liquid. A solver with tall cells says in "cell_height" how high each is, counted from its bottom.
+void draw_grid(const View& view, const Plane& plane, Canvas& canvas) {
+    const auto found = view.frame.cells.find("cell_height");
+    if (found == view.frame.cells.end()) throw BadInput("this run has no field \"cell_height\": only tall cells have a grid to draw");
+    const std::vector<real>& height = found->second[0];
+    const GridView& grid = view.frame.grid;
+    const auto nx = static_cast<std::size_t>(grid.cells[0]);
+    const Colour dark = hex(0x1d3f5e), light = hex(0xbfe2f7);
+    const auto dot = [&](int x, int y) {
+        if (x < 0 || x >= plane.width || y < 0 || y >= plane.height) return;
+        Colour& pixel = canvas.at(x, y);
+        pixel = mix(pixel, pixel[1] < 0.25 ? light : dark, 0.5);
+    };
+    const auto left = [&](int i) { return static_cast<int>(i * grid.spacing[0] / plane.metre); };
+    const auto top = [&](int j) { return plane.height - 1 - static_cast<int>(j * grid.spacing[1] / plane.metre); };
+    for (int i = 0; i < grid.cells[0]; ++i)
+        for (int j = 0; j < grid.cells[1];) {
+            const int rows =
+                static_cast<int>(std::lround(height[static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(j)] / grid.spacing[1]));
+            if (rows == 0) {
+                ++j;
+                continue;
+            }
+            for (int x = left(i); x <= left(i + 1); ++x) dot(x, top(j)), dot(x, top(j + rows));
+            for (int y = top(j + rows); y <= top(j); ++y) dot(left(i), y), dot(left(i + 1), y);
+            j += rows;
+        }
+}
+
 }  // namespace
 
 Canvas draw_2d(const View& view) {
@@ -152,6 +182,7 @@ Canvas draw_2d(const View& view) {
             for (int x = 0; x < plane.width; ++x) canvas.at(x, y) = colours(plane.place(x, y));
         });
     }
+    if (view.grid) draw_grid(view, plane, canvas);
     draw_solids(view, plane, canvas);
     return canvas.smaller(oversampling);
 }

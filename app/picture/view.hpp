@@ -14,10 +14,13 @@ struct View {
     std::string field;  // smoke, speed, vorticity, temperature, pressure, ...; or "water": the markers
     int size = 900;     // pixels of the longer side
     real range = 0;     // of colours: from 0 (or -range) to range; 0: the frame's own
+    bool grid = false;  // 2D: lines between the cells that hold liquid, tall ones as they are
 };
 
 /// Lets a run without a grid be drawn: its particles become markers, on a grid of the scene's domain with 2^D of them to a cell.
 void particles_as_markers(output::FrameData& frame, const scene::Scene& scene);
+/// Lets a run of liquid that has a level set and no markers be drawn as water: 2^D markers to a cell where the level set is negative.
+void level_set_as_markers(output::FrameData& frame);
 /// The field worth showing: water where there are markers, else smoke, temperature, speed.
 std::string best_field(const output::FrameData& frame);
 /// A cell field by name; "speed" and (in 2D) "vorticity" are made from the velocity. Throws BadInput naming what there is.

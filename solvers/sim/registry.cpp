@@ -5,6 +5,7 @@
 #include "pbf/solver.hpp"
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
+#include "tallcell/solver.hpp"
 #include "water/solver.hpp"
 #include "waves/solver.hpp"
 
@@ -14,8 +15,8 @@ namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
     static const std::vector<scene::SolverKind> kinds = {
-        flow::kind(),        water::kind(), studies::transport_kind(),    studies::poisson_kind(), pbf::kind(), sph::kind(),
-        heightfield::kind(), waves::kind(), studies::phase_diagram_kind()};
+        flow::kind(), water::kind(),    studies::transport_kind(), studies::poisson_kind(), pbf::kind(),
+        sph::kind(),  tallcell::kind(), heightfield::kind(),       waves::kind(),           studies::phase_diagram_kind()};
     return kinds;
 }
 

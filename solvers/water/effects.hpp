@@ -1,9 +1,11 @@
 // The effects of the solver "mac_water" by name.
 #pragma once
 #include "staggered/effects.hpp"
-#include "water/frame.hpp"
+#include "surface/frame.hpp"
 
 namespace weir::water {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Forces on the liquid's bulk, which act between momentum and pressure.
 const EffectKinds& body_forces();

@@ -2,12 +2,14 @@
 // front, area times speed flows out; behind and beside them it is closed, so that what surrounds it is neither sucked in nor pushed aside.
 #pragma once
 #include "geometry/shape.hpp"
-#include "water/frame.hpp"
+#include "surface/frame.hpp"
 
 #include <array>
 #include <vector>
 
 namespace weir::water {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
 template <int D>
 struct Emitter {

@@ -1,6 +1,6 @@
 #include "water/pressure.hpp"
 
-#include "water/marker_lanes.hpp"
+#include "surface/marker_lanes.hpp"
 
 #include <algorithm>
 

@@ -6,11 +6,13 @@
 #include "poisson/poisson.hpp"
 #include "staggered/projection.hpp"
 #include "staggered/state.hpp"
-#include "water/level_set.hpp"
+#include "surface/level_set.hpp"
 
 #include <memory>
 
 namespace weir::water {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, hence the matrix's condition.
 inline constexpr real thinnest = 0.02;

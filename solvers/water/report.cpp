@@ -1,5 +1,6 @@
 // What the water shows of itself: fields, integrals, checkpoints.
 #include "staggered/diagnostics.hpp"
+#include "surface/measure.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
@@ -26,83 +27,24 @@ FieldSet Water<D>::fields() const {
     return set;
 }
 
-namespace {
-
-/// Liquid part of a cell; where φ is only continued, in cells that solids close, there is none.
-template <int D>
-real liquid_part(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, const Index<D>& I) {
-    return !closed.empty() && closed(I) ? 0 : surface.fraction(I);
-}
-
-/// Sum over faces of the liquid volume that a face stands for (half of either cell's) times f.
-template <int D, class F>
-real sum_over_faces(const Frame<D>& frame, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, int a, F&& f) {
-    return 0.5 * frame.cell_volume() * sum_over(frame.cells, [&](const Index<D>& I) {
-               const real part = liquid_part(surface, closed, I);
-               return part > 0 ? part * (f(I) + f(I + e<D>(a))) : 0;
-           });
-}
-
-}  // namespace
-
-template <int D>
-real Water<D>::kinetic_energy() const {
-    real energy = 0;
-    for (int a = 0; a < D; ++a)
-        energy += 0.5 * state_.rho *
-                  sum_over_faces(frame_, surface_, closed_, a, [&](const Index<D>& I) { return state_.u[a](I) * state_.u[a](I); });
-    return energy;
-}
-
-template <int D>
-Vec<D> Water<D>::momentum() const {
-    Vec<D> sum;
-    for (int a = 0; a < D; ++a)
-        sum[a] = state_.rho * sum_over_faces(frame_, surface_, closed_, a, [&](const Index<D>& I) { return state_.u[a](I); });
-    return sum;
-}
-
-/// −Σ ρ g·(x − origin) over liquid; a part-filled cell counts at its centre.
-template <int D>
-real Water<D>::potential_energy() const {
-    return -state_.rho * frame_.cell_volume() * sum_over(frame_.cells, [&](const Index<D>& I) {
-        return liquid_part(surface_, closed_, I) * dot(gravity_, frame_.centre(I) - frame_.origin);
-    });
-}
-
-/// Coordinate along the axis where the surface leaves liquid cell I upwards, or −infinity if its upper neighbour is liquid too.
-template <int D>
-real Water<D>::crossing(const Index<D>& I, int axis) const {
-    const real here = surface_.phi(I);
-    if (here >= 0) return -infinity;
-    Index<D> J = I;
-    const real end = frame_.origin[axis] + frame_.h[axis] * frame_.cells[axis];
-    if (!frame_.step(J, axis, 1) || J[axis] < I[axis]) return std::min(end, frame_.centre(I)[axis] - here);
-    const real there = surface_.phi(J);
-    return there < 0 ? -infinity : frame_.centre(I)[axis] + frame_.h[axis] * here / (here - there);
-}
-
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
     const std::string volume_unit = D == 2 ? "m^2" : "m^3", per_depth = D == 2 ? "/m" : "";
-    const Vec<D> p = momentum();
-    const auto furthest = [&](int axis) { return max_over(frame_.cells, [&](const Index<D>& I) { return crossing(I, axis); }); };
-    Index<D> column = frame_.cells;  // the cells at the lower end of x, or of y where gravity is along x
-    column[up_ == 0 ? 1 : 0] = 1;
-    const real height = max_over(column, [&](const Index<D>& I) { return crossing(I, up_); });
+    const Measure<D> measure(frame_, surface_, closed_);
+    const Vec<D> p = measure.momentum(state_.u, state_.rho);
     std::vector<Integral> list = {
         {"volume", volume_unit, surface_.volume()},
         {"marker_volume", volume_unit, markers_.volume * static_cast<real>(markers_.count())},
         {"volume_target", volume_unit, volume_target_},
-        {"kinetic_energy", "J" + per_depth, kinetic_energy()},
-        {"potential_energy", "J" + per_depth, potential_energy()},
+        {"kinetic_energy", "J" + per_depth, measure.kinetic_energy(state_.u, state_.rho)},
+        {"potential_energy", "J" + per_depth, measure.potential_energy(gravity_, state_.rho)},
         {"momentum_x", "kg m/s" + per_depth, p[0]},
         {"momentum_y", "kg m/s" + per_depth, p[1]},
     };
     if constexpr (D == 3) list.push_back({"momentum_z", "kg m/s", p[2]});
-    list.push_back({"front_x", "m", furthest(0)});
-    list.push_back({"top", "m", furthest(up_)});
-    list.push_back({"height_at_x_min", "m", height});
+    list.push_back({"front_x", "m", measure.furthest(0)});
+    list.push_back({"top", "m", measure.furthest(up_)});
+    list.push_back({"height_at_x_min", "m", measure.height_at_lower_end(up_)});
     list.push_back({"markers", "", static_cast<real>(markers_.count())});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     list.push_back({"escaped_markers", "", static_cast<real>(escaped_)});
@@ -145,9 +87,8 @@ template <int D>
 std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
                         (viscosity_ ? viscosity_->bytes() : 0) + closed_.size() + near_solid_.size() + not_solved_for_.size() +
-                        curvature_.size() * sizeof(real);
+                        curvature_.size() * sizeof(real) + in_solids_.bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();
-    for (const auto& faces : solid_faces_) total += faces.size() * (sizeof(SolidFace<D>) + sizeof(Index<D>));
     for (const auto& sum : sums_.sum) total += sum.size() * (sizeof(FaceSum) + 1);  // with its mark
     return total;
 }

@@ -31,6 +31,16 @@ StepReport Water<D>::step(real dt) {
 }
 
 template <int D>
+void Water<D>::place_solids(real t) {
+    if (!solids_.any() || (t > 0 && !solids_.moving())) return;
+    solids_.place(state_, t);
+    for_each_cell(frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
+    surface_.set_closed(closed_);
+    mark_near_solids(solids_.solids(), frame_, near_solid_);
+    in_solids_.find(solids_.solids(), state_, frame_, steps_ == 0);
+}
+
+template <int D>
 void Water<D>::move_surface(real dt) {
     const auto timed = passes_.time("move surface");
     move_markers(markers_, state_.u, frame_, dt, options_.trace, state_.sides, solids_.solids(), near_solid_);
@@ -59,10 +69,10 @@ void Water<D>::momentum_to_faces(real dt) {
         markers_to_faces(markers_, frame_, sums_, state_.u, known_);
     set_fixed_faces();
     impose_emitters(dt, &Emitter<D>::Face::moves);
-    forget_faces_in_solids();
-    extrapolate_(state_.u, known_, surface_, in_solids_, 2);  // liquid cells without a marker, faces at the edge
+    in_solids_.forget(known_);
+    extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
     if (options_.transfer == Transfer::flip) {
-        constrain_velocity_in_solids();
+        in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
         copy_faces_near(markers_, frame_, state_.u, before_);
     }
@@ -93,8 +103,8 @@ void Water<D>::extend_velocity(real dt) {
     const auto timed = passes_.time("extrapolate");
     mark_liquid_faces();
     impose_emitters(dt, &Emitter<D>::Face::moves);
-    extrapolate_(state_.u, known_, surface_, in_solids_, surface_.layers() - 1);
-    constrain_velocity_in_solids();
+    extrapolate_(state_.u, known_, surface_, in_solids_.faces(), surface_.layers() - 1);
+    in_solids_.constrain(state_.u, known_, frame_);
     sync_periodic(state_.u, state_.sides);
     rate_ = max_speed_rate();
 }
@@ -154,7 +164,7 @@ void Water<D>::mark_liquid_faces() {
         known_[static_cast<std::size_t>(a)].fill(0);
         pressure_.for_faces_of_liquid(a, between_cells, on_side);
     }
-    forget_faces_in_solids();
+    in_solids_.forget(known_);
 }
 
 /// The walls' and inflows' own faces, and those that solids close.

@@ -9,11 +9,13 @@
 #include "staggered/projection.hpp"
 #include "staggered/solid_faces.hpp"
 #include "staggered/state.hpp"
+#include "surface/extrapolate.hpp"
+#include "surface/level_set.hpp"
+#include "surface/marker_motion.hpp"
+#include "surface/markers.hpp"
+#include "surface/solid_faces.hpp"
+#include "surface/start.hpp"
 #include "water/emitters.hpp"
-#include "water/extrapolate.hpp"
-#include "water/level_set.hpp"
-#include "water/marker_motion.hpp"
-#include "water/markers.hpp"
 #include "water/pressure.hpp"
 #include "water/transfer.hpp"
 #include "water/viscosity.hpp"
@@ -24,6 +26,8 @@
 #include <vector>
 
 namespace weir::water {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
 /// The registered solver "mac_water".
 scene::SolverKind kind();
@@ -46,14 +50,6 @@ struct WaterOptions {
     real viscosity = 0;  // θ of the viscous solve: ½ Crank–Nicolson, 1 implicit; 0: no viscosity
     bool volume_control = false;
     explicit WaterOptions(const scene::Scene& scene);
-};
-
-/// What a solid does to the liquid's velocity on a face inside it.
-template <int D>
-struct SolidFace {
-    Vec<D> normal, velocity;  // of the solid
-    bool no_slip = false;
-    real value = 0;  // what is to stand there
 };
 
 template <int D>
@@ -80,13 +76,13 @@ public:
     const Markers<D>& markers() const { return markers_; }
 
 private:
-    // Start (water_start.cpp)
+    // Start (start.cpp)
     void read_emitters(const scene::Scene& scene);
     void refuse_buried_emitters(const scene::Scene& scene) const;
     void fill_with_liquid(const scene::Scene& scene);
     void seed_markers();
 
-    // The passes of a step, in order (water.cpp, water_sources.cpp, water_solids.cpp)
+    // The passes of a step, in order (solver.cpp, sources.cpp)
     void place_solids(real t);
     void move_surface(real dt);
     void pour_and_drain(real dt);
@@ -109,15 +105,7 @@ private:
     void control_volume();
     void set_fixed_faces();
     void mark_liquid_faces();
-    void list_faces_in_solids();
-    void forget_faces_in_solids();
-    void constrain_velocity_in_solids();
-    Vec<D> velocity_at_face(int a, const Index<D>& I) const;
     real max_speed_rate() const;
-    real kinetic_energy() const;
-    real potential_energy() const;
-    Vec<D> momentum() const;
-    real crossing(const Index<D>& I, int axis) const;
 
     WaterOptions options_;
     MacState<D> state_;
@@ -128,8 +116,7 @@ private:
     std::vector<Emitter<D>> emitters_;
     Grid<std::uint8_t, D> closed_, near_solid_;
     Grid<std::uint8_t, D> not_solved_for_;  // closed, or an emitter's; allocated only if the scene has emitters
-    FaceLists<D> in_solids_;
-    std::array<std::vector<SolidFace<D>>, D> solid_faces_;  // in the order of in_solids_
+    FacesInSolids<D> in_solids_;
 
     Markers<D> markers_;
     LevelSet<D> surface_;
@@ -148,9 +135,5 @@ private:
     real volume_shift_ = 0;  // how far volume control moved the surface, all steps together [m]
     Passes passes_;
 };
-
-/// φ of the free surface of a shape of liquid: distance to that part of the shape's boundary which is not a wall or a solid.
-template <int D>
-void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, LevelSet<D>& surface);
 
 }  // namespace weir::water

@@ -8,74 +8,6 @@ namespace weir::water {
 
 namespace {
 
-/// Whether the point of the shape's boundary next to x is a contact with a wall or a solid: there the liquid ends, but not at air.
-template <int D>
-bool at_contact(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, const Vec<D>& x, real d) {
-    const real h = frame.h_min(), eps = 1e-4 * h, touching = 1e-6 * h;  // round-off of a distance is far below both
-    Vec<D> n;
-    for (int a = 0; a < D; ++a)
-        n[a] = (liquid.distance(x + eps * Vec<D>::unit(a)) - liquid.distance(x - eps * Vec<D>::unit(a))) / (2 * eps);
-    const Vec<D> boundary = x - d * n;
-    for (int a = 0; a < D; ++a) {
-        if (frame.periodic(a)) continue;
-        // On the ridge between two contacts the gradient points at neither: then the wall's own distance tells.
-        const real lower = x[a] - frame.origin[a], upper = frame.h[a] * frame.cells[a] - lower;
-        if (n[a] < -0.3 && std::abs(lower + d) < touching) return true;
-        if (n[a] > 0.3 && std::abs(upper + d) < touching) return true;
-        if (std::abs(n[a]) < 0.99) continue;  // a boundary that cuts the wall at an angle does not lie on it
-        if (n[a] < 0 && boundary[a] < frame.origin[a] + touching) return true;
-        if (n[a] > 0 && boundary[a] > frame.origin[a] + frame.h[a] * frame.cells[a] - touching) return true;
-    }
-    return !solids.empty() && solids.distance(boundary) < touching && dot(solids.normal(boundary, eps), n) < -0.99;
-}
-
-}  // namespace
-
-template <int D>
-void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, LevelSet<D>& surface) {
-    Grid<real, D> raw(frame.cells);
-    Grid<std::uint8_t, D> known(frame.cells);
-    for_each_cell(frame.cells, [&](const Index<D>& I) {
-        raw(I) = liquid.distance(frame.centre(I));
-        known(I) = std::abs(raw(I)) < surface.cap() && !at_contact(liquid, solids, frame, frame.centre(I), raw(I));
-        surface.phi(I) = known(I) ? raw(I) : raw(I) < 0 ? -surface.cap() : surface.cap();
-    });
-    const auto beside_surface = [&](const Index<D>& I) {
-        for (int d = 0; d < D; ++d)
-            for (const int by : {-1, 1})
-                if ((raw(frame.near(I, d, by)) < 0) != (raw(I) < 0)) return true;
-        return false;
-    };
-    // Beside a contact φ continues linearly from two cells further in: exact for planes. D passes reach the corners of a tank.
-    Grid<std::uint8_t, D> filled = known;
-    for (int pass = 0; pass < D; ++pass) {
-        for_each_cell(frame.cells, [&](const Index<D>& I) {
-            if (known(I) || !beside_surface(I)) return;
-            real sum = 0;
-            int count = 0;
-            for (int d = 0; d < D; ++d)
-                for (const int by : {-1, 1}) {
-                    Index<D> J = I, K = I;
-                    if (!frame.step(J, d, by) || !(K = J, frame.step(K, d, by)) || !known(J) || !known(K)) continue;
-                    const real continued = 2 * surface.phi(J) - surface.phi(K);
-                    if ((continued < 0) != (raw(I) < 0)) continue;
-                    sum += continued;
-                    ++count;
-                }
-            if (count == 0) return;
-            surface.phi(I) = sum / count;
-            filled(I) = 1;
-        });
-        known = filled;
-    }
-    for_each_cell(frame.cells, [&](const Index<D>& I) {
-        if (!known(I) && beside_surface(I)) surface.phi(I) = raw(I);
-    });
-    surface.redistance();
-}
-
-namespace {
-
 template <int D>
 geometry::Solids<D> solids_of(const scene::Scene& scene) {
     return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
@@ -230,7 +162,5 @@ void Water<D>::seed_markers() {
 
 template Water<2>::Water(const scene::Scene&);
 template Water<3>::Water(const scene::Scene&);
-template void start_level_set(const geometry::Shape<2>&, const geometry::Solids<2>&, const Frame<2>&, LevelSet<2>&);
-template void start_level_set(const geometry::Shape<3>&, const geometry::Solids<3>&, const Frame<3>&, LevelSet<3>&);
 
 }  // namespace weir::water

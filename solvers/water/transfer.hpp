@@ -7,13 +7,15 @@
 // Scattering runs over slabs of planes, even slabs first, then odd ones: no two slabs at work share a face, and the order of every sum
 // is the order of the sorted markers, whatever the number of threads.
 #pragma once
-#include "water/markers.hpp"
+#include "surface/markers.hpp"
 
 #include <array>
 #include <cstdint>
 #include <type_traits>
 
 namespace weir::water {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Momentum and weight that markers gave to one face; both grow together, so they lie together.
 struct FaceSum {

@@ -5,12 +5,14 @@
 // Free-slip walls and solids exert no shear; no-slip ones hold the velocity half a cell (walls) or a face away (solids).
 #pragma once
 #include "staggered/state.hpp"
-#include "water/level_set.hpp"
+#include "surface/level_set.hpp"
 
 #include <array>
 #include <vector>
 
 namespace weir::water {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
 template <int D>
 class SurfaceViscosity {

@@ -134,6 +134,14 @@ std::map<std::string, Said> everything() {
                           "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4",
                           "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]",
                           "effects.surface_tension.sigma = 1", "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"})};
+    said["tallcell"] = {liquid,
+                        all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
+                            Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",
+                                  "time.cfl = 0.4", "liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]",
+                                  "scheme.poisson = { tolerance = 1e-6, max_iterations = 100, fixed = false }",
+                                  "scheme = { columns = \"single\", layers = 9, advection = \"semi_lagrangian\" }",
+                                  "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]"}),
+                        {inflow + " } }", walls[1], open_sides[0], "grid.periodic = [\"y\"]"}};
     const Lines flows{"flow = { name = \"constant\", value = [1, 0] }", "flow = { name = \"rotation\", centre = [0, 0], rate = 1 }",
                       "flow = { name = \"single_vortex\", period = 1 }"};
     said["transport"] = {

@@ -1,6 +1,6 @@
-#include "water/level_set.hpp"
+#include "surface/level_set.hpp"
 #include "support.hpp"
-#include "water/extrapolate.hpp"
+#include "surface/extrapolate.hpp"
 #include "water/solver.hpp"
 
 using namespace weir;

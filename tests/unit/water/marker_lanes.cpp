@@ -1,8 +1,8 @@
 // The markers of a cell are moved, and exchange momentum with the faces, together; here each is held against interpolation at its own
 // place.
 #include "support.hpp"
-#include "water/extrapolate.hpp"
-#include "water/marker_motion.hpp"
+#include "surface/extrapolate.hpp"
+#include "surface/marker_motion.hpp"
 #include "water/transfer.hpp"
 
 #include <atomic>

@@ -1,6 +1,6 @@
-#include "water/markers.hpp"
+#include "surface/markers.hpp"
 #include "support.hpp"
-#include "water/marker_motion.hpp"
+#include "surface/marker_motion.hpp"
 
 #include <algorithm>
 

@@ -3,14 +3,14 @@
 #pragma once
 #include "core/parallel.hpp"
 #include "core/types.hpp"
-#include "water/frame.hpp"
+#include "surface/frame.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
-namespace weir::water {
+namespace weir::surface {
 
 /// Repeatable random numbers in [0, 1): a hash (SplitMix64, Steele et al. 2014) of a seed and a few integers, no state.
 real hashed_random(std::uint64_t seed, std::uint64_t a, std::uint64_t b);
@@ -133,4 +133,4 @@ void Markers<D>::retain(Keep&& keep) {
     for_each_array([&](std::vector<real>& array) { array.resize(kept); });
 }
 
-}  // namespace weir::water
+}  // namespace weir::surface

@@ -1,9 +1,9 @@
-#include "water/marker_motion.hpp"
+#include "surface/marker_motion.hpp"
 
 #include "core/parallel.hpp"
-#include "water/marker_lanes.hpp"
+#include "surface/marker_lanes.hpp"
 
-namespace weir::water {
+namespace weir::surface {
 
 template <int D>
 void mark_near_solids(const geometry::Solids<D>& solids, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid) {
@@ -114,4 +114,4 @@ template void move_markers(Markers<3>&, const MacVelocity<3>&, const Frame<3>&, 
 template std::size_t remove_departed(Markers<2>&, const Frame<2>&, const geometry::Sides<2>&);
 template std::size_t remove_departed(Markers<3>&, const Frame<3>&, const geometry::Sides<3>&);
 
-}  // namespace weir::water
+}  // namespace weir::surface

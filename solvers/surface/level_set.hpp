@@ -7,13 +7,13 @@
 // The level set is thus the smooth part of the markers' shape: second order where the grid resolves it, and at rest exactly at rest.
 #pragma once
 #include "core/checkpoint.hpp"
-#include "water/marker_motion.hpp"
-#include "water/markers.hpp"
+#include "surface/marker_motion.hpp"
+#include "surface/markers.hpp"
 
 #include <cstdint>
 #include <vector>
 
-namespace weir::water {
+namespace weir::surface {
 
 template <int D>
 class LevelSet {
@@ -101,4 +101,4 @@ real fraction_below_plane(real value, const Vec<D>& g);
 template <int D>
 real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope);
 
-}  // namespace weir::water
+}  // namespace weir::surface

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace weir::water {
+namespace weir::surface {
 
 using namespace staggered;  // the grid's words are the solver's own
 
@@ -219,4 +219,4 @@ inline real sample_cells(const Grid<real, D>& q, const Stencil<D>& stencil) {
     return sample(q, -1, stencil);
 }
 
-}  // namespace weir::water
+}  // namespace weir::surface

@@ -1,11 +1,11 @@
-#include "water/extrapolate.hpp"
+#include "surface/extrapolate.hpp"
 
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 
 #include <cstring>
 
-namespace weir::water {
+namespace weir::surface {
 
 namespace {
 constexpr std::uint8_t queued = 255;
@@ -225,4 +225,4 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
 template class Extrapolation<2>;
 template class Extrapolation<3>;
 
-}  // namespace weir::water
+}  // namespace weir::surface

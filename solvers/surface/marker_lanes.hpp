@@ -2,7 +2,7 @@
 // reach within half a cell, all read the same few faces around it: loads are shared, no interval is searched for, and the weight of the
 // node at distance k cells from the centre is a hat function of the marker's own distance d:  w_k = max(0, 1 − |d − k|).
 #pragma once
-#include "water/markers.hpp"
+#include "surface/markers.hpp"
 
 #include <cstring>
 #include <utility>
@@ -11,7 +11,7 @@
 #include <immintrin.h>
 #endif
 
-namespace weir::water {
+namespace weir::surface {
 
 inline constexpr int marker_lanes = 8;
 using Lanes = double __attribute__((vector_size(sizeof(double) * marker_lanes)));
@@ -219,4 +219,4 @@ private:
     std::array<CellNodes<D>, D> along_;
 };
 
-}  // namespace weir::water
+}  // namespace weir::surface

@@ -1,10 +1,10 @@
-#include "water/level_set.hpp"
+#include "surface/level_set.hpp"
 
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
-#include "water/marker_lanes.hpp"
+#include "surface/marker_lanes.hpp"
 
-namespace weir::water {
+namespace weir::surface {
 
 /// Part of a cell's width: a marker nearer to the surface than this may be on either side of it.
 constexpr real sure_side = 0.1;
@@ -291,4 +291,4 @@ std::size_t LevelSet<D>::bytes() const {
 template class LevelSet<2>;
 template class LevelSet<3>;
 
-}  // namespace weir::water
+}  // namespace weir::surface

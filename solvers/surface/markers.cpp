@@ -1,9 +1,9 @@
-#include "water/markers.hpp"
+#include "surface/markers.hpp"
 
 #include "core/parallel.hpp"
-#include "water/marker_lanes.hpp"
+#include "surface/marker_lanes.hpp"
 
-namespace weir::water {
+namespace weir::surface {
 
 real hashed_random(std::uint64_t seed, std::uint64_t a, std::uint64_t b) {
     std::uint64_t z = seed * 0x9E3779B97F4A7C15u + a * 0xBF58476D1CE4E5B9u + b * 0x94D049BB133111EBu;
@@ -138,4 +138,4 @@ std::size_t Markers<D>::bytes() const {
 template class Markers<2>;
 template class Markers<3>;
 
-}  // namespace weir::water
+}  // namespace weir::surface

@@ -1,12 +1,12 @@
 // The half of the level set that keeps φ a distance in a band of cells, and measures what it encloses.
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
-#include "water/level_set.hpp"
-#include "water/marker_lanes.hpp"
+#include "surface/level_set.hpp"
+#include "surface/marker_lanes.hpp"
 
 #include <cstring>
 
-namespace weir::water {
+namespace weir::surface {
 
 template <int D>
 void LevelSet<D>::redistance() {
@@ -372,4 +372,4 @@ template real LevelSet<3>::volume() const;
 template real LevelSet<2>::area() const;
 template real LevelSet<3>::area() const;
 
-}  // namespace weir::water
+}  // namespace weir::surface

@@ -3,13 +3,13 @@
 // layer from the known ones, each from finished layers only: one visit a face, and no result depends on threads, on the direction of a
 // sweep, or on a mirror.
 #pragma once
-#include "water/level_set.hpp"
+#include "surface/level_set.hpp"
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-namespace weir::water {
+namespace weir::surface {
 
 template <int D>
 using FaceMarks = std::array<Grid<std::uint8_t, D>, D>;
@@ -54,4 +54,4 @@ private:
     std::vector<std::uint8_t> joins_;  // of one row of faces
 };
 
-}  // namespace weir::water
+}  // namespace weir::surface

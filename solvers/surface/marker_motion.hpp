@@ -2,11 +2,11 @@
 // kept out of solids and inside the domain.
 #pragma once
 #include "geometry/solids.hpp"
-#include "water/markers.hpp"
+#include "surface/markers.hpp"
 
 #include <cstdint>
 
-namespace weir::water {
+namespace weir::surface {
 
 enum class Trace { rk1, rk2, rk3 };
 
@@ -39,4 +39,4 @@ void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& 
 template <int D>
 std::size_t remove_departed(Markers<D>& markers, const Frame<D>& frame, const geometry::Sides<D>& sides);
 
-}  // namespace weir::water
+}  // namespace weir::surface

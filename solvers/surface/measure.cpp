@@ -1,0 +1,62 @@
+#include "surface/measure.hpp"
+
+namespace weir::surface {
+
+/// Sum over faces of the liquid volume that a face stands for (half of either cell's) times f.
+template <int D>
+template <class F>
+real Measure<D>::sum_over_faces(int a, F&& f) const {
+    return 0.5 * frame_.cell_volume() * sum_over(frame_.cells, [&](const Index<D>& I) {
+               const real part = liquid_part(I);
+               return part > 0 ? part * (f(I) + f(I + e<D>(a))) : 0;
+           });
+}
+
+template <int D>
+real Measure<D>::kinetic_energy(const MacVelocity<D>& u, real rho) const {
+    real energy = 0;
+    for (int a = 0; a < D; ++a) energy += 0.5 * rho * sum_over_faces(a, [&](const Index<D>& I) { return u[a](I) * u[a](I); });
+    return energy;
+}
+
+template <int D>
+Vec<D> Measure<D>::momentum(const MacVelocity<D>& u, real rho) const {
+    Vec<D> sum;
+    for (int a = 0; a < D; ++a) sum[a] = rho * sum_over_faces(a, [&](const Index<D>& I) { return u[a](I); });
+    return sum;
+}
+
+template <int D>
+real Measure<D>::potential_energy(const Vec<D>& gravity, real rho) const {
+    return -rho * frame_.cell_volume() *
+           sum_over(frame_.cells, [&](const Index<D>& I) { return liquid_part(I) * dot(gravity, frame_.centre(I) - frame_.origin); });
+}
+
+/// Coordinate along the axis where the surface leaves liquid cell I upwards, or −infinity if its upper neighbour is liquid too.
+template <int D>
+real Measure<D>::crossing(const Index<D>& I, int axis) const {
+    const real here = surface_.phi(I);
+    if (here >= 0) return -infinity;
+    Index<D> J = I;
+    const real end = frame_.origin[axis] + frame_.h[axis] * frame_.cells[axis];
+    if (!frame_.step(J, axis, 1) || J[axis] < I[axis]) return std::min(end, frame_.centre(I)[axis] - here);
+    const real there = surface_.phi(J);
+    return there < 0 ? -infinity : frame_.centre(I)[axis] + frame_.h[axis] * here / (here - there);
+}
+
+template <int D>
+real Measure<D>::furthest(int axis) const {
+    return max_over(frame_.cells, [&](const Index<D>& I) { return crossing(I, axis); });
+}
+
+template <int D>
+real Measure<D>::height_at_lower_end(int up) const {
+    Index<D> column = frame_.cells;
+    column[up == 0 ? 1 : 0] = 1;
+    return max_over(column, [&](const Index<D>& I) { return crossing(I, up); });
+}
+
+template class Measure<2>;
+template class Measure<3>;
+
+}  // namespace weir::surface

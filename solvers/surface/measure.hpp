@@ -1,0 +1,34 @@
+// What liquid below a level set amounts to: energies, momentum, where its surface stands.
+#pragma once
+#include "surface/level_set.hpp"
+
+namespace weir::surface {
+
+/// Sums over the liquid's part of every cell that is not closed; `closed` is empty without solids.
+template <int D>
+class Measure {
+public:
+    Measure(const Frame<D>& frame, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed)
+        : frame_(frame), surface_(surface), closed_(closed) {}
+    real kinetic_energy(const MacVelocity<D>& u, real rho) const;
+    Vec<D> momentum(const MacVelocity<D>& u, real rho) const;
+    /// −Σ ρ g·(x − origin) over liquid; a part-filled cell counts at its centre.
+    real potential_energy(const Vec<D>& gravity, real rho) const;
+    /// The largest coordinate along an axis at which the surface leaves liquid in its direction.
+    real furthest(int axis) const;
+    /// The same of the cells at the lower end of x, or of y where `up` is x.
+    real height_at_lower_end(int up) const;
+
+private:
+    /// Liquid part of a cell; where φ is only continued, in cells that solids close, there is none.
+    real liquid_part(const Index<D>& I) const { return !closed_.empty() && closed_(I) ? 0 : surface_.fraction(I); }
+    real crossing(const Index<D>& I, int axis) const;
+    template <class F>
+    real sum_over_faces(int a, F&& f) const;
+
+    const Frame<D>& frame_;
+    const LevelSet<D>& surface_;
+    const Grid<std::uint8_t, D>& closed_;
+};
+
+}  // namespace weir::surface

@@ -1,0 +1,96 @@
+#include "surface/solid_faces.hpp"
+
+#include "staggered/solid_faces.hpp"
+
+namespace weir::surface {
+
+template <int D>
+void FacesInSolids<D>::find(const geometry::Solids<D>& solids, const MacState<D>& state, const Frame<D>& frame, bool room) {
+    const real deepest = -3 * norm(frame.h), eps = 1e-3 * frame.h_min();
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        const auto& open = state.solid.open[at];
+        faces_[at].clear();
+        solid_[at].clear();
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            if (open[i] >= least_trusted_fraction) continue;
+            const Index<D> I = index_of<D>(open.extent(), i);
+            if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) continue;  // the side's own
+            const Vec<D> x = state.u.face_centre(a, I);
+            if (solids.distance(x) < deepest) continue;
+            faces_[at].push_back(I);
+            solid_[at].push_back({solids.normal(x, eps), solids.velocity(x), solids[solids.nearest(x)].no_slip});
+        }
+        if (!room) continue;
+        faces_[at].reserve(2 * faces_[at].size());
+        solid_[at].reserve(2 * solid_[at].size());
+    }
+}
+
+template <int D>
+void FacesInSolids<D>::forget(FaceMarks<D>& known) const {
+    for (int a = 0; a < D; ++a)
+        for (const Index<D>& I : faces_[static_cast<std::size_t>(a)]) known[static_cast<std::size_t>(a)](I) = 0;
+}
+
+namespace {
+
+/// The mean of the other components' four faces around a face; 0 for those that are not known.
+template <int D>
+Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, const Frame<D>& frame, int a, const Index<D>& I) {
+    Vec<D> v;
+    v[a] = u[a](I);
+    for (int b = 0; b < D; ++b) {
+        if (b == a) continue;
+        const auto& known = marks[static_cast<std::size_t>(b)];
+        real sum = 0;
+        int count = 0;
+        for (const int along : {0, 1}) {
+            real pair = 0;  // the two sides of the face are added first, so that a mirror changes nothing
+            for (const int across : {-1, 0}) {
+                Index<D> J = frame.near(I, a, across);
+                J[b] += along;
+                if (frame.periodic(b)) J[b] %= frame.cells[b];
+                if (known(J) != 0) pair += u[b](J), ++count;
+            }
+            sum += pair;
+        }
+        if (count > 0) v[b] = sum / count;
+    }
+    return v;
+}
+
+}  // namespace
+
+template <int D>
+void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, const Frame<D>& frame) {
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        parallel_for(0, static_cast<int>(solid_[at].size()), [&](int i) {
+            SolidFace& face = solid_[at][static_cast<std::size_t>(i)];
+            const Index<D>& I = faces_[at][static_cast<std::size_t>(i)];
+            if (face.no_slip || known[at](I) == 0) {
+                face.value = face.velocity[a];
+                return;
+            }
+            const Vec<D> v = velocity_at_face<D>(u, known, frame, a, I);
+            face.value = v[a] - face.normal[a] * dot(face.normal, v - face.velocity);
+        });
+    }
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        for (std::size_t i = 0; i < solid_[at].size(); ++i) u[a](faces_[at][i]) = solid_[at][i].value;
+    }
+}
+
+template <int D>
+std::size_t FacesInSolids<D>::bytes() const {
+    std::size_t total = 0;
+    for (const auto& faces : solid_) total += faces.size() * (sizeof(SolidFace) + sizeof(Index<D>));
+    return total;
+}
+
+template class FacesInSolids<2>;
+template class FacesInSolids<3>;
+
+}  // namespace weir::surface

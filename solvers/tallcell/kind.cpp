@@ -1,0 +1,88 @@
+#include "tallcell/kind.hpp"
+
+#include "staggered/initial.hpp"
+#include "staggered/kind.hpp"
+#include "tallcell/solver.hpp"
+
+namespace weir::tallcell {
+
+using scene::Key;
+using scene::Type;
+
+const EffectKinds& body_forces() {
+    static const EffectKinds kinds{gravity()};
+    return kinds;
+}
+
+TallOptions::TallOptions(const scene::Scene& scene) {
+    const auto& scheme = scene.root().table("scheme");
+    const std::string& columns = scheme.text("columns");
+    shape.division = columns == "uniform" ? Division::uniform : columns == "single" ? Division::single : Division::stacked;
+    shape.depth = static_cast<int>(scheme.integer("layers"));
+    maccormack = scheme.text("advection") == "maccormack";
+    const auto& pressure = scheme.table("poisson");
+    poisson.tolerance = pressure.number("tolerance");
+    poisson.max_iterations = static_cast<int>(pressure.integer("max_iterations"));
+    poisson.fixed_iterations = pressure.flag("fixed");
+    cfl = scene.number("time.cfl");
+    volume_control = scene.effect("volume_control") != nullptr;
+}
+
+namespace {
+
+Key scheme_keys() {
+    return scheme_key(
+        {{.name = "columns",
+          .type = Type::choice,
+          .doc =
+              "What lies below the regular cells of a column: one tall cell as in the paper, stacked ones whose height grows with depth, "
+              "or more regular cells (uniform: no tall cell anywhere).",
+          .fallback = std::string("stacked"),
+          .choices = {"stacked", "single", "uniform"}},
+         {.name = "layers",
+          .type = Type::integer,
+          .doc = "Rows of regular cells below the surface, at least. A single tall cell is good for waves up to four times as long.",
+          .fallback = std::int64_t{8},
+          .min = 8},
+         {.name = "advection",
+          .type = Type::choice,
+          .doc = "How velocity is carried: semi-Lagrangian with or without MacCormack's correction.",
+          .fallback = std::string("maccormack"),
+          .choices = {"maccormack", "semi_lagrangian"}},
+         {.name = "poisson",
+          .type = Type::table,
+          .doc = "How the pressure equation is solved: conjugate gradients with multigrid on columns.",
+          .keys = {{.name = "tolerance",
+                    .type = Type::number,
+                    .doc = "Residual over right-hand side.",
+                    .fallback = 1e-8,
+                    .min = 1e-15,
+                    .max = 1},
+                   {.name = "max_iterations", .type = Type::integer, .doc = "More are a failure.", .fallback = std::int64_t{100}, .min = 1},
+                   {.name = "fixed", .type = Type::flag, .doc = "Run exactly max_iterations and take what comes.", .fallback = false}}}});
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "tallcell";
+    schema.doc = "Liquid with a free surface on tall cells: regular cells near the surface, cells as tall as the water is deep below.";
+    schema.dims = {2, 3};
+    schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0, .max = 3.0}}},
+                   scheme_keys(),
+                   initial_keys()};
+    schema.effects = schemas_of(body_forces());
+    schema.effects.push_back({"volume_control",
+                              "Moves the surface, at most a fiftieth of a cell a step, so that the volume stays what it was; the integral "
+                              "\"volume_shift\" tells how far.",
+                              {}});
+    schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
+    return {schema,
+            staggered::make<TallCells>,
+            {{"velocity", "pressure", "level_set", "cell_height"},
+             {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""}};
+}
+
+}  // namespace weir::tallcell

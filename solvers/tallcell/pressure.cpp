@@ -1,0 +1,523 @@
+#include "tallcell/pressure.hpp"
+
+#include "core/scratch.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace weir::tallcell {
+
+using poisson::Cell;
+
+template <int D>
+TallPressure<D>::TallPressure(const Frame<D>& frame, int up, const poisson::Options& options)
+    : frame_(frame), options_(options), solver_(options), largest_cut_(1 + frame.h_max() / frame.h_min() / thinnest) {
+    std::array<bool, D> periodic{};
+    for (int a = 0; a < D; ++a) periodic[at(a)] = frame.periodic(a);
+    layout_ = Layout<D>(frame.cells, up, periodic);
+    A_.n = layout_.n;
+    A_.periodic = layout_.periodic;
+    A_.axes = D - 1;
+    nothing_to_do_.converged = true;
+}
+
+template <int D>
+void TallPressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, const Shape& shape, MacState<D>& state) {
+    const std::uint8_t* layer = surface.layer().data();
+    const auto stride = static_cast<std::size_t>(state.cells.stride(layout_.up));
+    const auto vertical = at(layout_.up);
+    const auto deep = [&](std::size_t cell) {
+        if (layer[cell] != 0) return false;
+        if (!state.solid.any()) return true;
+        // A face of a cell, but for those on the upper sides, has the cell's index on a larger grid.
+        const Index<D> I = frame_.index_of(cell);
+        const auto& open = state.solid.open[vertical];
+        return open(I) == 1 && open(I + e<D>(layout_.up)) == 1;
+    };
+    static_cast<void>(stride);
+    set_surface(surface.phi, closed, state, [&](const auto& layout, const auto& cells, Knots& knots) {
+        place_knots(layout, cells, shape.division, shape.depth, deep, knots);
+    });
+}
+
+template <int D>
+void TallPressure<D>::find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const {
+    const real thin = -thinnest * frame_.h_min();
+    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t from) {
+        for (std::size_t i = from; i < from + at(frame_.cells[0]); ++i)
+            state.cells[i] = !closed.empty() && closed[i] ? Cell::solid : phi[i] < thin ? Cell::fluid : Cell::air;
+    });
+}
+
+template <int D>
+void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>& state) {
+    find_runs(state);
+    assemble(phi, state);
+    if (A_.knots.count() > 0) solver_.setup(A_);
+    for (auto* list : {&b_, &q_, &mean_}) resize_scratch(*list, at(A_.knots.count()));
+}
+
+template <int D>
+template <class Single, class Tall>
+void TallPressure<D>::visit(const MacState<D>& state, int h, int column, Single&& single, Tall&& run) const {
+    const int lower = layout_.lower(column, h), axis = layout_.axes[at(h)];
+    if (lower < 0 || lower == column) return;
+    const Line face = line(state.u[axis], column);
+    const real* open = state.solid.any() ? state.solid.open[at(axis)].data() : nullptr;
+    visit_faces(
+        A_.knots, lower, column, [&](int row) { return !open || open[face(row)] == 1; },
+        [&](int row, const Row& l, const Row& r) { single(face(row), row, l, r); }, run);
+}
+
+template <int D>
+void TallPressure<D>::find_runs(const MacState<D>& state) {
+    const int columns = layout_.columns();
+    for (int h = 0; h < D - 1; ++h) {
+        auto& starts = run_start_[at(h)];
+        starts.resize(at(columns) + 1);
+        const auto nothing = [](std::size_t, int, const Row&, const Row&) {};
+        parallel_for(0, columns, [&](int c) {
+            int count = 0;
+            visit(state, h, c, nothing, [&](const Run&) { ++count; });
+            starts[at(c) + 1] = count;
+        });
+        starts[0] = 0;
+        for (int c = 0; c < columns; ++c) starts[at(c) + 1] += starts[at(c)];
+        resize_scratch(runs_[at(h)], at(starts.back()));
+        resize_scratch(w_[at(h)], at(starts.back()));
+        parallel_for(0, columns, [&](int c) {
+            int i = starts[at(c)];
+            visit(state, h, c, nothing, [&](const Run& run) { runs_[at(h)][at(i++)] = run; });
+        });
+    }
+}
+
+/// 1/θ between a liquid cell and one of air.
+template <int D>
+real TallPressure<D>::cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const {
+    return std::min(1 - phi[air] / phi[liquid], largest_cut_);
+}
+
+template <int D>
+void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& state) {
+    count_beside(state);
+    parallel_for(0, layout_.columns(), [&](int c) {
+        add_vertical(phi, state, c);
+        for (int f = 0; f < A_.faces(); ++f) add_horizontal(phi, state, c, f);
+    });
+}
+
+template <int D>
+void TallPressure<D>::count_beside(const MacState<D>& state) {
+    A_.resize();
+    const int faces = A_.faces();
+    auto &lowest = A_.lowest, &highest = A_.highest;
+    refill_scratch(lowest, at(A_.knots.count() * faces), std::numeric_limits<int>::max());
+    refill_scratch(highest, lowest.size(), -1);
+    parallel_for(0, layout_.columns(), [&](int c) {
+        for (int f = 0; f < faces; ++f) {
+            const bool own_is_lower = f % 2 == 1;
+            const int owner = own_is_lower ? layout_.upper(c, f / 2) : c;
+            if (owner < 0) continue;
+            const auto beside = [&](int i, int first, int last) {
+                auto &low = lowest[at(faces * i + f)], &high = highest[at(faces * i + f)];
+                low = std::min(low, first), high = std::max(high, last);
+            };
+            visit(
+                state, f / 2, owner,
+                [&](std::size_t, int, const Row& l, const Row& r) {
+                    if (!l.wet || !r.wet) return;
+                    const Row &own = own_is_lower ? l : r, &other = own_is_lower ? r : l;
+                    for (int i = own.knot; i <= own.knot + (own.share > 0); ++i) beside(i, other.knot, other.knot + (other.share > 0));
+                },
+                [&](const Run& run) {
+                    const int own = own_is_lower ? run.lower : run.upper, other = own_is_lower ? run.upper : run.lower;
+                    for (int i = own; i <= own + 1; ++i) beside(i, other, other + 1);
+                });
+        }
+        for (int row = faces * A_.knots.start[at(c)]; row < faces * A_.knots.start[at(c) + 1]; ++row)
+            A_.begin[at(row) + 1] = std::max(0, highest[at(row)] - lowest[at(row)] + 1);
+    });
+    A_.place_entries(lowest);
+}
+
+/// Vertical faces of a column: (q₁ − q₀)²/(H − 1) in an element, 1/θ towards air, nothing towards a wall or a solid.
+template <int D>
+void TallPressure<D>::add_vertical(const Grid<real, D>& phi, const MacState<D>& state, int column) {
+    const Knots& knots = A_.knots;
+    const real k = 1 / (frame_.h[layout_.up] * frame_.h[layout_.up]);
+    const Line cell = line(state.cells, column), face = line(state.u[layout_.up], column);
+    for (int i = knots.start[at(column)]; i < knots.start[at(column) + 1]; ++i) {
+        const int row = knots.row[at(i)], length = knots.length[at(i)];
+        const auto towards = [&](int other, int crossed) {
+            if (state.cells[cell(other)] != Cell::air) return;
+            A_.vertical[at(i)] += k * open(state, layout_.up, face(crossed)) * cut(phi, cell(row), cell(other));
+        };
+        if (row > 0 && (i == knots.start[at(column)] || knots.length[at(i) - 1] == 0)) towards(row - 1, row);
+        if (length > 0) {
+            const real w = k * (length == 1 ? open(state, layout_.up, face(row + 1)) : 1.0) / length;
+            A_.vertical[at(i)] += w;
+            A_.vertical[at(i) + 1] += w;
+            A_.vertical_next[at(i)] -= w;
+        } else if (row + 1 < layout_.rows) {
+            towards(row + 1, row + 1);
+        } else if (state.sides.open(layout_.up, 1)) {
+            A_.vertical[at(i)] += 2 * k;  // p = 0 on the side itself, half a cell away
+        }
+    }
+}
+
+/// Horizontal faces on side f of a column.
+template <int D>
+void TallPressure<D>::add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int column, int f) {
+    const bool own_is_lower = f % 2 == 1;
+    const int h = f / 2, axis = layout_.axes[at(h)], owner = own_is_lower ? layout_.upper(column, h) : column;
+    if (owner < 0) return;
+    const real k = 1 / (frame_.h[axis] * frame_.h[axis]);
+    const int lower = layout_.lower(owner, h);
+    const Line cell_lower = line(state.cells, lower < 0 ? owner : lower), cell_upper = line(state.cells, owner);
+    const auto add_own = [&](const Row& own, real w) {
+        A_.horizontal[at(own.knot)] += w * (1 - own.share) * (1 - own.share);
+        if (own.share == 0) return;
+        A_.horizontal[at(own.knot) + 1] += w * own.share * own.share;
+        A_.horizontal_next[at(own.knot)] += w * own.share * (1 - own.share);
+    };
+    const auto add_pair = [&](const Row& own, const Row& other, real w) {
+        add_own(own, w);
+        for (int i = 0; i <= (own.share > 0); ++i)
+            for (int j = 0; j <= (other.share > 0); ++j)
+                A_.add_beside(own.knot + i, f, other.knot + j, -w * (i ? own.share : 1 - own.share) * (j ? other.share : 1 - other.share));
+    };
+    visit(
+        state, h, owner,
+        [&](std::size_t face, int row, const Row& l, const Row& r) {
+            const Row &own = own_is_lower ? l : r, &other = own_is_lower ? r : l;
+            if (!own.wet) return;
+            const real w = k * open(state, axis, face);
+            if (other.wet) return add_pair(own, other, w);
+            const std::size_t here = (own_is_lower ? cell_lower : cell_upper)(row), there = (own_is_lower ? cell_upper : cell_lower)(row);
+            if (state.cells[there] == Cell::air) add_own(own, w * cut(phi, here, there));
+        },
+        [&](const Run& run) {
+            const auto share = [&](int knot, real y) { return (y - A_.knots.row[at(knot)]) / A_.knots.length[at(knot)]; };
+            const int own = own_is_lower ? run.lower : run.upper, other = own_is_lower ? run.upper : run.lower;
+            for (const real y : {run.middle() - run.spread(), run.middle() + run.spread()})
+                add_pair({true, own, share(own, y)}, {true, other, share(other, y)}, 0.5 * k * run.count);
+        });
+}
+
+template <int D>
+void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
+    parallel_for(0, layout_.columns(), [&](int c) {
+        for (int h = 0; h < D - 1; ++h) {
+            const auto& u = state.u[layout_.axes[at(h)]];
+            const Line face = line(u, c);
+            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
+                const Run& run = runs_[at(h)][at(i)];
+                w_[at(h)][at(i)] = moments(run.row, run.count, [&](int row) { return u[face(row)]; });
+            }
+        }
+        const auto& v = state.u[layout_.up];
+        const Line face = line(v, c);
+        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) {
+            const int length = A_.knots.length[at(i)], row = A_.knots.row[at(i)];
+            real sum = 0;
+            for (int j = 1; length > 1 && j <= length; ++j) sum += v[face(row + j)];
+            mean_[at(i)] = length > 1 ? sum / length : 0;
+        }
+    });
+}
+
+template <int D>
+void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real>& b) const {
+    const Knots& knots = A_.knots;
+    parallel_for(0, layout_.columns(), [&](int c) {
+        const Line vertical = line(state.u[layout_.up], c);
+        const real inv_h = frame_.inv_h[layout_.up];
+        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+            const int row = knots.row[at(i)], length = knots.length[at(i)], first = knots.start[at(c)];
+            const int under = i > first ? knots.length[at(i) - 1] : 0;
+            const real below = under > 1 ? mean_[at(i) - 1] : flux(state, layout_.up, vertical(row));
+            const real above = length > 1 ? mean_[at(i)] : flux(state, layout_.up, vertical(row + 1));
+            b[at(i)] = (below - above) * inv_h;
+        }
+        for (int f = 0; f < A_.faces(); ++f) {
+            const bool own_is_lower = f % 2 == 1;
+            const int h = f / 2, axis = layout_.axes[at(h)], owner = own_is_lower ? layout_.upper(c, h) : c;
+            if (owner < 0) continue;
+            const real into = (own_is_lower ? -1 : 1) * frame_.inv_h[axis];
+            int next = run_start_[at(h)][at(owner)];
+            visit(
+                state, h, owner,
+                [&](std::size_t face, int, const Row& l, const Row& r) {
+                    const Row& own = own_is_lower ? l : r;
+                    if (!own.wet) return;
+                    const real inflow = into * flux(state, axis, face);
+                    b[at(own.knot)] += (1 - own.share) * inflow;
+                    if (own.share > 0) b[at(own.knot) + 1] += own.share * inflow;
+                },
+                [&](const Run& run) {
+                    const Pair& w = w_[at(h)][at(next++)];
+                    const int own = own_is_lower ? run.lower : run.upper;
+                    const auto add = [&](real y, real u) {
+                        const real share = (y - knots.row[at(own)]) / knots.length[at(own)], inflow = 0.5 * run.count * into * u;
+                        b[at(own)] += (1 - share) * inflow;
+                        b[at(own) + 1] += share * inflow;
+                    };
+                    add(run.middle() - run.spread(), w.minus);
+                    add(run.middle() + run.spread(), w.plus);
+                });
+        }
+    });
+}
+
+template <int D>
+const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacState<D>& state, real dt) {
+    if (A_.knots.count() == 0) return nothing_to_do_;
+    weak_divergence(state, b_);
+    const real scale = dt / state.rho;
+    parallel_for(0, layout_.columns(), [&](int c) {  // the last pressure is the first guess
+        const Line cell = line(state.p, c);
+        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(A_.knots.row[at(i)])];
+    });
+    const poisson::Report& report = solver_.solve(A_, b_, q_);
+    project_faces(phi, state);
+    project_vertical(phi, state);
+    return report;
+}
+
+/// u −= ∇q on the faces between columns.
+template <int D>
+void TallPressure<D>::project_faces(const Grid<real, D>& phi, MacState<D>& state) {
+    for (int h = 0; h < D - 1; ++h) {
+        const int axis = layout_.axes[at(h)];
+        const real inv_h = frame_.inv_h[axis];
+        auto& u = state.u[axis];
+        parallel_for(0, layout_.columns(), [&](int c) {
+            const int lower = layout_.lower(c, h);
+            if (lower < 0) return;
+            const Line below = line(state.cells, lower), above = line(state.cells, c);
+            int next = run_start_[at(h)][at(c)];
+            visit(
+                state, h, c,
+                [&](std::size_t face, int row, const Row& l, const Row& r) {
+                    if (open(state, axis, face) == 0) return;
+                    real steep = 1;
+                    if (!l.wet || !r.wet) {
+                        const std::size_t here = (l.wet ? below : above)(row), there = (l.wet ? above : below)(row);
+                        if (state.cells[there] != Cell::air) return;
+                        steep = cut(phi, here, there);
+                    }
+                    u[face] -= inv_h * steep * (pressure_at(r) - pressure_at(l));
+                },
+                [&](const Run& run) {
+                    Pair& w = w_[at(h)][at(next++)];
+                    const auto gradient = [&](real y) { return inv_h * (pressure_at(run.upper, y) - pressure_at(run.lower, y)); };
+                    w.minus -= gradient(run.middle() - run.spread());
+                    w.plus -= gradient(run.middle() + run.spread());
+                });
+        });
+    }
+}
+
+template <int D>
+void TallPressure<D>::project_vertical(const Grid<real, D>& phi, MacState<D>& state) {
+    const Knots& knots = A_.knots;
+    const int up = layout_.up;
+    auto& v = state.u[up];
+    parallel_for(0, layout_.columns(), [&](int c) {
+        const Line cell = line(state.cells, c), face = line(v, c);
+        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+            const int row = knots.row[at(i)], length = knots.length[at(i)];
+            const real q = q_[at(i)], inv_h = frame_.inv_h[up];
+            if (row > 0 && (i == knots.start[at(c)] || knots.length[at(i) - 1] == 0) && state.cells[cell(row - 1)] == Cell::air &&
+                open(state, up, face(row)) > 0)
+                v[face(row)] -= inv_h * cut(phi, cell(row), cell(row - 1)) * q;
+            if (length > 1) {
+                mean_[at(i)] -= inv_h * (q_[at(i) + 1] - q) / length;
+            } else if (length == 1) {
+                if (open(state, up, face(row + 1)) > 0) v[face(row + 1)] -= inv_h * (q_[at(i) + 1] - q);
+            } else if (row + 1 < layout_.rows) {
+                if (state.cells[cell(row + 1)] == Cell::air && open(state, up, face(row + 1)) > 0)
+                    v[face(row + 1)] += inv_h * cut(phi, cell(row), cell(row + 1)) * q;
+            } else if (state.sides.open(up, 1)) {
+                v[face(row + 1)] += 2 * inv_h * q;
+            }
+        }
+    });
+}
+
+template <int D>
+void TallPressure<D>::spread(MacState<D>& state, real dt) const {
+    for (int h = 0; h < D - 1; ++h) {
+        auto& u = state.u[layout_.axes[at(h)]];
+        parallel_for(0, layout_.columns(), [&](int c) {
+            const Line face = line(u, c);
+            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
+                const Run& run = runs_[at(h)][at(i)];
+                spread_rows(run.row, run.count, w_[at(h)][at(i)], [&](int row, real value) { u[face(row)] = value; });
+            }
+        });
+    }
+    rebuild(state);
+    const real scale = state.rho / dt;
+    parallel_for(0, layout_.columns(), [&](int c) {
+        const Line cell = line(state.p, c);
+        int row = 0;
+        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) {
+            for (; row < A_.knots.row[at(i)]; ++row) state.p[cell(row)] = 0;
+            const int length = std::max(1, A_.knots.length[at(i)]);
+            const real here = scale * q_[at(i)], change = length > 1 ? (scale * q_[at(i) + 1] - here) / length : 0;
+            for (int j = 0; j < length; ++j) state.p[cell(row++)] = here + j * change;
+        }
+        for (; row < layout_.rows; ++row) state.p[cell(row)] = 0;
+    });
+}
+
+/// v_{j+1} = v_j − what leaves cell j through its sides, from the bottom of each element to its top. The two weak equations of the element
+/// say that its top cell then has what flows through its own top face, and that the mean of v is the stored one.
+template <int D>
+void TallPressure<D>::rebuild(MacState<D>& state) const {
+    const Knots& knots = A_.knots;
+    const int up = layout_.up;
+    auto& v = state.u[up];
+    parallel_for(0, layout_.columns(), [&](int c) {
+        const Line face = line(v, c);
+        std::array<Line, 4> side{};
+        std::array<real, 4> factor{};
+        std::array<int, 4> axis{};
+        std::size_t sides = 0;
+        for (int f = 0; f < A_.faces(); ++f) {
+            const int owner = f % 2 == 1 ? layout_.upper(c, f / 2) : c;
+            if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
+            axis[sides] = layout_.axes[at(f / 2)];
+            side[sides] = line(state.u[axis[sides]], owner);
+            factor[sides] = (f % 2 == 1 ? -1 : 1) * frame_.h[up] * frame_.inv_h[axis[sides]];
+            ++sides;
+        }
+        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+            const int length = knots.length[at(i)], first = knots.row[at(i)];
+            if (length < 2) continue;
+            real above = flux(state, up, face(first));
+            for (int row = first; row < first + length; ++row) {
+                for (std::size_t s = 0; s < sides; ++s) above += factor[s] * flux(state, axis[s], side[s](row));
+                v[face(row + 1)] = above;
+            }
+        }
+    });
+}
+
+template <int D>
+real TallPressure<D>::max_divergence(const MacState<D>& state) const {
+    const Knots& knots = A_.knots;
+    const int up = layout_.up;
+    return ordered_max(layout_.columns(), [&](int c) {
+        const Line vertical = line(state.u[up], c);
+        real largest = 0;
+        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+            const int row = knots.row[at(i)];
+            real sum = (flux(state, up, vertical(row + 1)) - flux(state, up, vertical(row))) * frame_.inv_h[up];
+            for (int f = 0; f < A_.faces(); ++f) {
+                const int owner = f % 2 == 1 ? layout_.upper(c, f / 2) : c;
+                if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
+                const int axis = layout_.axes[at(f / 2)];
+                sum += (f % 2 == 1 ? 1 : -1) * frame_.inv_h[axis] * flux(state, axis, line(state.u[axis], owner)(row));
+            }
+            if (!(std::abs(sum) <= largest)) largest = std::abs(sum);
+            if (std::isnan(largest)) break;
+        }
+        return largest;
+    });
+}
+
+template <int D>
+real TallPressure<D>::energy(const Grid<real, D>& phi, const MacState<D>& state) const {
+    const Knots& knots = A_.knots;
+    return ordered_sum(layout_.columns(), [&](int c) {
+        real sum = 0;
+        for (int h = 0; h < D - 1; ++h) {
+            const int axis = layout_.axes[at(h)], lower = layout_.lower(c, h);
+            if (lower < 0) continue;
+            const Line below = line(state.cells, lower), above = line(state.cells, c);
+            int next = run_start_[at(h)][at(c)];
+            visit(
+                state, h, c,
+                [&](std::size_t face, int row, const Row& l, const Row& r) {
+                    real mass = open(state, axis, face);
+                    if (!l.wet || !r.wet) {
+                        const std::size_t here = (l.wet ? below : above)(row), there = (l.wet ? above : below)(row);
+                        mass *= state.cells[there] == Cell::air ? 1 / cut(phi, here, there) : 0;
+                    }
+                    sum += mass * state.u[axis][face] * state.u[axis][face];
+                },
+                [&](const Run& run) {
+                    const Pair& w = w_[at(h)][at(next++)];
+                    sum += 0.5 * run.count * (w.minus * w.minus + w.plus * w.plus);
+                });
+        }
+        const int up = layout_.up;
+        const Line cell = line(state.cells, c), face = line(state.u[up], c);
+        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+            const int row = knots.row[at(i)], length = knots.length[at(i)];
+            const auto square = [&](int crossed) { return state.u[up][face(crossed)] * state.u[up][face(crossed)]; };
+            if (row > 0 && (i == knots.start[at(c)] || knots.length[at(i) - 1] == 0) && state.cells[cell(row - 1)] == Cell::air)
+                sum += open(state, up, face(row)) / cut(phi, cell(row), cell(row - 1)) * square(row);
+            if (length > 1)
+                sum += length * mean_[at(i)] * mean_[at(i)];
+            else if (length == 1)
+                sum += open(state, up, face(row + 1)) * square(row + 1);
+            else if (row + 1 < layout_.rows && state.cells[cell(row + 1)] == Cell::air)
+                sum += open(state, up, face(row + 1)) / cut(phi, cell(row), cell(row + 1)) * square(row + 1);
+        }
+        return sum;
+    });
+}
+
+template <int D>
+typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) const {
+    RunsUp runs;
+    if (a == layout_.up) {
+        runs.knots_ = &A_.knots;
+        runs.k_ = A_.knots.start[at(column)] - 1, runs.end_ = A_.knots.start[at(column) + 1];
+        runs.advance();
+        return runs;
+    }
+    const int h = layout_.axes[0] == a ? 0 : 1;
+    runs.runs_ = &runs_[at(h)];
+    runs.k_ = run_start_[at(h)][at(column)], runs.end_ = run_start_[at(h)][at(column) + 1];
+    runs.faces_ = layout_.lower(column, h) >= 0;
+    return runs;
+}
+
+template <int D>
+void TallPressure<D>::show_heights(Grid<real, D>& to) const {
+    const Knots& knots = A_.knots;
+    parallel_for(0, layout_.columns(), [&](int c) {
+        const Line cell = line(to, c);
+        int row = 0;
+        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+            for (; row < knots.row[at(i)]; ++row) to[cell(row)] = 0;
+            const int length = std::max(1, knots.length[at(i)]);
+            for (int j = 0; j < length; ++j) to[cell(row++)] = length * frame_.h[layout_.up];
+        }
+        for (; row < layout_.rows; ++row) to[cell(row)] = 0;
+    });
+}
+
+template <int D>
+std::size_t TallPressure<D>::samples() const {
+    return 2 * (w_[0].size() + w_[1].size());
+}
+
+template <int D>
+std::size_t TallPressure<D>::bytes() const {
+    std::size_t total = A_.bytes() + solver_.bytes() + (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
+    for (std::size_t h = 0; h < 2; ++h)
+        total += run_start_[h].capacity() * sizeof(int) + runs_[h].capacity() * sizeof(Run) + w_[h].capacity() * sizeof(Pair);
+    return total;
+}
+
+template class TallPressure<2>;
+template class TallPressure<3>;
+
+}  // namespace weir::tallcell

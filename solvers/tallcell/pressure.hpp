@@ -1,0 +1,148 @@
+// Pressure on tall cells: the uniform grid's, restricted to functions that are linear inside elements (p = P q), so that the matrix is
+// Pᵀ A_f P, symmetric and positive, and the projection is orthogonal: idempotent, never adds energy, exact for the pressure of water at
+// rest. The surface enters by ghost fluid (Gibou et al. 2002) and solids by open fractions (Batty et al. 2007), as on the uniform grid.
+// After a projection the vertical velocity inside elements is rebuilt from the bottom up, which makes it free of divergence cell by cell.
+#pragma once
+#include "staggered/state.hpp"
+#include "surface/level_set.hpp"
+#include "tallcell/multigrid.hpp"
+#include "tallcell/samples.hpp"
+
+#include <vector>
+
+namespace weir::tallcell {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
+
+/// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, as on the uniform grid.
+inline constexpr real thinnest = 0.02;
+
+struct Shape {
+    Division division = Division::stacked;
+    int depth = 8;  // rows that stay regular below the surface, at least
+};
+
+template <int D>
+class TallPressure {
+public:
+    TallPressure(const Frame<D>& frame, int up, const poisson::Options& options);
+
+    /// Which cells are liquid (state.cells, where not `closed`), and the knots: rows outside the level set's band may be tall.
+    void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, const Shape& shape, MacState<D>& state);
+    /// The same with knots of any kind in `place(layout, cells, knots)`; φ [m] at cell centres. For tests and studies.
+    template <class Place>
+    void set_surface(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state, Place&& place) {
+        find_liquid(phi, closed, state);
+        place(layout_, state.cells, A_.knots);
+        finish_surface(phi, state);
+    }
+
+    /// Takes from the lattice what the unknowns can carry: moments over rows. Orthogonal, so it adds no energy; where the lattice's
+    /// velocity is free of divergence the unknowns' is too, whatever knots it was made on.
+    void restrict_velocity(const MacState<D>& state);
+    /// Solves for the pressure and makes the unknowns free of divergence.
+    const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt);
+    /// Back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
+    void spread(MacState<D>& state, real dt) const;
+    /// Largest |∇·u| over cells that are knots [1/s]; inside elements it is zero as spread() makes it.
+    real max_divergence(const MacState<D>& state) const;
+    /// −Cᵀw: minus the divergence that the unknowns have, tested with each knot's hat.
+    void weak_divergence(const MacState<D>& state, std::vector<real>& b) const;
+    /// Σ mass w² over all unknowns: twice the kinetic energy, in units of ρ times a cell.
+    real energy(const Grid<real, D>& phi, const MacState<D>& state) const;
+
+    const Layout<D>& layout() const { return layout_; }
+    const Knots& knots() const { return A_.knots; }
+    const ColumnMatrix& matrix() const { return A_; }
+    const std::vector<real>& potential() const { return q_; }
+    ColumnMultigrid& solver() { return solver_; }
+    /// Of every cell: how high the element is in which it lies [m]; 0 outside the liquid.
+    void show_heights(Grid<real, D>& to) const;
+    /// The runs of faces along axis a above one another, on the lower side of a column (its own vertical faces where a is up), bottom up.
+    class RunsUp {
+    public:
+        /// Moves to the run that has this row, or is above it; whether it has it. Rows only grow.
+        bool reaches(int row) {
+            while (k_ < end_ && run().row + run().count <= row) advance();
+            return k_ < end_ && run().row <= row;
+        }
+        /// Whether any is left.
+        bool ahead() const { return k_ < end_; }
+        Run run() const { return knots_ ? Run{knots_->row[at(k_)] + 1, knots_->length[at(k_)], k_, k_} : (*runs_)[at(k_)]; }
+        /// Not so at a wall, whose faces have a velocity of their own.
+        bool any_faces() const { return faces_; }
+
+    private:
+        friend class TallPressure;
+        void advance() {
+            ++k_;
+            while (knots_ && k_ < end_ && knots_->length[at(k_)] < 2) ++k_;
+        }
+        const Knots* knots_ = nullptr;
+        const std::vector<Run>* runs_ = nullptr;
+        int k_ = 0, end_ = 0;
+        bool faces_ = true;
+    };
+    RunsUp runs_up(int a, int column) const;
+    std::size_t samples() const;
+    std::size_t bytes() const;
+
+private:
+    static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    void find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const;
+    void finish_surface(const Grid<real, D>& phi, const MacState<D>& state);
+    void find_runs(const MacState<D>& state);
+    void assemble(const Grid<real, D>& phi, const MacState<D>& state);
+    void count_beside(const MacState<D>& state);
+    void add_vertical(const Grid<real, D>& phi, const MacState<D>& state, int column);
+    void add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int column, int f);
+    real cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const;
+    void project_faces(const Grid<real, D>& phi, MacState<D>& state);
+    void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
+    void rebuild(MacState<D>& state) const;
+    real pressure_at(const Row& row) const {
+        if (!row.wet) return 0;
+        return row.share > 0 ? (1 - row.share) * q_[at(row.knot)] + row.share * q_[at(row.knot) + 1] : q_[at(row.knot)];
+    }
+    /// At a row of the element above a knot.
+    real pressure_at(int knot, real row) const {
+        const real share = (row - A_.knots.row[at(knot)]) / A_.knots.length[at(knot)];
+        return (1 - share) * q_[at(knot)] + share * q_[at(knot) + 1];
+    }
+    /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
+    struct Line {
+        std::size_t first, stride;
+        std::size_t operator()(int row) const { return first + static_cast<std::size_t>(row) * stride; }
+    };
+    template <class T>
+    Line line(const Grid<T, D>& q, int column) const {
+        return {q.linear(layout_.foot(column)), static_cast<std::size_t>(q.stride(layout_.up))};
+    }
+    /// visit_faces of horizontal axis h, on the lower side of `column`; single(face, ...) gets its place in memory first.
+    template <class Single, class Tall>
+    void visit(const MacState<D>& state, int h, int column, Single&& single, Tall&& run) const;
+    /// The open fraction of a face, and what flows through it with the solid's part.
+    static real open(const MacState<D>& state, int axis, std::size_t face) {
+        return state.solid.any() ? state.solid.open[at(axis)][face] : 1;
+    }
+    static real flux(const MacState<D>& state, int axis, std::size_t face) {
+        if (!state.solid.any()) return state.u[axis][face];
+        const real w = state.solid.open[at(axis)][face];
+        return w * state.u[axis][face] + (1 - w) * state.solid.velocity[at(axis)][face];
+    }
+
+    Frame<D> frame_;
+    Layout<D> layout_;
+    poisson::Options options_;
+    ColumnMatrix A_;
+    ColumnMultigrid solver_;
+    std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
+    std::array<std::vector<Run>, 2> runs_;
+    std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]
+    std::vector<real> mean_;              // of the vertical velocity in the element above each knot [m/s]
+    std::vector<real> b_, q_;             // q = dt p/ρ [m²/s]
+    real largest_cut_ = 0;
+    poisson::Report nothing_to_do_;
+};
+
+}  // namespace weir::tallcell

@@ -1,0 +1,84 @@
+// What water on tall cells shows of itself: fields, integrals, checkpoints.
+#include "staggered/diagnostics.hpp"
+#include "surface/measure.hpp"
+#include "tallcell/solver.hpp"
+
+namespace weir::tallcell {
+
+template <int D>
+FieldSet TallCells<D>::fields() const {
+    pressure_.show_heights(tall_);
+    FieldSet set;
+    set.grid = grid_view(state_.u);
+    FieldView velocity{"velocity", "m/s", Where::face, "", {}};
+    for (int a = 0; a < D; ++a) velocity.data.push_back(state_.u[a].values());
+    set.fields.push_back(std::move(velocity));
+    set.fields.push_back({"pressure", "Pa", Where::cell, "", {state_.p.values()}});
+    set.fields.push_back({level_set_name, "m", Where::cell, "", {surface_.phi.values()}});
+    set.fields.push_back({"cell_height", "m", Where::cell, "", {tall_.values()}});
+    return set;
+}
+
+template <int D>
+std::vector<Integral> TallCells<D>::integrals() const {
+    const std::string volume_unit = D == 2 ? "m^2" : "m^3", per_depth = D == 2 ? "/m" : "";
+    const Measure<D> measure(frame_, surface_, closed_);
+    const Vec<D> p = measure.momentum(state_.u, state_.rho);
+    std::vector<Integral> list = {
+        {"volume", volume_unit, surface_.volume()},
+        {"volume_target", volume_unit, volume_target_},
+        {"kinetic_energy", "J" + per_depth, measure.kinetic_energy(state_.u, state_.rho)},
+        {"potential_energy", "J" + per_depth, measure.potential_energy(gravity_, state_.rho)},
+        {"momentum_x", "kg m/s" + per_depth, p[0]},
+        {"momentum_y", "kg m/s" + per_depth, p[1]},
+    };
+    if constexpr (D == 3) list.push_back({"momentum_z", "kg m/s", p[2]});
+    list.push_back({"front_x", "m", measure.furthest(0)});
+    list.push_back({"top", "m", measure.furthest(up_)});
+    list.push_back({"height_at_x_min", "m", measure.height_at_lower_end(up_)});
+    list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.knots().count())});
+    if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
+    return list;
+}
+
+template <int D>
+void TallCells<D>::save(Checkpoint& to) const {
+    state_.save(to);
+    surface_.save(to);
+    const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
+    to.put_value("tallcell.reals", reals);
+    to.put_value("tallcell.steps", steps_);
+}
+
+template <int D>
+void TallCells<D>::restore(const Checkpoint& from) {
+    state_.restore(from);
+    steps_ = from.get_value<std::int64_t>("tallcell.steps");
+    place_solids(state_.time);
+    state_.restore(from);  // what is liquid, after the solids have said what is not
+    surface_.restore(from);
+    const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
+    volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
+    remesh();
+    mark_liquid_faces();
+}
+
+template <int D>
+std::size_t TallCells<D>::bytes() const {
+    std::size_t total = state_.bytes() + surface_.bytes() + pressure_.bytes() + transport_.bytes() + extrapolate_.bytes() + closed_.size() +
+                        in_solids_.bytes() + solids_.bytes() + tall_.size() * sizeof(real);
+    for (const auto& known : known_) total += known.size();
+    return total;
+}
+
+#define WEIR_INSTANTIATE(D)                                         \
+    template FieldSet TallCells<D>::fields() const;                 \
+    template std::vector<Integral> TallCells<D>::integrals() const; \
+    template void TallCells<D>::save(Checkpoint&) const;            \
+    template void TallCells<D>::restore(const Checkpoint&);         \
+    template std::size_t TallCells<D>::bytes() const;
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::tallcell

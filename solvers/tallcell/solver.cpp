@@ -1,0 +1,180 @@
+#include "tallcell/solver.hpp"
+
+#include "core/error.hpp"
+#include "staggered/inflow.hpp"
+
+namespace weir::tallcell {
+
+/// One step of water on tall cells (Chentanez & Müller 2011, algorithm 1, in the order of this library's water). Enters and leaves with a
+/// velocity that is known throughout the band of the level set and free of divergence in the liquid, to the tolerance of the pressure.
+template <int D>
+StepReport TallCells<D>::step(real dt) {
+    place_solids(state_.time + dt);
+    move_surface(dt);                             // Dφ/Dt = 0, and φ is a distance again
+    control_volume();                             // only if the scene names it
+    remesh();                                     // tall cells below the surface as it is now
+    advect(dt);                                   // Du/Dt = 0
+    forces(dt);                                   // u += dt f
+    const poisson::Report poisson = project(dt);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
+    const real divergence = pressure_.max_divergence(state_);
+    extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
+    if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "a velocity is no longer finite");
+    state_.time += dt;
+    ++steps_;
+    return {.dt = dt,
+            .cfl = dt * rate_,
+            .max_divergence = divergence,
+            .iterations = poisson.iterations,
+            .residual_before = poisson.residual_before,
+            .residual_after = poisson.residual_after,
+            .residual_max = poisson.residual_max * state_.rho / dt};
+}
+
+template <int D>
+void TallCells<D>::place_solids(real t) {
+    if (!solids_.any() || (t > 0 && !solids_.moving())) return;
+    solids_.place(state_, t);
+    for_each_cell(frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
+    surface_.set_closed(closed_);
+    in_solids_.find(solids_.solids(), state_, frame_, steps_ == 0);
+}
+
+template <int D>
+void TallCells<D>::move_surface(real dt) {
+    const auto timed = passes_.time("level set");
+    surface_.advect(state_.u, dt);
+    surface_.redistance();
+}
+
+/// φ moves by the missing volume over the surface's area, at most 0.02 h a step, less than motion itself moves it by.
+template <int D>
+void TallCells<D>::control_volume() {
+    if (!options_.volume_control) return;
+    const auto timed = passes_.time("effect volume_control");
+    const real area = surface_.area();
+    if (area == 0) return;
+    const real most = 0.02 * frame_.h_min(), shift = std::clamp((volume_target_ - surface_.volume()) / area, -most, most);
+    surface_.dilate(shift);
+    volume_shift_ += std::abs(shift);
+}
+
+template <int D>
+void TallCells<D>::remesh() {
+    const auto timed = passes_.time("remesh");
+    pressure_.set_surface(surface_, closed_, options_.shape, state_);
+}
+
+template <int D>
+void TallCells<D>::advect(real dt) {
+    const auto timed = passes_.time("advect");
+    transport_(pressure_, surface_.phi, state_.sides, dt, state_.u);
+}
+
+template <int D>
+void TallCells<D>::forces(real dt) {
+    effects_.apply(Stage::force, state_, dt, passes_);
+    const auto timed = passes_.time("walls");
+    set_fixed_faces();
+}
+
+template <int D>
+poisson::Report TallCells<D>::project(real dt) {
+    const auto timed = passes_.time("project");
+    pressure_.restrict_velocity(state_);
+    const poisson::Report report = pressure_.project(surface_.phi, state_, dt);
+    pressure_.spread(state_, dt);
+    sync_periodic(state_.u, state_.sides);
+    return report;
+}
+
+template <int D>
+void TallCells<D>::extend_velocity() {
+    const auto timed = passes_.time("extrapolate");
+    mark_liquid_faces();
+    extrapolate_(state_.u, known_, surface_, in_solids_.faces(), surface_.layers() - 1);
+    in_solids_.constrain(state_.u, known_, frame_);
+    sync_periodic(state_.u, state_.sides);
+    rate_ = max_speed_rate();
+}
+
+/// Faces whose velocity the pressure decided, as far as solids leave them open, and those that walls prescribe.
+template <int D>
+void TallCells<D>::mark_liquid_faces() {
+    using poisson::Cell;
+    for (int a = 0; a < D; ++a) {
+        auto& known = known_[static_cast<std::size_t>(a)];
+        const auto stride = static_cast<std::size_t>(state_.cells.stride(a));
+        const auto between = [&](std::size_t face, std::size_t cell, int count) {
+            const Cell *above = state_.cells.data() + cell, *below = above - stride;
+            std::uint8_t* mark = known.data() + face;
+            for (int i = 0; i < count; ++i) mark[i] = (above[i] == Cell::fluid) | (below[i] == Cell::fluid);
+        };
+        const auto on_side = [&](const Index<D>& I, std::size_t face) {
+            const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
+            known[face] = liquid || (!frame_.periodic(a) && !state_.sides.open(a, I[a] == 0 ? 0 : 1));
+        };
+        for_each_face_run(frame_.cells, a, between, on_side);
+    }
+    in_solids_.forget(known_);
+}
+
+template <int D>
+void TallCells<D>::set_fixed_faces() {
+    sync_periodic(state_.u, state_.sides);
+    set_side_faces(state_.u, state_.sides, state_.nu);
+    solids_.set_faces(state_);
+}
+
+template <int D>
+real TallCells<D>::max_speed_rate() const {
+    real rate = 0;
+    for (int a = 0; a < D; ++a) {
+        const auto& known = known_[static_cast<std::size_t>(a)];
+        const auto& u = state_.u[a];
+        const std::size_t planes = static_cast<std::size_t>(u.extent()[D - 1]), plane = u.size() / planes;
+        const real largest = ordered_max(static_cast<int>(planes), [&](int k) {
+            real most = 0, poison = 0;  // x − x is 0, or NaN where x is not finite
+            const std::size_t first = static_cast<std::size_t>(k) * plane;
+#pragma omp simd reduction(max : most) reduction(+ : poison)
+            for (std::size_t i = first; i < first + plane; ++i) {
+                const real speed = known[i] == 1 ? std::abs(u[i]) : 0;
+                most = std::max(most, speed);
+                poison += speed - speed;
+            }
+            return std::isnan(poison) ? poison : most;
+        });
+        if (std::isnan(largest)) return largest;
+        rate = std::max(rate, largest * frame_.inv_h[a]);
+    }
+    return rate;
+}
+
+/// As on the uniform grid: CFL with the speed that gravity adds within the step, and the gravity wave of two cells (ω dt ≤ 1).
+template <int D>
+real TallCells<D>::advised_dt() const {
+    const real h = frame_.h_min(), g = norm(gravity_);
+    real dt = infinity;
+    const real rate = std::max(rate_, solids_.max_rate(state_));
+    if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
+    if (g > 0) dt = std::min(dt, std::min(options_.cfl, 1.5) * std::sqrt(h / (pi * g)));
+    return std::min(dt, effects_.max_dt(state_));
+}
+
+/// As advised_dt(), at the edge: as far as the surface's band reaches, and ω dt = 2 for the shortest waves.
+template <int D>
+StepLimit TallCells<D>::stable_dt() const {
+    const real h = frame_.h_min(), g = norm(gravity_), cells = 1 + std::ceil(options_.cfl);
+    const real rate = std::max(rate_, solids_.max_rate(state_)), motion = rate + std::sqrt(cells * g / h);
+    StepLimit limit;
+    const auto at_most = [&](real dt, std::string_view why) {
+        if (dt < limit.dt) limit = {dt, why};
+    };
+    if (motion > 0) at_most(cells / motion, "liquid or a body crosses in it more cells than the surface's band has");
+    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the gravity wave of two cells turns by two radians in it");
+    return limit;
+}
+
+template class TallCells<2>;
+template class TallCells<3>;
+
+}  // namespace weir::tallcell

@@ -1,0 +1,105 @@
+// What a scene of tall cells is at t = 0, and what it cannot be.
+#include "surface/start.hpp"
+#include "scene/names.hpp"
+#include "staggered/effects.hpp"
+#include "staggered/initial.hpp"
+#include "tallcell/kind.hpp"
+#include "tallcell/solver.hpp"
+
+namespace weir::tallcell {
+
+namespace {
+
+template <int D>
+geometry::Solids<D> solids_of(const scene::Scene& scene) {
+    return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
+}
+
+template <int D>
+Vec<D> gravity_of(const scene::Scene& scene) {
+    const auto* gravity = scene.effect("gravity");
+    return gravity ? gravity->template vec<D>("g") : Vec<D>{};
+}
+
+/// The axis that gravity is most along: cells are tall along it.
+template <int D>
+int up_axis(const Vec<D>& g) {
+    int up = 1;
+    for (int a = 0; a < D; ++a)
+        if (std::abs(g[a]) > std::abs(g[up])) up = a;
+    return up;
+}
+
+}  // namespace
+
+template <int D>
+TallCells<D>::TallCells(const scene::Scene& scene)
+    : options_(scene),
+      state_(scene, FieldPlan{}),
+      frame_(state_.u, state_.sides),
+      solids_(solids_of<D>(scene), state_),
+      effects_(make_effects<D>(body_forces(), scene)),
+      gravity_(gravity_of<D>(scene)),
+      up_(up_axis<D>(gravity_)),
+      pressure_(frame_, up_, options_.poisson) {
+    refuse_what_it_cannot(scene);
+    const int reach = static_cast<int>(std::ceil(options_.cfl));
+    surface_ = LevelSet<D>(frame_, reach);
+    transport_ = Transport<D>(frame_, state_.u, options_.maccormack, reach);
+    extrapolate_ = Extrapolation<D>(frame_, norm(gravity_));
+    for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
+    tall_ = Grid<real, D>(frame_.cells);
+    if (options_.volume_control) effects_.declare({.name = "volume_control", .pass = effect_pass("volume_control")});
+    if (solids_.any()) {
+        closed_ = Grid<std::uint8_t, D>(frame_.cells);
+        place_solids(0);
+    }
+    fill_with_liquid(scene);
+    set_initial_velocity(state_, scene);
+    set_fixed_faces();
+    extend_velocity();
+}
+
+template <int D>
+void TallCells<D>::refuse_what_it_cannot(const scene::Scene& scene) const {
+    const real ratio = frame_.h_max() / frame_.h_min();
+    if (ratio > flattest_cell * (1 + 1e-9))
+        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " times as long as thin; water stays stable up to " +
+                                       scene::number_text(flattest_cell) + " times");
+    const char* axis_name[] = {"x", "y", "z"};
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1}) {
+            const auto kind = state_.sides.side(a, end).kind;
+            const std::string side = std::string("sides.") + axis_name[a] + (end == 0 ? "_min" : "_max");
+            if (kind == geometry::SideKind::moving_wall)
+                scene.refuse(side, "nothing drags the liquid along here: tall cells know no friction",
+                             "solver \"mac_water\" has the effect viscosity");
+            if (kind == geometry::SideKind::inflow)
+                scene.refuse(side, "tall cells know no inflow", "solver \"mac_water\" has sides through which liquid flows in");
+            if (kind == geometry::SideKind::outflow && (a != up_ || end == 0))
+                scene.refuse(side, "only the side above may be open: the pressure beside a tall cell is not 0 over its height",
+                             "solver \"mac_water\" has open sides everywhere");
+        }
+    if (frame_.periodic(up_)) scene.refuse("grid.periodic", "the axis of gravity, along which cells are tall, has a bottom");
+}
+
+template <int D>
+void TallCells<D>::fill_with_liquid(const scene::Scene& scene) {
+    const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
+    if (shapes.empty()) scene.refuse("liquid", "a scene of water needs liquid: at least one shape");
+    const auto liquid = geometry::unite<D>(shapes);
+    start_level_set<D>(*liquid, solids_.solids(), frame_, surface_);
+    volume_target_ = surface_.volume();
+    if (volume_target_ == 0) {
+        const real inside = sum_over(frame_.cells, [&](const Index<D>& I) { return liquid->contains(frame_.centre(I)) ? 1.0 : 0.0; });
+        if (inside > 0) scene.refuse("liquid", "all liquid lies inside solids");
+        scene.refuse("liquid", "no liquid lies in the domain, or all of it is thinner than a cell");
+    }
+    remesh();
+    passes_.reset();
+}
+
+template TallCells<2>::TallCells(const scene::Scene&);
+template TallCells<3>::TallCells(const scene::Scene&);
+
+}  // namespace weir::tallcell

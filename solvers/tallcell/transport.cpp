@@ -1,0 +1,411 @@
+#include "tallcell/transport.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace weir::tallcell {
+
+template <int D>
+Transport<D>::Transport(const Frame<D>& frame, const MacVelocity<D>& u, bool maccormack, int reach)
+    : frame_(frame), maccormack_(maccormack), reach_(reach), before_(u) {
+    if (maccormack) predicted_ = u;
+}
+
+template <int D>
+void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt,
+                              MacVelocity<D>& u) {
+    up_ = mesh.layout().up, open_above_ = sides.open(up_, 1);
+    for (int a = 0; a < D; ++a) before_[a].swap(u[a]);  // every face of u is written below
+    const real h = frame_.h_max();
+    if (!maccormack_) {
+        pass<false>(mesh, phi, sides, dt, 2 * h, u, nullptr);
+        return;
+    }
+    pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_, &u);
+    pass<true>(mesh, phi, sides, dt, 2 * h, u, nullptr);
+}
+
+namespace {
+
+/// A point in cells from the domain's lower corner; between which samples it lies, and whether all of them are inside the domain.
+template <int D>
+struct Inside {
+    std::array<int, D> face, centre;
+    std::array<real, D> face_part, centre_part;
+    bool all = true;
+
+    Inside(const Frame<D>& frame, const Vec<D>& s) {
+        for (int d = 0; d < D; ++d) {
+            const auto at = static_cast<std::size_t>(d);
+            all = all && s[d] >= 1 && s[d] < frame.cells[d] - 1;
+            face[at] = static_cast<int>(s[d]);
+            face_part[at] = s[d] - face[at];
+            centre[at] = static_cast<int>(s[d] - 0.5);
+            centre_part[at] = s[d] - 0.5 - centre[at];
+        }
+    }
+    /// The 2^D samples around the point: f(first of a pair along x, weight along x, ...) in the order of sample().
+    template <class Combine>
+    real along(const Grid<real, D>& u, int a, Combine&& combine) const {
+        std::array<real, D> f;
+        const real* at = u.data();
+        for (int d = 0; d < D; ++d) {
+            const auto i = static_cast<std::size_t>(d);
+            f[i] = d == a ? face_part[i] : centre_part[i];
+            at += (d == a ? face[i] : centre[i]) * u.stride(d);
+        }
+        const std::ptrdiff_t sy = u.stride(1);
+        const auto plane = [&](const real* q) { return combine(combine(q[0], q[1], f[0]), combine(q[sy], q[sy + 1], f[0]), f[1]); };
+        if constexpr (D == 2) {
+            return plane(at);
+        } else {
+            return combine(plane(at), plane(at + u.stride(2)), f[2]);
+        }
+    }
+    real value(const Grid<real, D>& u, int a) const {
+        return along(u, a, [](real lower, real upper, real f) { return lower + f * (upper - lower); });
+    }
+    real least(const Grid<real, D>& u, int a) const {
+        return along(u, a, [](real lower, real upper, real f) { return f > 0 ? std::min(lower, upper) : lower; });
+    }
+    real most(const Grid<real, D>& u, int a) const {
+        return along(u, a, [](real lower, real upper, real f) { return f > 0 ? std::max(lower, upper) : lower; });
+    }
+};
+
+}  // namespace
+
+/// As sample() of frame.hpp anywhere; fast where all samples around the point are inside the domain.
+template <int D>
+real Transport<D>::at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const {
+    const Inside<D> inside(frame_, s);
+    return inside.all ? inside.value(u, a) : sample(u, a, stencil(s));
+}
+
+template <int D>
+Stencil<D> Transport<D>::stencil(const Vec<D>& s) const {
+    Vec<D> x;
+    for (int d = 0; d < D; ++d) x[d] = frame_.origin[d] + s[d] * frame_.h[d];
+    return Stencil<D>(frame_, frame_.wrap(x));
+}
+
+/// Where a point at s [cells], at which the velocity is `here` [cells/s], is dt later: the midpoint rule.
+template <int D>
+Vec<D> Transport<D>::moved(const Vec<D>& s, const Vec<D>& here, real dt) const {
+    const Vec<D> middle = s + (0.5 * dt) * here;
+    const Inside<D> inside(frame_, middle);
+    Vec<D> k;
+    if (inside.all) {
+        for (int b = 0; b < D; ++b) k[b] = inside.value(before_[b], b) * frame_.inv_h[b];
+    } else {
+        const Stencil<D> around = stencil(middle);
+        for (int b = 0; b < D; ++b) k[b] = sample(before_[b], b, around) * frame_.inv_h[b];
+    }
+    return s + dt * k;
+}
+
+template <int D>
+Vec<D> Transport<D>::speed(const Vec<D>& s) const {
+    Vec<D> k;
+    for (int b = 0; b < D; ++b) k[b] = at_point(before_[b], b, s) * frame_.inv_h[b];
+    return k;
+}
+
+/// The value from which s is reached in dt.
+template <int D>
+real Transport<D>::departed(int a, const Vec<D>& s, real dt) const {
+    return at_point(before_[a], a, moved(s, speed(s), -dt));
+}
+
+/// û + (u − ũ)/2, û the prediction and ũ what it gives when it is carried back; no more and no less than the values around the point of
+/// departure (Selle et al. 2008, section 4).
+template <int D>
+real Transport<D>::corrected(int a, const Vec<D>& s, real here, real dt) const {
+    const Vec<D> k = speed(s), from = moved(s, k, -dt);
+    const real back = at_point(predicted_[a], a, moved(s, k, dt));
+    const Inside<D> inside(frame_, from);
+    real value, low = infinity, high = -infinity;
+    if (inside.all) {
+        value = inside.value(before_[a], a), low = inside.least(before_[a], a), high = inside.most(before_[a], a);
+    } else {
+        const Stencil<D> around = stencil(from);
+        for_each_sample(around, a, before_[a].extent(), [&](std::ptrdiff_t i, real weight) {
+            if (weight == 0) return;
+            const real u = before_[a][static_cast<std::size_t>(i)];
+            low = std::min(low, u), high = std::max(high, u);
+        });
+        value = sample(before_[a], a, around);
+    }
+    return std::clamp(value + 0.5 * (here - back), low, high);
+}
+
+namespace {
+
+template <int D>
+Vec<D> face_place(int a, const Index<D>& I) {
+    Vec<D> s;
+    for (int d = 0; d < D; ++d) s[d] = I[d] + (d == a ? 0.0 : 0.5);
+    return s;
+}
+
+}  // namespace
+
+/// Rows of a tall cell all change as their run's Gauss points do, linearly between.
+template <int D>
+void Transport<D>::move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const {
+    I[up] = run.row;
+    Vec<D> s = face_place(a, I);
+    const real bottom = s[up];
+    // Euler's trace: deep below the surface paths are straight for as long as a step takes.
+    const auto change = [&](real row) {
+        s[up] = bottom + (row - run.row);
+        const Vec<D> k = speed(s);
+        return at_point(before_[a], a, s - dt * k) - k[a] * frame_.h[a];
+    };
+    const Pair both{change(run.middle() - run.spread()), change(run.middle() + run.spread())};
+    const std::size_t first = to.linear(I), stride = static_cast<std::size_t>(to.stride(up));
+    spread_rows(0, run.count, both, [&](int row, real by) {
+        const std::size_t face = first + static_cast<std::size_t>(row) * stride;
+        to[face] = before_[a][face] + by;
+        if (also) (*also)[face] = to[face];
+    });
+}
+
+/// The same of eight columns beside one another along x that have the same run. False, and nothing done, where a point comes too near to a
+/// side or moves too far.
+template <int D>
+bool Transport<D>::move_run_of_eight(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const {
+    for (int d = 1; d < D; ++d)
+        if (d != up && (I[d] < 2 || I[d] + 2 >= frame_.cells[d])) return false;
+    const auto at = [](int i) { return static_cast<std::size_t>(i); };
+    std::array<Eight, 2> change;
+    for (const int point : {0, 1}) {
+        const real y = run.middle() + (point == 0 ? -run.spread() : run.spread());
+        I[up] = static_cast<int>(std::lround(y));
+        if (I[up] < 2 || I[up] + 2 >= frame_.cells[up]) return false;
+        Moved<D> d{};
+        d[at(up)].fill(y - I[up]);
+        Moved<D> from = d;
+        Eight here{}, k{};
+        for (int b = 0; b < D; ++b) {
+            const auto& u = before_[b];
+            sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(d, a, b), k);
+            if (b == a) here = k;
+            for (std::size_t i = 0; i < row_lanes; ++i) {
+                from[at(b)][i] -= dt * frame_.inv_h[b] * k[i];
+                if (!(std::abs(from[at(b)][i]) <= 1)) return false;
+            }
+        }
+        const auto& u = before_[a];
+        sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(from, a, a), change[at(point)]);
+        for (std::size_t i = 0; i < row_lanes; ++i) change[at(point)][i] -= here[i];
+    }
+    I[up] = run.row;
+    const std::size_t first = to.linear(I), stride = static_cast<std::size_t>(to.stride(up));
+    const real c = 0.5 * (run.count - 1), sigma = run.count > 1 ? run.spread() : 1;
+    for (int row = 0; row < run.count; ++row) {
+        const std::size_t face = first + at(row) * stride;
+        const real xi = (row - c) / sigma;
+        for (std::size_t i = 0; i < row_lanes; ++i) {
+            const real by = 0.5 * ((change[0][i] + change[1][i]) + xi * (change[1][i] - change[0][i]));
+            to[face + i] = before_[a][face + i] + by;
+            if (also) (*also)[face + i] = to[face + i];
+        }
+    }
+    return true;
+}
+
+/// Eight faces beside one another along x, all at least two cells from the ends of the other axes. False, and nothing done, where a point
+/// moves farther than a cell.
+template <int D>
+template <bool Correct>
+bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) const {
+    const auto component = [](int b) { return static_cast<std::size_t>(b); };
+    Moved<D> k, half, from;
+    real farthest = 0;
+    for (int b = 0; b < D; ++b) {
+        const auto& u = before_[b];
+        const real* q = u.data() + u.linear(I);
+        const std::ptrdiff_t below = u.stride(a), above = u.stride(b);
+        const real scale = frame_.inv_h[b] * dt;
+        real far = 0;
+#pragma omp simd reduction(max : far)
+        for (int i = 0; i < row_lanes; ++i) {
+            const real v = b == a ? q[i] : 0.25 * ((q[i] + q[i - below]) + (q[i + above] + q[i + above - below]));
+            k[component(b)][static_cast<std::size_t>(i)] = scale * v;
+            far = std::max(far, std::abs(scale * v));
+        }
+        farthest = std::max(farthest, far);
+    }
+    if (!(farthest <= 1)) return false;
+    const auto trace = [&](real sign) {
+        for (std::size_t b = 0; b < D; ++b)
+            for (std::size_t i = 0; i < row_lanes; ++i) half[b][i] = 0.5 * sign * k[b][i];
+        real far = 0;
+        for (int b = 0; b < D; ++b) {
+            const auto& u = before_[b];
+            Eight v;
+            sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(half, a, b), v);
+            for (std::size_t i = 0; i < row_lanes; ++i) {
+                from[component(b)][i] = sign * dt * frame_.inv_h[b] * v[i];
+                far = std::max(far, std::abs(from[component(b)][i]));
+            }
+        }
+        return far <= 1;
+    };
+    if (!trace(-1)) return false;
+    const auto& u = before_[a];
+    const std::size_t first = u.linear(I);
+    const std::ptrdiff_t sy = u.stride(1), sz = D == 3 ? u.stride(D - 1) : 0;
+    const auto departure = hats_of<D>(from, a, a);
+    sample_near<D>(u.data() + first, sy, sz, departure, to);
+    if constexpr (Correct) {
+        Eight low, high, back;
+        bounds_near<D>(u.data() + first, sy, sz, departure, low, high);
+        if (!trace(1)) return false;
+        sample_near<D>(predicted_[a].data() + first, sy, sz, hats_of<D>(from, a, a), back);
+        for (std::size_t i = 0; i < row_lanes; ++i) to[i] = std::min(std::max(to[i] + 0.5 * (u[first + i] - back[i]), low[i]), high[i]);
+    }
+    return true;
+}
+
+namespace {
+
+/// A column on its way up: places in memory of its lowest face and cell, and the run that comes next or has begun.
+template <int D>
+struct ColumnUp {
+    typename TallPressure<D>::RunsUp runs;
+    Index<D> foot;
+    std::size_t face, cell;
+    std::ptrdiff_t below;  // to the cell on the other side of the face
+    int begin = 0, end = 0;
+    bool moves = false;
+};
+
+}  // namespace
+
+/// One pass over all faces. Those with φ < near beside them move; the others stay as they are. Runs of tall cells are advected once, in the
+/// first pass (`runs_too`: where they are to stand as well). Eight columns go up together, since what stands beside one another stands
+/// together in memory.
+template <int D>
+template <bool Correct>
+void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
+                        MacVelocity<D>& to, MacVelocity<D>* runs_too) const {
+    const Layout<D>& layout = mesh.layout();
+    const int up = layout.up, blocks = (layout.columns() + row_lanes - 1) / row_lanes;
+    constexpr int never = std::numeric_limits<int>::max();
+    for (int a = 0; a < D; ++a) {
+        const int first = a == up ? 1 : 0, last = a == up && sides.open(up, 1) ? layout.rows + 1 : layout.rows;
+        const auto face_stride = static_cast<std::size_t>(to[a].stride(up)), cell_stride = static_cast<std::size_t>(phi.stride(up));
+        parallel_for(0, blocks, [&](int block) {
+            const int c0 = block * row_lanes, count = std::min(layout.columns() - c0, row_lanes);
+            std::array<ColumnUp<D>, row_lanes> columns;
+            for (int i = 0; i < count; ++i) {
+                ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
+                column.runs = mesh.runs_up(a, c0 + i);
+                column.foot = layout.foot(c0 + i);
+                column.face = to[a].linear(column.foot);
+                column.cell = phi.linear(column.foot);
+                column.below = a == up ? -static_cast<std::ptrdiff_t>(cell_stride)
+                                       : static_cast<std::ptrdiff_t>(phi.linear(frame_.near(column.foot, a, -1))) -
+                                             static_cast<std::ptrdiff_t>(column.cell);
+                if (column.runs.any_faces()) continue;
+                column.end = never;  // a wall: as if all of it lay in one run, which others move
+                for (int row = 0; row < layout.rows; ++row) {
+                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
+                    to[a][face] = before_[a][face];
+                }
+            }
+            const auto next_run = [&](ColumnUp<D>& column, int row) {
+                const bool more = column.runs.reaches(row) || column.runs.ahead();
+                column.begin = more ? column.runs.run().row : never;
+                column.end = more ? column.begin + column.runs.run().count : never;
+                return more;
+            };
+            const auto move_one = [&](const ColumnUp<D>& column) {
+                move_run(a, column.foot, up, column.runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
+            };
+            /// All eight columns come to their next run; where it has the same rows in all, it moves in all at once.
+            const auto next_runs = [&](int row) {
+                bool alike = true;
+                for (auto& column : columns) {
+                    next_run(column, row);
+                    alike = alike && column.begin == columns[0].begin && column.end == columns[0].end;
+                }
+                if (Correct) return;
+                alike = alike && columns[0].begin != never &&
+                        move_run_of_eight(a, columns[0].foot, up, columns[0].runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
+                for (auto& column : columns) {
+                    const bool at_side = column.foot[0] < 2 || column.foot[0] + 2 >= frame_.cells[0];
+                    if (column.begin != never && (!alike || at_side)) move_one(column);
+                }
+            };
+            const bool beside = layout.axes[0] == 0 && count == row_lanes && columns[0].foot[0] + row_lanes <= frame_.cells[0];
+            for (int row = first; row < last;) {
+                int until = last, moving = 0;
+                if (beside && std::all_of(columns.begin(), columns.end(), [&](const auto& column) { return row >= column.end; }))
+                    next_runs(row);
+                for (int i = 0; i < count; ++i) {
+                    ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
+                    if (row >= column.end && next_run(column, row) && !Correct) move_one(column);
+                    column.moves = row < column.begin;
+                    if (!column.moves) {
+                        until = std::min(until, column.end);
+                        continue;
+                    }
+                    until = row + 1;
+                    const std::size_t cell = column.cell + static_cast<std::size_t>(std::min(row, layout.rows - 1)) * cell_stride;
+                    const std::size_t below =
+                        row == layout.rows ? cell : static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + column.below);
+                    column.moves = std::min(phi[cell], phi[below]) < near;
+                    moving += column.moves;
+                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
+                    if (!column.moves) to[a][face] = before_[a][face];
+                }
+                if (moving > 0) {
+                    Index<D> I = columns[0].foot;
+                    I[up] = row;
+                    bool inner = beside;
+                    for (int d = 1; d < D; ++d) inner = inner && I[d] >= 2 && I[d] + 2 < frame_.cells[d];
+                    Eight value;
+                    const bool together = inner && move_eight<Correct>(a, I, dt, value);
+                    for (int i = 0; i < count; ++i) {
+                        const ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
+                        if (!column.moves) continue;
+                        I = column.foot;
+                        I[up] = row;
+                        real& u = to[a][column.face + static_cast<std::size_t>(row) * face_stride];
+                        if (together && I[0] >= 2 && I[0] + 2 < frame_.cells[0])
+                            u = value[static_cast<std::size_t>(i)];
+                        else if constexpr (Correct)
+                            u = corrected(a, face_place(a, I), before_[a](I), dt);
+                        else
+                            u = departed(a, face_place(a, I), dt);
+                    }
+                }
+                row = until;
+            }
+        });
+    }
+    keep_sides(to);
+    sync_periodic(to, sides);
+}
+
+/// Faces on the sides of the domain that no column has on its lower side.
+template <int D>
+void Transport<D>::keep_sides(MacVelocity<D>& to) const {
+    for (int a = 0; a < D; ++a) {
+        Index<D> lo{}, hi = to[a].extent();
+        hi[a] = 1;
+        for_each_in(lo, hi, [&](Index<D> I) {
+            if (I[a] == 0 && a == up_) to[a](I) = before_[a](I);
+            I[a] = frame_.cells[a];
+            if (a != up_ || !open_above_) to[a](I) = before_[a](I);
+        });
+    }
+}
+
+template class Transport<2>;
+template class Transport<3>;
+
+}  // namespace weir::tallcell
