@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
 namespace weir::scene {
 
@@ -81,6 +82,7 @@ void refuse_assignment(std::string_view text) {
 }  // namespace
 
 struct Formula::Compiled {
+    std::mutex one_at_a_time;  // muParser reads variables where they are bound
     std::vector<real> values;
     mu::Parser parser;
 };
@@ -106,6 +108,7 @@ Formula::Formula(std::string_view text, const std::vector<std::string>& variable
 }
 
 real Formula::operator()(std::span<const real> values) const {
+    const std::lock_guard<std::mutex> lock(compiled_->one_at_a_time);
     std::copy(values.begin(), values.end(), compiled_->values.begin());
     return compiled_->parser.Eval();
 }

@@ -19,7 +19,7 @@ struct BadFormula : std::runtime_error {
     int at, width;
 };
 
-/// One thread at a time may ask a formula; a copy is the same formula.
+/// Threads may ask it at once, and wait for one another; a copy is the same formula.
 class Formula {
 public:
     Formula() = default;

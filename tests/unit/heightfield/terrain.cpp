@@ -1,4 +1,5 @@
 // Terrain and water of a scene: formulas, grids, images, shapes; and what is wrong with them, where it stands.
+#include "core/parallel.hpp"
 #include "heightfield/raster.hpp"
 #include "heightfield/start.hpp"
 #include "scene/formula.hpp"
@@ -99,6 +100,24 @@ TEST("formulas: precedence, functions, and where they are wrong") {
     EXPECT_EQ(wrong("x = 2"), "2: \"=\" is not expected here") << "a formula changes nothing";
     EXPECT_EQ(wrong("x, 2"), "0: one value is expected");
     EXPECT_EQ(f("x <= 2 ? 1 : 0", 2), 1);
+}
+
+TEST("a formula that threads ask at once answers each of them") {
+    const scene::Formula f("x^2 + sin(z)", {"x", "z"});
+    constexpr int count = 200000;
+    std::vector<real> value(count);
+    const int before = set_threads(4);
+    parallel_for(0, count, [&](int i) {
+        const real at[2] = {0.001 * i, 0.002 * i};
+        value[static_cast<std::size_t>(i)] = f(at);
+    });
+    set_threads(before);
+    int wrong = 0;
+    for (int i = 0; i < count; ++i) {
+        const real at[2] = {0.001 * i, 0.002 * i};
+        wrong += value[static_cast<std::size_t>(i)] != f(at);
+    }
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST("a mistake in a scene's formula stands at its own column") {
