@@ -2,6 +2,7 @@
 #pragma once
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
+#include "tallcell/columns.hpp"
 
 namespace weir::tallcell {
 
