@@ -12,6 +12,7 @@
 #   list WHAT           solvers, effects, cases or devices
 #   describe [WHAT]     what a scene may say
 #   test [...]          all tests; more words go to ctest
+#   python              the package of Python, in build/release/python
 #   install DIR         the program, its cases and the library
 # `./weir.sh COMMAND --help` tells more. Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
 # second call re-does only what changed. The executable is build/release/weir.
@@ -21,7 +22,9 @@ here="$(cd "$(dirname "$0")" && pwd)"
 weir_needs=(g++ cmake ninja-build git libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev opencl-headers
             ocl-icd-opencl-dev libgsl-dev libmuparser-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev)
 figures_need=(gnuplot-nox)
-tests_need=(ccache libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium)
+python_needs=(python3-dev pybind11-dev python3-numpy)
+tests_need=(ccache libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
+            python3-pytest python3-matplotlib)
 
 install_missing() { # PACKAGE...
     if ! command -v dpkg-query >/dev/null; then
@@ -44,18 +47,34 @@ install_missing() { # PACKAGE...
     "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build [TARGET...]: those, without the tests where they have never been asked for
+# configure OPTION...: with them on; what nobody has asked for yet, tests and benchmarks, is off
+configure() {
+    local option wanted=()
+    for option in "$@"; do
+        grep -qs "^$option:BOOL=ON" "$here/build/release/CMakeCache.txt" || wanted+=("-D$option=ON")
+    done
+    [ -f "$here/build/release/build.ninja" ] || wanted=(-DWEIR_TESTS=OFF -DWEIR_BENCHMARKS=OFF "${wanted[@]}")
+    [ ${#wanted[@]} -eq 0 ] || (cd "$here" && cmake --preset release "${wanted[@]}")
+}
+
+# build TARGET...
 build() {
-    [ -f "$here/build/release/build.ninja" ] || (cd "$here" && cmake --preset release -DWEIR_TESTS=OFF -DWEIR_BENCHMARKS=OFF)
+    configure
     cmake --build "$here/build/release" --target "$@"
+}
+
+# build_python: the module, and how to use it
+build_python() {
+    install_missing "${weir_needs[@]}" "${python_needs[@]}"
+    configure WEIR_PYTHON
+    build weir_python
+    echo "use it: PYTHONPATH=$here/build/release/python /usr/bin/python3"
 }
 
 # build_all: the tests and benchmarks too
 build_all() {
-    install_missing "${weir_needs[@]}" "${figures_need[@]}" "${tests_need[@]}"
-    if ! grep -qs '^WEIR_TESTS:BOOL=ON' "$here/build/release/CMakeCache.txt"; then
-        (cd "$here" && cmake --preset release -DWEIR_TESTS=ON -DWEIR_BENCHMARKS=ON)
-    fi
+    install_missing "${weir_needs[@]}" "${figures_need[@]}" "${python_needs[@]}" "${tests_need[@]}"
+    configure WEIR_TESTS WEIR_BENCHMARKS WEIR_PYTHON
     cmake --build "$here/build/release"
 }
 
@@ -82,6 +101,7 @@ case "${1:-}" in
     validate | cost | stability | report)
         install_missing "${weir_needs[@]}" "${figures_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     view) install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec "$here/build/release/weir" "$@" ;;
+    python) build_python ;;
     test) build_all && cd "$here/build/release" && run_tests "${@:2}" ;;
     install) [ $# -eq 2 ] || { usage >&2; exit 2; }; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
     help | --help | -h) usage ;;

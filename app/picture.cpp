@@ -1,7 +1,6 @@
 // weir picture RESULT: one frame, or a row of frames, of a finished (or running) run as PNG.
 #include "app/commands.hpp"
-#include "app/picture/sea.hpp"
-#include "app/picture/view.hpp"
+#include "app/picture/draw.hpp"
 #include "app/run_folder.hpp"
 #include "core/error.hpp"
 
@@ -43,18 +42,10 @@ int draw(const PictureArguments& arguments) {
     const std::filesystem::path folder = arguments.result;
     const scene::Scene scene = scene_of_run(folder);
     std::vector<picture::Canvas> pictures;
-    for (const std::size_t number : frames_of(output::frame_times(folder), arguments)) {
-        auto frame = output::read_frame(folder, number, scene.dim());
-        picture::particles_as_markers(frame, scene);
-        if (arguments.field.empty() || arguments.field == "water") picture::level_set_as_markers(frame);
-        if (arguments.grid && scene.dim() != 2) throw BadInput("the grid is drawn in pictures of 2D runs");
-        const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
-        const bool columns = picture::is_of_columns(frame);
-        if (field == "water" && !columns && !frame.particles.count("markers") && !picture::has_sea(frame))
-            throw BadInput("this run has no markers, and no surface, to draw as water");
-        const picture::View view{scene, frame, field, arguments.size, arguments.range, arguments.grid};
-        pictures.push_back(columns ? picture::draw_columns(view) : scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
-    }
+    for (const std::size_t number : frames_of(output::frame_times(folder), arguments))
+        pictures.push_back(
+            picture::draw(scene, output::read_frame(folder, number, scene.dim()),
+                          {.field = arguments.field, .size = arguments.size, .range = arguments.range, .grid = arguments.grid}));
     const std::filesystem::path out = arguments.out.empty() ? folder / "picture.png" : std::filesystem::path(arguments.out);
     row_of(pictures).write(out);
     std::printf("%s\n", out.c_str());

@@ -27,6 +27,9 @@ std::vector<real> frame_times(const std::filesystem::path& folder);
 /// Every file of frame number `frame`. `dim` as the scene says: a flat image does not tell. Throws BadInput.
 FrameData read_frame(const std::filesystem::path& folder, std::size_t frame, int dim);
 
+/// The frame that a solver's fields of the moment would be.
+FrameData frame_of(const FieldSet& fields, real t);
+
 /// 8-bit RGB, row by row from the top.
 void write_png(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& rgb);
 

@@ -97,10 +97,12 @@ int Simulation::threads() const {
     return weir::threads();
 }
 
-StepReport Simulation::step() { return step_towards(next_target()); }
+StepReport Simulation::step() { return step_until(infinity); }
+
+StepReport Simulation::step_until(real t) { return step_towards(std::min(t, finished() && t < infinity ? infinity : next_target())); }
 
 void Simulation::run_until(real t) {
-    while (!reached(t)) step_towards(std::min(t, finished() ? infinity : next_target()));
+    while (!reached(t)) step_until(t);
 }
 
 StepReport Simulation::step_towards(real target) {

@@ -28,6 +28,8 @@ public:
 
     /// One step of next_dt(). Throws NumericalFailure, with step and time, when a field is no longer finite or a solve fails.
     StepReport step();
+    /// One step that does not pass t [s], which has not been reached; past the end of the scene too.
+    StepReport step_until(real t);
     /// Steps until time t [s] is reached exactly; past the end of the scene too.
     void run_until(real t);
     /// time.dt, or what solver and effects advise and time.max_dt allows; cut or halved so that frames and the end are hit exactly; where
@@ -41,7 +43,9 @@ public:
     /// The run ended because nothing changed any more (time.stop_when_steady).
     bool steady() const { return steady_; }
     real time() const { return solver_->time(); }  // [s]
-    real end_time() const { return end_; }         // [s]
+    /// Time t [s] has come, but for rounding.
+    bool reached(real t) const;
+    real end_time() const { return end_; }  // [s]
     std::int64_t steps() const { return steps_; }
     /// Frames stand at 0, every output.every seconds, and at the end. frame() counts them from 0; it is the last one that was reached.
     bool at_frame() const { return at_frame_; }
@@ -69,7 +73,6 @@ private:
     StepLimit limit() const { return guard_ ? solver_->stable_dt() : StepLimit{}; }
     real within_limit(real dt, const StepLimit& limit) const;
     void tell_of_parts(real wanted, real dt, const StepLimit& limit);
-    bool reached(real t) const;
     StepReport step_towards(real target);
 
     scene::Scene scene_;

@@ -107,17 +107,25 @@ std::string run_line(const Study& study, const CostCurve& curve, const Priced& a
     return line;
 }
 
-int plan_command(const PlanOptions& options, const Solvers& solvers) {
+Plan make_plan(const PlanOptions& options, const Solvers& solvers) {
     if (options.error.empty() && options.budget.empty())
         throw BadInput("weir plan needs --error, how wrong the result may be (2%), or --budget, what a frame may cost (16ms), or both");
     const auto folder = find_case(options.name);
-    const Study study = read_study(folder, size_of_table(folder.filename().string(), options.tables));
-    const Budget budget = budget_of(options, study);
-    const PricedHere here = priced_here(options, study, read_cost_table(study, options.tables), solvers);
-    const Recommendation r = recommend(here.curves, study.price, budget);
-    fmt::print("{}", asked_text(study, budget));
+    Plan plan;
+    plan.study = read_study(folder, size_of_table(folder.filename().string(), options.tables));
+    plan.budget = budget_of(options, plan.study);
+    PricedHere here = priced_here(options, plan.study, read_cost_table(plan.study, options.tables), solvers);
+    plan.curves = std::move(here.curves), plan.prices = std::move(here.words);
+    plan.recommendation = recommend(plan.curves, plan.study.price, plan.budget);
+    return plan;
+}
+
+int plan_command(const PlanOptions& options, const Solvers& solvers) {
+    const Plan plan = make_plan(options, solvers);
+    const Recommendation& r = plan.recommendation;
+    fmt::print("{}", asked_text(plan.study, plan.budget));
     const auto show = [&](const char* before, const Choice& c) {
-        fmt::print("{}{}\n{}\n", before, priced_text(c, study), run_line(study, *c.curve, c.at, solvers));
+        fmt::print("{}{}\n{}\n", before, priced_text(c, plan.study), run_line(plan.study, *c.curve, c.at, solvers));
     };
     if (r.take) {
         show("take ", *r.take);
@@ -125,8 +133,8 @@ int plan_command(const PlanOptions& options, const Solvers& solvers) {
         fmt::print("no setting of the table reaches it; the nearest:\n");
         for (const Choice& c : r.nearest) show("", c);
     }
-    if (r.between) fmt::print("perhaps {}: read between two settings, not measured\n", priced_text(*r.between, study));
-    fmt::print("{}", here.words);
+    if (r.between) fmt::print("perhaps {}: read between two settings, not measured\n", priced_text(*r.between, plan.study));
+    fmt::print("{}", plan.prices);
     return r.take ? exit_success : exit_claim_failed;
 }
 

@@ -14,6 +14,17 @@ struct PlanOptions {
     std::filesystem::path tables = "results/cost";
     bool as_measured = false;  // tables of another machine stay as they are
 };
+/// What the tables say of a case, for this machine, and what follows for the budget.
+struct Plan {
+    Study study;
+    Budget budget;
+    std::vector<CostCurve> curves;
+    std::string prices;             // where the milliseconds come from, in words
+    Recommendation recommendation;  // points into `curves`
+};
+/// Throws BadInput.
+Plan make_plan(const PlanOptions& options, const Solvers& solvers = sim::registry());
+
 /// Runs the command and returns its exit code: 1 where no setting reaches what is asked. Throws BadInput.
 int plan_command(const PlanOptions& options, const Solvers& solvers = sim::registry());
 

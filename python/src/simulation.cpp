@@ -1,0 +1,205 @@
+// A simulation in Python: scene in, step, fields and probes out.
+#include "python/src/simulation.hpp"
+
+#include "app/picture/draw.hpp"
+#include "core/parallel.hpp"
+#include "output/read_frame.hpp"
+#include "sim/foretold.hpp"
+#include "sim/registry.hpp"
+#include "sim/solid_cells.hpp"
+#include "validation/report/command.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+
+#include <unistd.h>
+
+namespace py = pybind11;
+
+namespace weir::python {
+
+namespace {
+
+using Changes = std::vector<std::pair<std::string, std::string>>;
+
+std::vector<scene::Override> overrides_of(const Changes& changes) {
+    std::vector<scene::Override> overrides;
+    for (const auto& [key, value] : changes) overrides.push_back({key, value});
+    return overrides;
+}
+
+StatePtr build(scene::Scene scene) {
+    sim::require_memory(scene, sim::registry(), sim::Use::run);
+    return std::make_shared<State>(std::move(scene));
+}
+
+/// As the command takes it: a path, or the name of a case.
+StatePtr from_file(const std::string& name, const Changes& changes) {
+    const bool is_path = name.find_first_of("./") != std::string::npos || std::filesystem::exists(name);
+    return build(
+        scene::read(is_path ? std::filesystem::path(name) : validation::find_case_scene(name), sim::schemas(), overrides_of(changes)));
+}
+
+StatePtr from_text(const std::string& text, const std::string& name, const Changes& changes) {
+    return build(scene::parse(text, name, sim::schemas(), overrides_of(changes)));
+}
+
+/// Steps that do not pass t; the last one's report. Other threads of Python run meanwhile.
+StepReport step(const StatePtr& state, real t, std::int64_t count) {
+    const Change change(state);
+    const py::gil_scoped_release release;
+    StepReport report;
+    for (std::int64_t i = 0; i < count && (i == 0 || !state->simulation.reached(t)); ++i) {
+        const auto before = std::chrono::steady_clock::now();
+        report = state->simulation.step_until(t);
+        if (!state->measured) continue;
+        state->measured->on_step(report, std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
+    }
+    return report;
+}
+
+const char* word(Where where) { return where == Where::cell ? "cell" : where == Where::face ? "face" : "particle"; }
+
+py::list fields(const StatePtr& state) {
+    py::list list;
+    for (const auto& f : state->shown().fields) list.append(py::make_tuple(f.set, f.name, f.unit, word(f.where), f.components()));
+    return list;
+}
+
+py::dict integrals(const StatePtr& state) {
+    py::dict all;
+    for (const auto& i : state->simulation.solver().integrals()) all[py::str(i.name)] = i.value;
+    return all;
+}
+
+py::dict probe(const StatePtr& state, const std::string& name) {
+    const auto& series = state->simulation.probes();
+    const auto at = std::find_if(series.begin(), series.end(), [&](const ProbeSeries& p) { return p.name == name; });
+    if (at == series.end()) throw py::key_error("the scene has no probe \"" + name + "\"");
+    const std::size_t rows = at->times.size(), columns = at->columns.size();
+    py::array_t<real> times(static_cast<py::ssize_t>(rows)), values({rows, columns}), positions({at->positions.size(), std::size_t{3}});
+    for (std::size_t i = 0; i < rows; ++i) {
+        times.mutable_at(i) = at->times[i];
+        for (std::size_t c = 0; c < columns; ++c) values.mutable_at(i, c) = at->values[i][c];
+    }
+    for (std::size_t i = 0; i < at->positions.size(); ++i)
+        for (int d = 0; d < 3; ++d) positions.mutable_at(i, static_cast<std::size_t>(d)) = at->positions[i][d];
+    using namespace py::literals;
+    return py::dict("kind"_a = at->kind, "columns"_a = at->columns, "times"_a = times, "values"_a = values, "positions"_a = positions);
+}
+
+std::vector<std::string> probe_names(const StatePtr& state) {
+    std::vector<std::string> names;
+    for (const auto& p : state->simulation.probes()) names.push_back(p.name);
+    return names;
+}
+
+void save(const StatePtr& state, const std::filesystem::path& file) {
+    Checkpoint checkpoint;
+    state->simulation.save(checkpoint);
+    checkpoint.write(file);
+}
+
+void restore(const StatePtr& state, const std::filesystem::path& file) {
+    const Change change(state);
+    state->simulation.restore(Checkpoint::read(file));
+}
+
+/// A frame as `weir run` writes it; the series begins with the first one.
+std::vector<std::filesystem::path> write_frame(const StatePtr& state, const std::filesystem::path& folder) {
+    if (!state->frames) {
+        output::FrameOptions options;
+        options.solid = sim::solid_cells(state->simulation.scene());
+        state->frames.emplace(folder, options);
+    }
+    state->frames->write(state->shown(), state->simulation.time());
+    return state->frames->series();
+}
+
+py::bytes picture(const StatePtr& state, const std::string& field, int size) {
+    const auto file = std::filesystem::temp_directory_path() / fmt::format("weir-{}-{}.png", ::getpid(), state->moment);
+    picture::draw(state->simulation.scene(), output::frame_of(state->shown(), state->simulation.time()), {.field = field, .size = size})
+        .write(file);
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    std::filesystem::remove(file);
+    return bytes;
+}
+
+void measure(const StatePtr& state, const std::vector<std::string>& metrics, const std::string& reference) {
+    if (state->simulation.steps() > 0) throw BadInput("metrics look at a run from its start: ask for them before the first step");
+    state->measured.emplace(state->simulation, metrics, reference);
+}
+
+std::map<std::string, double> measured(const StatePtr& state) {
+    if (!state->measured) throw BadInput("nothing is measured: ask for metrics before the first step");
+    return state->measured->values();
+}
+
+template <class F>
+auto of_simulation(F get) {
+    return [get](const StatePtr& state) { return get(static_cast<const Simulation&>(state->simulation)); };
+}
+
+}  // namespace
+
+void add_simulation(py::module_& module) {
+    py::class_<StepReport>(module, "StepReport", "What one step answers; nan where the solver does not know the quantity.")
+        .def_readonly("dt", &StepReport::dt, "[s]")
+        .def_readonly("cfl", &StepReport::cfl)
+        .def_readonly("max_divergence", &StepReport::max_divergence, "[1/s]")
+        .def_readonly("iterations", &StepReport::iterations, "of the pressure, or of constraints")
+        .def_readonly("residual_before", &StepReport::residual_before)
+        .def_readonly("residual_after", &StepReport::residual_after)
+        .def_readonly("residual_max", &StepReport::residual_max)
+        .def_readonly("density_error", &StepReport::density_error, "mean compression of particles")
+        .def_readonly("max_density_error", &StepReport::max_density_error)
+        .def("__repr__", [](const StepReport& r) {
+            return fmt::format("StepReport(dt={:.6g}, cfl={:.3g}, iterations={})", r.dt, r.cfl, r.iterations);
+        });
+
+    py::class_<State, StatePtr>(module, "Core")
+        .def_static("from_file", from_file)
+        .def_static("from_text", from_text)
+        .def("step", [](const StatePtr& s, std::int64_t count) { return step(s, infinity, count); })
+        .def("step_until", [](const StatePtr& s, real t) { return step(s, t, 1); })
+        .def_property_readonly("time", of_simulation([](const Simulation& s) { return s.time(); }))
+        .def("reached", [](const StatePtr& s, real t) { return s->simulation.reached(t); })
+        .def_property_readonly("end_time", of_simulation([](const Simulation& s) { return s.end_time(); }))
+        .def_property_readonly("steps", of_simulation([](const Simulation& s) { return s.steps(); }))
+        .def_property_readonly("finished", of_simulation([](const Simulation& s) { return s.finished(); }))
+        .def_property_readonly("at_frame", of_simulation([](const Simulation& s) { return s.at_frame(); }))
+        .def_property_readonly("frame", of_simulation([](const Simulation& s) { return s.frame(); }))
+        .def_property_readonly("next_dt", of_simulation([](const Simulation& s) { return s.next_dt(); }))
+        .def_property_readonly("threads", of_simulation([](const Simulation& s) { return s.threads(); }))
+        .def_property_readonly("warnings", of_simulation([](const Simulation& s) { return s.warnings(); }))
+        .def_property_readonly("bytes", of_simulation([](const Simulation& s) { return s.solver().bytes(); }))
+        .def_property_readonly("solver", of_simulation([](const Simulation& s) { return s.scene().solver(); }))
+        .def_property_readonly("scene", of_simulation([](const Simulation& s) { return scene::to_toml(s.scene().root()); }))
+        .def_property_readonly("dim", of_simulation([](const Simulation& s) { return s.scene().dim(); }))
+        .def_property_readonly("moment", [](const StatePtr& s) { return s->moment; })
+        .def_property_readonly("grid",
+                               [](const StatePtr& s) {
+                                   const GridView& g = s->shown().grid;
+                                   return py::make_tuple(g.dim, g.cells, g.origin, g.spacing);
+                               })
+        .def("fields", fields)
+        .def("component", component)
+        .def("integrals", integrals)
+        .def("probe_names", probe_names)
+        .def("probe", probe)
+        .def("save", save)
+        .def("restore", restore)
+        .def("write_frame", write_frame)
+        .def("picture", picture)
+        .def("measure", measure)
+        .def("measured", measured);
+}
+
+}  // namespace weir::python

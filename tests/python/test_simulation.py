@@ -1,0 +1,321 @@
+"""Simulations from Python: scenes in, steps, fields, probes; what is refused, and that nothing crashes."""
+import gc
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import weir
+
+dam = {
+    "solver": "mac_water",
+    "dim": 2,
+    "grid": {"cells": [32, 16], "size": [1.0, 0.5]},
+    "time": {"end": 0.2},
+    "fluid": {"density": 1000.0},
+    "liquid": [{"shape": "box", "min": [0.0, 0.0], "max": [0.25, 0.25]}],
+    "effects": {"gravity": {"g": [0.0, -9.81]}},
+    "output": {"every": 0.05},
+    "probes": [{"name": "front", "kind": "front", "axis": "x"}, {"name": "level", "kind": "gauge", "at": [0.01, 0.0]}],
+}
+
+
+def changed(**keys):
+    return {**dam, **keys}
+
+
+def test_runs_to_the_end():
+    sim = weir.Simulation(dam)
+    assert (sim.time, sim.steps, sim.finished, sim.solver, sim.dim) == (0, 0, False, "mac_water", 2)
+    reports = sim.run()
+    assert sim.finished and sim.time == pytest.approx(0.2) and sim.steps == len(reports) > 3
+    assert np.all(np.diff(reports["time"]) > 0) and reports["dt"].sum() == pytest.approx(0.2)
+    assert np.all(reports["iterations"] > 0)
+
+
+def test_run_until_is_exact_and_may_be_stopped():
+    sim = weir.Simulation(dam)
+    sim.run_until(0.03)
+    assert sim.time == pytest.approx(0.03, abs=1e-12)
+    seen = []
+    sim.run_until(0.2, on_step=lambda s, report: seen.append(report.dt) or len(seen) == 2)
+    assert len(seen) == 2 and sim.time < 0.2
+    assert sim.run_until(sim.time).shape == (0,)
+
+
+def test_frames_come_as_the_scene_says():
+    assert [round(sim.time, 9) for sim in weir.Simulation(dam).frames()] == [0, 0.05, 0.1, 0.15, 0.2]
+
+
+def test_a_file_a_case_and_a_dict_are_the_same_scene(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text(weir.to_toml(dam))
+    one, two = weir.Simulation(dam), weir.Simulation(file)
+    one.run(), two.run()
+    assert np.array_equal(one["level_set"], two["level_set"])
+    case = weir.Simulation("dam_break_2d", set={"grid.cells": [32, 16], "time.end": 0.01})
+    case.run()
+    assert case["pressure"].shape == (32, 16)
+
+
+def test_results_do_not_depend_on_threads():
+    def level_set(count):
+        weir.set_threads(count)
+        sim = weir.Simulation(dam)
+        sim.run()
+        return sim["level_set"].copy()
+
+    one, two = level_set(1), level_set(2)
+    weir.set_threads(0)
+    assert np.array_equal(one, two)
+
+
+# --- fields
+def test_fields_are_the_solvers_own_numbers():
+    sim = weir.Simulation(dam)
+    sim.step()
+    p = sim["pressure"]
+    a, b = np.asarray(p), np.asarray(p)
+    assert a.shape == p.shape == (32, 16) and a.dtype == np.float64 and p.unit == "Pa"
+    assert np.shares_memory(a, b) and not a.flags.owndata and not a.flags.writeable
+    assert a.strides == (8, 8 * 32)  # x fastest
+    with pytest.raises(ValueError):
+        a[0, 0] = 1
+    with pytest.raises(ValueError):
+        np.asarray(p.copy(), dtype=float)  # a copy may be written ...
+        a.setflags(write=True)  # ... the solver's numbers may not
+
+
+def test_axes_are_those_of_space():
+    sim = weir.Simulation(changed(grid={"cells": [32, 16], "size": [1.0, 0.5]}))
+    phi = np.asarray(sim["level_set"])
+    x, y = np.meshgrid(sim.centres("x"), sim.centres("y"), indexing="ij")
+    inside = (x < 0.25) & (y < 0.25)
+    assert np.array_equal(phi < 0, inside)
+
+
+def test_vectors_and_faces():
+    sim = weir.Simulation(dam)
+    sim.run_until(0.05)
+    velocity = sim["velocity"]
+    assert velocity.components == 2 and len(velocity) == 2
+    u = np.asarray(velocity.x)
+    assert velocity.where == "face" and u.shape == (33, 16) and velocity.y.shape == (32, 17)
+    assert velocity.cells().shape == (32, 16, 2) and np.array_equal(velocity.cells()[..., 0], (u[1:] + u[:-1]) / 2)
+    with pytest.raises(ValueError, match="arrays of different shapes"):
+        np.asarray(velocity)
+    assert repr(velocity) == '<field "velocity" [m/s] face (33, 16) and (32, 17)>'
+    assert np.array_equal(velocity[0], u) and np.max(np.abs(velocity.y)) > 0
+    with pytest.raises(AttributeError, match='"velocity" has no component z'):
+        velocity.z
+    markers = sim["markers.position"]
+    assert markers.where == "particle" and np.asarray(markers).shape == (markers.x.shape[0], 2)
+
+
+def test_arithmetic():
+    sim = weir.Simulation(dam)
+    sim.step()
+    p = sim["pressure"]
+    assert np.array_equal(2 * p + 1, 2 * np.asarray(p) + 1) and np.max(p) > 0 and p[3, 4] == np.asarray(p)[3, 4]
+    with pytest.raises(TypeError):
+        np.add(np.asarray(p), 1, out=p)
+
+
+def test_a_stale_field_raises():
+    sim = weir.Simulation(dam)
+    p = sim["pressure"]
+    sim.step()
+    with pytest.raises(weir.StaleField, match="stepped on; ask for it again"):
+        np.asarray(p)
+    with pytest.raises(weir.StaleField):
+        p.shape
+    assert repr(p) == '<stale field "pressure">'
+    assert sim["pressure"].shape == (32, 16)
+
+
+def test_no_step_while_an_array_looks_on():
+    sim = weir.Simulation(dam)
+    row = np.asarray(sim["pressure"])[3]  # a slice keeps what it is a slice of
+    with pytest.raises(BufferError, match="1 array still looks at the fields"):
+        sim.step()
+    assert sim.steps == 0 and row.shape == (16,)
+    kept = row.copy()
+    del row
+    sim.step()
+    assert sim.steps == 1 and kept.shape == (16,)
+
+
+def test_an_array_outlives_its_simulation():
+    sim = weir.Simulation(changed(grid={"cells": [256, 128], "size": [1.0, 0.5]}))
+    p = np.asarray(sim["level_set"])
+    before = p.copy()
+    del sim
+    gc.collect()
+    scrap = [np.random.rand(256, 128) for _ in range(20)]  # would land on what had been freed
+    assert np.array_equal(p, before) and len(scrap) == 20
+
+
+def test_particles_of_a_particle_solver():
+    sim = weir.Simulation("dam_break_particles", set={"time.end": 0.01})
+    sim.run()
+    x = np.asarray(sim["position"])
+    assert x.ndim == 2 and np.all(np.isfinite(x)) and x.shape[0] > 100
+
+
+# --- probes, integrals, checkpoints, pictures
+def test_probes_and_integrals():
+    sim = weir.Simulation(dam)
+    reports = sim.run()
+    front = sim.probes["front"]
+    assert list(sim.probes) == ["front", "level"] and front.times.shape == (len(reports) + 1,)
+    assert front.values.shape == (len(front.times), 1) and front[0][-1] > front[0][0]
+    name = front.columns[0]
+    assert np.array_equal(front[name], front[0]) and np.array_equal(front[name.split(" [")[0]], front[0])
+    with pytest.raises(KeyError, match='no column "depht"'):
+        front["depht"]
+    with pytest.raises(KeyError, match='no probe "bow"'):
+        sim.probes["bow"]
+    assert sim.integrals["volume"] == pytest.approx(0.0625, rel=0.05)
+
+
+def test_a_checkpoint_goes_on_bit_for_bit(tmp_path):
+    through = weir.Simulation(dam)
+    through.run()
+    first = weir.Simulation(dam)
+    first.run_until(0.1)
+    first.save(tmp_path / "half.checkpoint")
+    second = weir.Simulation(dam)
+    second.restore(tmp_path / "half.checkpoint")
+    second.run()
+    exact = weir.Simulation(dam)
+    exact.run_until(0.1)
+    exact.run()
+    assert second.steps == exact.steps and np.array_equal(second["level_set"], exact["level_set"])
+    assert through.time == second.time
+
+
+def test_pictures_and_frames(tmp_path):
+    sim = weir.Simulation(dam)
+    sim.run_until(0.1)
+    png = sim._repr_png_()
+    assert png[:8] == b"\x89PNG\r\n\x1a\n" and len(png) > 1000
+    sim.write_frame(tmp_path)
+    sim.step()
+    names = {os.path.basename(f) for f in sim.write_frame(tmp_path)}
+    assert "grid.pvd" in names and (tmp_path / "grid.pvd").exists()
+
+
+# --- what is refused
+def test_a_dict_is_refused_as_a_file_is(tmp_path):
+    wrong = changed(solver="mac_water", grid={"cells": [32, -16], "size": [1.0, 0.5]}, time={"end": "soon"},
+                    effects={"gravitation": {"g": [0.0, -9.81]}})
+    file = tmp_path / "scene"
+    file.write_text(weir.to_toml(wrong))
+    said = []
+    for scene in (wrong, file):
+        with pytest.raises(weir.BadInput) as error:
+            weir.Simulation(scene)
+        said.append(str(error.value).replace(str(file), "scene"))
+    assert said[0] == said[1]
+    assert said[0].endswith("3 problems") or "\n3 problems" in said[0]
+    assert 'unknown effect "gravitation"' in said[0] and isinstance(error.value, ValueError)
+
+
+def test_what_is_no_scene():
+    with pytest.raises(TypeError, match="a scene is a path"):
+        weir.Simulation(3)
+    with pytest.raises(TypeError, match="not complex"):
+        weir.Simulation(changed(title=1j))
+    with pytest.raises(weir.BadInput, match="dam_brake_2d"):
+        weir.Simulation("dam_brake_2d")
+    with pytest.raises(KeyError, match="shows no field"):
+        weir.Simulation(dam)["presure"]
+    with pytest.raises(weir.BadInput, match="grid.cels"):
+        weir.Simulation(dam, set={"grid.cels": [3, 3]})
+
+
+def test_a_numerical_failure_tells_its_step():
+    """One sweep of conjugate gradients misses the tolerance, where the cases' default stops the run."""
+    sim = weir.Simulation(dam, set={"scheme.poisson.method": "cg", "scheme.poisson.max_iterations": 1})
+    with pytest.raises(weir.NumericalFailure, match="pressure") as error:
+        sim.run()
+    assert error.value.step >= 1 and error.value.quantity and error.value.time >= 0
+    assert isinstance(error.value, ArithmeticError)
+
+
+# --- threads, signals, price
+def test_other_threads_run_while_it_steps():
+    sim = weir.Simulation(changed(grid={"cells": [512, 256], "size": [1.0, 0.5]}))
+    counted, done = [0], threading.Event()
+
+    def count():
+        while not done.is_set():
+            counted[0] += 1
+            time.sleep(0)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    try:
+        sim.step()
+        before = counted[0]
+        sim.step()
+        assert counted[0] > before
+    finally:
+        done.set()
+        thread.join()
+
+
+def test_two_threads_do_not_step_at_once():
+    sim = weir.Simulation(changed(grid={"cells": [512, 256], "size": [1.0, 0.5]}))
+    errors, steps = [], []
+
+    def run():
+        for _ in range(4):
+            try:
+                steps.append(sim.step())
+            except RuntimeError as error:
+                errors.append(str(error))
+
+    threads = [threading.Thread(target=run) for _ in range(2)]
+    [t.start() for t in threads], [t.join() for t in threads]
+    assert sim.steps == len(steps) and all("another thread" in e for e in errors) and len(steps) + len(errors) == 8
+
+
+def test_ctrl_c_ends_a_run():
+    code = ("import weir\n"
+            "sim = weir.Simulation('dam_break_2d', set={'time.end': 1e4})\n"
+            "print('begun', flush=True)\n"
+            "try:\n    sim.run()\nexcept KeyboardInterrupt:\n    print('interrupted at step', sim.steps)\n")
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "begun\n"
+        time.sleep(0.5)
+        child.send_signal(signal.SIGINT)
+        out, _ = child.communicate(timeout=60)
+    assert out.startswith("interrupted at step") and child.returncode == 0
+
+
+def test_a_step_from_python_costs_little():
+    """At most 20 microseconds more than a step of the library itself: of the same steps, called one by one and in one call."""
+    sim = weir.Simulation({"solver": "mac", "dim": 2, "grid": {"cells": [2, 2], "size": [1.0, 1.0]}, "time": {"end": 1e6, "dt": 1e-3}})
+    count = 500
+
+    def one_by_one():
+        for _ in range(count):
+            sim.step()
+
+    def at_once():
+        sim.step(count)
+
+    more = min(seconds(one_by_one) for _ in range(20)) - min(seconds(at_once) for _ in range(20))
+    assert more / count < 20e-6 and sim.steps == 40 * count
+
+
+def seconds(f):
+    start = time.perf_counter()
+    f()
+    return time.perf_counter() - start
