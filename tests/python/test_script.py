@@ -1,4 +1,4 @@
-"""The script of docs/example: it fits on a page, it runs, and what it measures is what `weir validate` claims."""
+"""Programs that readers are shown: they run, and what they measure is what `weir validate` claims."""
 import os
 import subprocess
 import sys
@@ -18,3 +18,11 @@ def test_dam_break_script(tmp_path):
     assert picture.read_bytes()[:4] == b"\x89PNG" and list(errors) == ["flip", "apic", "pic"]
     [claim] = weir.validate("dam_break_martin_moyce", variants=["mac-pic-front"])["front.mean_error"]
     assert claim.passed and claim.measured == errors["pic"]
+
+
+def test_the_readmes_program(monkeypatch, capsys):
+    monkeypatch.chdir(source)
+    program = (source / "README.md").read_text().split("```python\n")[1].split("```")[0]
+    exec(program, {})
+    said = capsys.readouterr().out
+    assert "pass" in said and "weir run " in said
