@@ -165,6 +165,7 @@ void FlowSolver<D>::remember() {
 template <int D>
 void FlowSolver<D>::remember_fields() {
     for (auto& field : state_.fields) {
+        if (field.derived) continue;
         fill(field.before, field.values, field.boundary);
         solids_.extend_field(state_, field.before);
     }
