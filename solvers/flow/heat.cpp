@@ -70,9 +70,27 @@ void Heat<D>::note(MacState<D>& s) {
 template <int D>
 void Heat<D>::conduct(MacState<D>& s, real dt) {
     set_source(s);
-    auto& h = s["enthalpy"];
-    added_ += explicit_ ? conduction_.euler_step(h, s.cells, false, source_, dt) : conduction_.step(h, s.cells, false, source_, dt);
+    auto& h = s.field("enthalpy");
+    const typename Conduction<D>::Given given{s.cells, false, source_, beside_flow_ ? &h.before : nullptr};
+    added_ += explicit_ ? conduction_.euler_step(h.values, given, dt) : conduction_.step(h.values, given, dt);
     note(s);
+}
+
+template <int D>
+void Heat<D>::lift(MacState<D>& s, real dt) const {
+    if (!lightness_) return;
+    constexpr int up = 1;
+    const matter::Lightness& light = *lightness_;
+    const auto& T = s["temperature"];
+    const Nodes<D> faces = free_faces(s.u, s.sides, up);
+    for_each_row(faces.lo, faces.hi, [&](const Index<D>& first, int count) {
+        Index<D> above = first, under = first - e<D>(up);  // on a side there is one cell, or the one around a periodic axis
+        above[up] = std::min(above[up], T.extent()[up] - 1);
+        if (under[up] < 0) under[up] = s.sides.periodic(up) ? T.extent()[up] - 1 : 0;
+        const real *here = &T(above), *below = &T(under);
+        real* v = &s.u[up](first);
+        for (int i = 0; i < count; ++i) v[i] += 0.5 * dt * gravity_ * (light(below[i]) + light(here[i]));
+    });
 }
 
 /// Where all is liquid, and was before, there is nothing to do; room for what ice holds back is taken when there is the first ice.
@@ -144,10 +162,15 @@ real Heat<D>::stable_dt(const MacState<D>&) const {
     return explicit_ ? conduction_.longest_euler_step() : infinity;
 }
 
-/// No step crosses the moment at which a heater is switched.
+/// A step lets what is lightest fall through no more than the cells that it may cross, and crosses no moment at which a heater is switched.
 template <int D>
 real Heat<D>::max_dt(const MacState<D>& s) const {
     real limit = stable_dt(s);
+    if (lightness_) {
+        const auto& T = *s.find("temperature");
+        const real most = max_over(s.extent(), [&](const Index<D>& I) { return std::abs((*lightness_)(T(I))); });
+        limit = std::min(limit, acceleration_limit(std::abs(gravity_) * most, s.u.h[1], cfl_));
+    }
     for (const Heater& heater : heaters_)
         for (const real moment : {heater.start, heater.end})
             if (before(s.time, moment)) limit = std::min(limit, moment - s.time);

@@ -32,6 +32,9 @@ public:
     void start(MacState<D>& s, const scene::Scene& scene);
     /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it (conduction.hpp).
     void conduct(MacState<D>& s, real dt);
+    /// u += dt g ∫β dT along y, β the substance's expansion from its melting point (Boussinesq); nothing in ice.
+    void lift(MacState<D>& s, real dt) const;
+    bool lifts() const { return lightness_.has_value(); }
     /// u* becomes β u*, and the state's mobility is β. Whether that may have changed.
     bool slow(MacState<D>& s, real dt);
     /// After the projection, which has taken all of (dt/ρ) ∇p away: gives back 1 − β of it.
@@ -57,8 +60,11 @@ private:
     void note(MacState<D>& s);
 
     Melting melting_;
-    real drag_;  // C [kg/(m³ s)]
-    bool explicit_;
+    real gravity_;                                // that acts on what is lighter [m/s²]
+    std::optional<matter::Lightness> lightness_;  // where it does
+    real cfl_;
+    real drag_;                    // C [kg/(m³ s)]
+    bool explicit_, beside_flow_;  // in one stage; while it flows, not after: with fluxes, whose steady states know no step
     Conduction<D> conduction_;
     std::vector<Heater> heaters_;
     Grid<real, D> source_, wall_source_;  // [W/m³]; empty where the scene has none

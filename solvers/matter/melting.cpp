@@ -43,10 +43,23 @@ Melting melting_of(const scene::Scene& scene, const std::string& solver) {
     m.c_solid = curve.heat_capacity(0), m.c_liquid = curve.heat_capacity(1);
     m.k_solid = substance->conduction(thermo::State::solid).conductivity;
     m.k_liquid = substance->conduction(thermo::State::liquid).conductivity;
-    m.expansion = substance->expansion(m.T);
     if (curve.states() > 2) m.boils_above = curve.highest(1);
     refuse_density(scene, *substance, m.T);
     return m;
+}
+
+/// Simpson's rule a step. The table ends where the liquid boils; where it never does, at three times the melting temperature.
+Lightness::Lightness(const scene::Scene& scene) {
+    const auto substance = substance_of(scene);
+    const Melting m = melting_of(scene, "");
+    melts_ = m.T;
+    const real span = std::isfinite(m.boils_above) ? m.temperature(m.boils_above) - m.T : 2 * m.T;
+    const real step = span / static_cast<real>(steps);
+    per_step_ = 1 / step;
+    for (std::size_t i = 0; i < steps; ++i) {
+        const auto beta = [&](real part) { return substance->expansion(m.T + (static_cast<real>(i) + part) * step); };
+        value_[i + 1] = value_[i] + step / 6 * (beta(0) + 4 * beta(0.5) + beta(1));
+    }
 }
 
 Key pressure_key() {

@@ -5,6 +5,7 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 namespace weir::matter {
@@ -15,7 +16,6 @@ struct Melting {
     real c_solid = 0, c_liquid = 0;  // [J/(kg K)]
     real k_solid = 0, k_liquid = 0;  // [W/(m K)]
     real boils_above = infinity;     // [J/kg]
-    real expansion = 0;              // of the liquid where it melts, -(1/rho) drho/dT [1/K]
 
     real temperature(real h) const {
         return T + ((std::min(h, h_solid) - h_solid) / c_solid + (std::max(h, h_liquid) - h_liquid) / c_liquid);
@@ -31,6 +31,23 @@ struct Melting {
 /// Of a scene's substance at its `heat.pressure`. Refuses what never is a liquid that freezes, and a `fluid.density` that neither has:
 /// `solver` takes one density for both, and is named in the message.
 Melting melting_of(const scene::Scene& scene, const std::string& solver);
+
+/// How much lighter than at its melting point a liquid is: the integral of its coefficient of expansion over temperature, by which gravity
+/// is multiplied in Boussinesq's approximation. Nothing in a solid.
+class Lightness {
+public:
+    explicit Lightness(const scene::Scene& scene);
+    real operator()(real T) const {
+        const real at = std::clamp((T - melts_) * per_step_, real(0), real(steps));
+        const auto i = std::min(static_cast<std::size_t>(at), steps - 1);
+        return value_[i] + (at - static_cast<real>(i)) * (value_[i + 1] - value_[i]);
+    }
+
+private:
+    static constexpr std::size_t steps = 512;  // of water a sixth of a kelvin up to boiling
+    real melts_, per_step_;
+    std::array<real, steps + 1> value_{};
+};
 
 /// The key "pressure" of the table "heat", and the list "heaters".
 scene::Key pressure_key();

@@ -71,7 +71,7 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
       boundary_(temperature),
       no_flux_(without_values(temperature)),
       change_(cells),
-      before_(cells),
+      older_(cells),
       k_(cells),
       T_(cells) {
     for (int a = 0; a < D; ++a) {
@@ -84,19 +84,20 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
 
 /// Conductances stay what they are while all is liquid and the cells stay what they are.
 template <int D>
-void Conduction<D>::prepare(const Grid<real, D>& H, const Grid<Cell, D>& cells, bool cells_changed) {
+void Conduction<D>::prepare(const Grid<real, D>& H, const Given& given) {
     const int n = H.extent()[0];
     const real colder = max_of_rows(H.extent(), [&](const Index<D>& I) {  // H below the liquid's
-        const real* at = &H(I);
-        const Cell* cell = &cells(I);
+        const real *at = &H(I), *before = given.before ? given.before->at(I) : at;
+        const Cell* cell = &given.cells(I);
         real most = -infinity;
 #pragma omp simd reduction(max : most)
-        for (int i = 0; i < n; ++i) most = std::max(most, cell[i] == Cell::fluid ? melting_.h_liquid - at[i] : -infinity);
+        for (int i = 0; i < n; ++i)
+            most = std::max(most, cell[i] == Cell::fluid ? melting_.h_liquid - std::min(at[i], before[i]) : -infinity);
         return most;
     });
     const bool liquid = colder <= 0;
-    if (known_ && !cells_changed && liquid && all_liquid_) return;
-    set_conductances(H, cells);
+    if (known_ && !given.cells_changed && liquid && all_liquid_) return;
+    set_conductances(H, given.cells);
     all_liquid_ = liquid, known_ = true;
 }
 
@@ -138,13 +139,13 @@ void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>
     });
 }
 
-/// T_ = T(H + change), with its ghosts.
+/// T_ = T(H + D_j), or T of that from `before`, with its ghosts.
 template <int D>
-void Conduction<D>::take_temperature(const Grid<real, D>& H, const Grid<real, D>& change) {
+void Conduction<D>::take_temperature(const Grid<real, D>& H, const Padded<D>* before) {
     const matter::Melting m = melting_;
     const real per_solid = 1 / m.c_solid, per_liquid = 1 / m.c_liquid;
     fill_rows(T_, boundary_, [&](const Index<D>& first, int count, real* T) {
-        const real *h = &H(first), *d = &change(first);
+        const real *h = before ? before->at(first) : &H(first), *d = &change_(first);
 #pragma omp simd
         for (int i = 0; i < count; ++i) {
             const real at = h[i] + d[i];
@@ -207,55 +208,54 @@ int Conduction<D>::stages_for(real dt, const Grid<real, D>& source) const {
 }
 
 template <int D>
-real Conduction<D>::stages(Grid<real, D>& H, const Grid<real, D>& source, real dt, int count) {
+real Conduction<D>::stages(Grid<real, D>& H, const Given& given, real dt, int count) {
     const Index<D> n = H.extent();
-    const real w = 6 / (static_cast<real>(count) * (count + 5)) * dt / rho_;
-    real given = 0, given_before = 0;  // D_j, D_{j−1} of what comes from outside [J kg/m^D]
-    change_.fill(0);
-    const real sources = source.empty() ? 0 : sum_over(n, [&](const Index<D>& I) { return source(I); });
+    const real w = 6 / (static_cast<real>(count) * (count + 5)) * dt / rho_, elsewhere = rho_ / dt;
+    real arrived = 0, arrived_before = 0;  // D_j, D_{j−1} of what comes from outside [J kg/m^D]
+    change_.fill(0), older_.fill(0);
+    const real sources = given.source.empty() ? 0 : sum_over(n, [&](const Index<D>& I) { return given.source(I); });
     for (int j = 1; j <= count; ++j) {
         const real mu = (2.0 * j + 3) / (j + 4), nu = (1.0 - j) / (j + 4), push = mu * w;
-        take_temperature(H, change_);
-        const real arrives = through_sides() + sources;
-        given_before = std::exchange(given, mu * given + nu * given_before + push * arrives);
+        take_temperature(H, given.before);
+        arrived_before = std::exchange(arrived, mu * arrived + nu * arrived_before + push * (through_sides() + sources));
         for_each_row(Index<D>{}, n, [&](const Index<D>& first, int width) {
-            real *now = &change_(first), *old = &before_(first);
             alignas(64) real rate[row_block];
             flow(first, width, rate);
-            const real* q = source.empty() ? nullptr : &source(first);
-            if (j == 1) {
+            if (!given.source.empty())
+                for (int i = 0; i < width; ++i) rate[i] += (&given.source(first))[i];
+            if (given.before) {
+                const real *now = &H(first), *was = given.before->at(first);
 #pragma omp simd
-                for (int i = 0; i < width; ++i) old[i] = 0;
+                for (int i = 0; i < width; ++i) rate[i] += elsewhere * (now[i] - was[i]);
             }
-            if (q) {
+            const real* now = &change_(first);
+            real* to = &older_(first);
 #pragma omp simd
-                for (int i = 0; i < width; ++i) old[i] = mu * now[i] + nu * old[i] + push * (rate[i] + q[i]);
-            } else {
-#pragma omp simd
-                for (int i = 0; i < width; ++i) old[i] = mu * now[i] + nu * old[i] + push * rate[i];
-            }
+            for (int i = 0; i < width; ++i) to[i] = mu * now[i] + nu * to[i] + push * rate[i];
         });
-        change_.swap(before_);
+        change_.swap(older_);
     }
     for_each_row(Index<D>{}, n, [&](const Index<D>& first, int width) {
         real* h = &H(first);
-        const real* d = &change_(first);
+        const real *from = given.before ? given.before->at(first) : h, *d = &change_(first);
 #pragma omp simd
-        for (int i = 0; i < width; ++i) h[i] += d[i];
+        for (int i = 0; i < width; ++i) h[i] = from[i] + d[i];
     });
-    return rho_ * cell_volume_ * given;
+    return rho_ * cell_volume_ * arrived;
 }
 
 template <int D>
-real Conduction<D>::step(Grid<real, D>& H, const Grid<Cell, D>& cells, bool cells_changed, const Grid<real, D>& source, real dt) {
-    prepare(H, cells, cells_changed);
-    return stages(H, source, dt, stages_for(dt, source));
+real Conduction<D>::step(Grid<real, D>& H, const Given& given, real dt) {
+    if (dt == 0) return 0;
+    prepare(H, given);
+    return stages(H, given, dt, stages_for(dt, given.source));
 }
 
 template <int D>
-real Conduction<D>::euler_step(Grid<real, D>& H, const Grid<Cell, D>& cells, bool cells_changed, const Grid<real, D>& source, real dt) {
-    prepare(H, cells, cells_changed);
-    return stages(H, source, dt, 1);
+real Conduction<D>::euler_step(Grid<real, D>& H, const Given& given, real dt) {
+    if (dt == 0) return 0;
+    prepare(H, given);
+    return stages(H, given, dt, 1);
 }
 
 /// Six half-distances of walls at the most, and faces that conduct up to twice as well as the worse of their cells.
@@ -272,7 +272,7 @@ real Conduction<D>::longest_euler_step() const {
 template <int D>
 std::size_t Conduction<D>::bytes() const {
     std::size_t count = 0;
-    for (const auto* grid : {&change_, &before_}) count += grid->size() * sizeof(real);
+    for (const auto* grid : {&change_, &older_}) count += grid->size() * sizeof(real);
     for (const auto* padded : {&k_, &T_}) count += padded->bytes();
     for (const auto& g : conductance_) count += g.size() * sizeof(real);
     return count;

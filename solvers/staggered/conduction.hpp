@@ -26,20 +26,28 @@ public:
     Conduction(const matter::Melting& melting, const Index<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
     Boundary<D>& boundary() { return boundary_; }
 
-    /// H after dt in the cells of fluid; others are not touched and let nothing through. `source`: q [W/m³], 0 outside the fluid; may be
-    /// empty. `cells_changed`: since the last call. Answers how much heat sides and sources gave [J; in 2D a metre of depth].
-    real step(Grid<real, D>& H, const Grid<poisson::Cell, D>& cells, bool cells_changed, const Grid<real, D>& source, real dt);
+    /// What a step is told beside H.
+    struct Given {
+        const Grid<poisson::Cell, D>& cells;
+        bool cells_changed;                 // since the last call
+        const Grid<real, D>& source;        // q [W/m³], 0 outside the fluid; may be empty
+        const Padded<D>* before = nullptr;  // H before something else changed it in the same step: both then go on side by side, so that a
+                                            // steady state of the two does not depend on the step
+    };
+    /// H after dt in the cells of fluid; others are not touched and let nothing through. Answers how much heat sides and sources gave [J;
+    /// in 2D a metre of depth].
+    real step(Grid<real, D>& H, const Given& given, real dt);
     /// The same in one stage: Euler's explicit scheme, unstable beyond longest_euler_step().
-    real euler_step(Grid<real, D>& H, const Grid<poisson::Cell, D>& cells, bool cells_changed, const Grid<real, D>& source, real dt);
+    real euler_step(Grid<real, D>& H, const Given& given, real dt);
     /// Euler's explicit scheme takes no more heat from a cell than makes it as cold as its neighbours, whatever the cells are.
     real longest_euler_step() const;
     std::size_t bytes() const;
 
 private:
-    void prepare(const Grid<real, D>& H, const Grid<poisson::Cell, D>& cells, bool cells_changed);
+    void prepare(const Grid<real, D>& H, const Given& given);
     void set_conductances(const Grid<real, D>& H, const Grid<poisson::Cell, D>& cells);
-    real stages(Grid<real, D>& H, const Grid<real, D>& source, real dt, int count);
-    void take_temperature(const Grid<real, D>& H, const Grid<real, D>& change);
+    real stages(Grid<real, D>& H, const Given& given, real dt, int count);
+    void take_temperature(const Grid<real, D>& H, const Padded<D>* before);
     int stages_for(real dt, const Grid<real, D>& source) const;
     void flow(const Index<D>& first, int count, real* out) const;
     real through_sides() const;
@@ -51,7 +59,7 @@ private:
     std::array<Grid<real, D>, D> conductance_;  // k/h² of faces [W/(m³ K)]
     real most_conductance_ = 0;                 // of all faces of a cell
     bool all_liquid_ = false, known_ = false;   // when they were set; whether they were
-    Grid<real, D> change_, before_;             // D_j, D_{j−1}
+    Grid<real, D> change_, older_;              // D_j, D_{j−1}
     Padded<D> k_, T_;
 };
 

@@ -146,16 +146,54 @@ TEST("conduction in one stage and in several melts alike where steps are short")
     EXPECT_NEAR(a / b, 1, 2e-3);  // both are of first order in a step that is a thousandth of the time
 }
 
+TEST("a liquid is lighter than where it melts by the integral of its expansion, and a solid by nothing") {
+    const auto scene = [](const std::string& more) {
+        return test::mac_scene(
+            "solver = \"mac\"\ndim = 2\ngrid = { cells = [4, 4], size = [1.0, 1.0] }\ntime = { end = 1.0 }\n"
+            "fluid = { density = 1000.0 }\n" +
+            more);
+    };
+    std::string expanding = wax;
+    expanding.replace(expanding.find("conductivity = 0.6"), 18, "conductivity = 0.6, expansion = 2e-4");
+    const matter::Lightness light(scene(expanding)), water(scene("substance = \"water\"\n"));
+    for (const real T : {250.0, 300.0, 303.7, 340.0}) EXPECT_NEAR(light(T), 2e-4 * std::max(T - 300, 0.0), 1e-15) << T;
+    // Water is heaviest at 277.13 K, by 1.3e-4 (IAPWS; the formula of its saturated liquid has 277.1 K).
+    EXPECT_LT(water(277.13), -1.2e-4);
+    EXPECT_GT(water(277.13), -1.4e-4);
+    EXPECT_GT(water(274), water(277));
+    EXPECT_GT(water(283), water(278));
+    EXPECT_EQ(water(260), 0);
+}
+
+TEST_IN_2D_AND_3D("melt that is warmer rises, and ice does not") {
+    set_threads(1);
+    std::string expanding = stirred(D, "heat = { pressure = 1e5, gravity = 10.0 }\n");
+    expanding.replace(expanding.find("conductivity = 0.6"), 18, "conductivity = 0.6, expansion = 3e-4");
+    std::string beta = stirred(D);
+    const std::string effect = ", buoyancy = { beta = 3e-3, ambient = 300.0 }";
+    expanding.erase(expanding.find(effect), effect.size());
+    FlowSolver<D> a((test::mac_scene(expanding))), b((test::mac_scene(beta)));
+    for (int i = 0; i < 10; ++i) a.step(0.02), b.step(0.02);
+    real most = 0, apart = 0;
+    for_each_cell(a.state().u[1].extent(), [&](const Index<D>& I) {
+        most = std::max(most, std::abs(b.state().u[1](I)));
+        apart = std::max(apart, std::abs(a.state().u[1](I) - b.state().u[1](I)));
+    });
+    EXPECT_GT(most, 1e-4);
+    EXPECT_LT(apart, 0.01 * most);  // in ice, where beta lifts what is colder than 300 K as well, the drag holds both
+}
+
 TEST_IN_2D_AND_3D("a warm cell warms its neighbours and no cell leaves the range of temperatures, whatever the step") {
     set_threads(1);
     const matter::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
     const Index<D> n = Index<D>::constant(17);
     const Grid<poisson::Cell, D> cells(n, poisson::Cell::fluid);
+    const Grid<real, D> none;
     for (const real fourier : {0.1, 0.3, 0.5, 1.0, 3.0, 30.0}) {
         Conduction<D> conduction(m, n, Vec<D>::constant(1), 1, {});
         Grid<real, D> h(n, m.enthalpy(300));
         h(Index<D>::constant(8)) = m.enthalpy(400);
-        EXPECT_EQ(conduction.step(h, cells, false, {}, fourier), 0);
+        EXPECT_EQ(conduction.step(h, {cells, false, none}, fourier), 0);
         real lowest = infinity;
         for (const real value : h.values()) lowest = std::min(lowest, m.temperature(value));
         EXPECT_GT(lowest, 300 - 1e-10) << fourier;  // Legendre's polynomials fall 8 K short in 3D
@@ -168,13 +206,14 @@ TEST("a step of many stages has an eighth of z^2 for its error, z = -(pi/L)^2 al
     const matter::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
     const Index<2> n{64, 1};
     const Grid<poisson::Cell, 2> cells(n, poisson::Cell::fluid);
+    const Grid<real, 2> none;
     Conduction<2> conduction(m, n, {1.0, 1.0}, 1, {});
     Grid<real, 2> h(n);
     const real pi = std::numbers::pi, wave = std::sin(pi / 128) * 2;
     const auto shape = [&](int i) { return std::cos(pi * (i + 0.5) / 64); };
     for (int i = 0; i < 64; ++i) h({i, 0}) = m.enthalpy(300 + shape(i));
     const real dt = 60, z = -wave * wave * dt;  // 19 stages
-    conduction.step(h, cells, false, {}, dt);
+    conduction.step(h, {cells, false, none}, dt);
     // Of s stages the coefficient of z^2 is 3/8 (1 - 4/(s (s + 5)) ...) by (s - 1)(s + 6)/(s (s + 5)) of 3/8.
     const real s = 19, expected = 1 + z + 3.0 / 8 * z * z * ((s - 1) * (s + 6)) / (s * (s + 5));
     for (int i = 0; i < 64; ++i) EXPECT_NEAR((m.temperature(h({i, 0})) - 300) / shape(i), expected, std::abs(z * z * z) / 6) << i;
