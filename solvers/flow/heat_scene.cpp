@@ -2,6 +2,7 @@
 #include "core/error.hpp"
 #include "flow/heat.hpp"
 #include "geometry/shape.hpp"
+#include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
 
@@ -18,13 +19,7 @@ using scene::Type;
 Melting melting_of(const scene::Scene& scene) {
     const auto substance = matter::substance_of(scene);
     const real p = scene.number("heat.pressure");
-    const auto curve = [&] {
-        try {
-            return substance->heat_curve(p);
-        } catch (const BadInput& error) {
-            scene.refuse("heat.pressure", error.what());
-        }
-    }();
+    const auto curve = matter::curve_of(scene, *substance);
     if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
         scene.refuse("heat.pressure",
                      std::string("at ") + scene::number_text(p) + " Pa " + substance->name() + " is never a liquid that freezes",
@@ -61,20 +56,12 @@ std::string side_path(int axis, int end) { return std::string("sides.") + "xyz"[
 
 template <int D>
 std::vector<Key> Heat<D>::keys() {
-    Key substance = matter::substance_key();
-    substance.required = false;
-    substance.doc += " Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike.";
-    return {substance,
+    return {matter::substance_key_of_heat(
+                "Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike."),
             {.name = "heat",
              .type = Type::table,
              .doc = "How a substance takes up heat. Only where `substance` is named.",
-             .keys = {{.name = "pressure",
-                       .type = Type::number,
-                       .doc = "At which it melts and boils.",
-                       .unit = "Pa",
-                       .fallback = 101325.0,
-                       .min = 0,
-                       .min_open = true},
+             .keys = {matter::pressure_key(),
                       {.name = "conduction",
                        .type = Type::choice,
                        .doc = "explicit limits the step to about rho c h^2/(6 dim k); implicit does not, and is first order in time.",
@@ -87,18 +74,8 @@ std::vector<Key> Heat<D>::keys() {
                        .fallback = 1.6e6,
                        .min = 0,
                        .min_open = true}}},
-            {.name = "heaters",
-             .type = Type::tables,
-             .doc = "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.",
-             .keys = {{.name = "power",
-                       .type = Type::number,
-                       .doc = "Heat given off; in 2D by a metre of depth. Negative: a cooler.",
-                       .unit = "W",
-                       .required = true},
-                      {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
-                      {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
-             .selector = "shape",
-             .variants_from = &scene::shapes}};
+            matter::heaters_key(
+                "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.")};
 }
 
 template <int D>
@@ -144,8 +121,7 @@ void Heat<D>::read_sides(const scene::Scene& scene, MacState<D>& s) {
             const bool passes = side.kind == geometry::SideKind::inflow || side.kind == geometry::SideKind::outflow;
             if (side.temperature) {
                 const real T = *side.temperature;
-                if (!(T > 0))
-                    scene.refuse(path + ".temperature", "a temperature of " + scene::number_text(T) + " K", "temperatures are above 0 K");
+                matter::check_temperature(scene, path + ".temperature", T);
                 const real h = melting_.enthalpy(T);
                 if (h > melting_.boils_above)
                     scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils",
@@ -169,7 +145,7 @@ void Heat<D>::read_heaters(const scene::Scene& scene, const MacState<D>& s) {
         const auto& table = tables[i];
         const std::string path = "heaters[" + std::to_string(i) + "]";
         Heater heater{table.number("start"), table.number_or("end", infinity), 0, {}};
-        if (!(heater.end > heater.start)) scene.refuse(path + ".end", path + ".end is not after its start");
+        matter::check_heater(scene, i);
         const auto shape = geometry::make_shape<D>(table);
         bool covers = false;
         for (std::size_t c = 0; c < product(s.extent()); ++c) {
