@@ -2,6 +2,7 @@
 #include "core/error.hpp"
 #include "flow/heat.hpp"
 #include "geometry/shape.hpp"
+#include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
 
@@ -21,11 +22,9 @@ std::string side_path(int axis, int end) { return std::string("sides.") + "xyz"[
 
 template <int D>
 std::vector<Key> Heat<D>::keys() {
-    Key substance = matter::substance_key();
-    substance.required = false;
-    substance.doc += " Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike.";
     return {
-        substance,
+        matter::substance_key_of_heat(
+            "Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike."),
         {.name = "heat",
          .type = Type::table,
          .doc = "How a substance takes up heat. Only where `substance` is named.",
@@ -49,7 +48,8 @@ std::vector<Key> Heat<D>::keys() {
                    .fallback = 1.6e6,
                    .min = 0,
                    .min_open = true}}},
-        matter::heaters_key()};
+        matter::heaters_key(
+            "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.")};
 }
 
 template <int D>
@@ -97,8 +97,7 @@ void Heat<D>::read_sides(const scene::Scene& scene, MacState<D>& s) {
             const bool passes = side.kind == geometry::SideKind::inflow || side.kind == geometry::SideKind::outflow;
             if (side.temperature) {
                 const real T = *side.temperature;
-                if (!(T > 0))
-                    scene.refuse(path + ".temperature", "a temperature of " + scene::number_text(T) + " K", "temperatures are above 0 K");
+                matter::check_temperature(scene, path + ".temperature", T);
                 const real h = melting_.enthalpy(T);
                 if (h > melting_.boils_above)
                     scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils",
@@ -122,7 +121,7 @@ void Heat<D>::read_heaters(const scene::Scene& scene, const MacState<D>& s) {
         const auto& table = tables[i];
         const std::string path = "heaters[" + std::to_string(i) + "]";
         Heater heater{table.number("start"), table.number_or("end", infinity), 0, {}};
-        if (!(heater.end > heater.start)) scene.refuse(path + ".end", path + ".end is not after its start");
+        matter::check_heater(scene, i);
         const auto shape = geometry::make_shape<D>(table);
         bool covers = false;
         for (std::size_t c = 0; c < product(s.extent()); ++c) {

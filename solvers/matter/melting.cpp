@@ -1,13 +1,10 @@
 #include "matter/melting.hpp"
 
-#include "core/error.hpp"
+#include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
 
 namespace weir::matter {
-
-using scene::Key;
-using scene::Type;
 
 namespace {
 
@@ -27,13 +24,7 @@ void refuse_density(const scene::Scene& scene, const thermo::Substance& substanc
 Melting melting_of(const scene::Scene& scene, const std::string& solver) {
     const auto substance = substance_of(scene);
     const real p = scene.number("heat.pressure");
-    const auto curve = [&] {
-        try {
-            return substance->heat_curve(p);
-        } catch (const BadInput& error) {
-            scene.refuse("heat.pressure", error.what());
-        }
-    }();
+    const auto curve = curve_of(scene, *substance);
     if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
         scene.refuse("heat.pressure",
                      std::string("at ") + scene::number_text(p) + " Pa " + substance->name() + " is never a liquid that freezes",
@@ -60,31 +51,6 @@ Lightness::Lightness(const scene::Scene& scene) {
         const auto beta = [&](real part) { return substance->expansion(m.T + (static_cast<real>(i) + part) * step); };
         value_[i + 1] = value_[i] + step / 6 * (beta(0) + 4 * beta(0.5) + beta(1));
     }
-}
-
-Key pressure_key() {
-    return {.name = "pressure",
-            .type = Type::number,
-            .doc = "At which it melts and boils.",
-            .unit = "Pa",
-            .fallback = 101325.0,
-            .min = 0,
-            .min_open = true};
-}
-
-Key heaters_key() {
-    return {.name = "heaters",
-            .type = Type::tables,
-            .doc = "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.",
-            .keys = {{.name = "power",
-                      .type = Type::number,
-                      .doc = "Heat given off; in 2D by a metre of depth. Negative: a cooler.",
-                      .unit = "W",
-                      .required = true},
-                     {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
-                     {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
-            .selector = "shape",
-            .variants_from = &scene::shapes};
 }
 
 }  // namespace weir::matter

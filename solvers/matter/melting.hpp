@@ -49,8 +49,4 @@ private:
     std::array<real, steps + 1> value_{};
 };
 
-/// The key "pressure" of the table "heat", and the list "heaters".
-scene::Key pressure_key();
-scene::Key heaters_key();
-
 }  // namespace weir::matter

@@ -80,3 +80,26 @@ REFERENCE(melting_gallium) {
     ref.curves["conduction"].dashed = true;
     return ref;
 }
+
+/// A wave of temperature along x with one period in the domain decays as exp(−α k² t).
+REFERENCE(decaying_sine) {
+    const Wax w(scene);
+    const real k = 2 * pi / scene.root().numbers("grid.size").at(0);
+    Reference ref{.source = "Fourier 1822"};
+    ref.numbers = {{"rate", w.k_liquid / (w.rho * w.c_liquid) * k * k}};
+    return ref;
+}
+
+/// Ice and water at rest between two walls: each side is linear, what flows is the same, between them it is as warm as melting ice.
+REFERENCE(steady_slab) {
+    const Wax w(scene);
+    const real hot = scene.number("sides.x_min.temperature"), cold = scene.number("sides.x_max.temperature");
+    const real l = scene.root().numbers("grid.size").at(0);
+    const real q = (w.k_liquid * (hot - w.T) + w.k_solid * (w.T - cold)) / l, front = w.k_liquid * (hot - w.T) / q;
+    Reference ref{.source = "steady conduction: k dT/dx is constant"};
+    ref.numbers = {{"difference", hot - cold}, {"front", front}, {"flux", q}};
+    ref.scalars["temperature"] = [=](const Vec<3>& x, real) {
+        return x[0] < front ? w.T + q / w.k_liquid * (front - x[0]) : w.T - q / w.k_solid * (x[0] - front);
+    };
+    return ref;
+}
