@@ -60,7 +60,11 @@ Columns::Columns(const scene::Scene& scene)
     make_stiffness();
     if (!floats_.empty()) {
         displaced_.resize(state_.plane.count());
-        floats_.enter(surface_, rate_, k_);
+        try {
+            floats_.enter(surface_, rate_, k_);
+        } catch (const NumericalFailure& failure) {  // on the bed, or in one another
+            scene.refuse("floats", failure.what());
+        }
     }
     if (scene.effect("gravity")) plans_.push_back({.name = "gravity", .inside = "move columns"});
     if (const auto* t = scene.effect("damping")) {
