@@ -44,6 +44,10 @@ public:
                 if (const real covered = part(x0, x1, i, plane_.dx) * part(z0, z1, k, plane_.dz); covered > 1e-12)
                     covers.push_back({plane_.at(i, k), std::min(1.0, covered), 0});
     }
+    real pace(real t) const override {
+        const Vec<D> v = motion_.pose(t).velocity;
+        return std::abs(v[0]) / plane_.dx + (D == 3 ? std::abs(v[D - 1]) / plane_.dz : 0);
+    }
     real mass() const override { return mass_; }
     real height() const override { return height_; }
     real speed() const override { return speed_; }
@@ -421,11 +425,20 @@ void Floats::displaced(const Field& surface, Field& to) const {
     }
 }
 
+real Floats::pace(real t) const {
+    real most = 0;
+    for (const auto& body : bodies_) most = std::max(most, body->pace(t));
+    return most;
+}
+
+/// By the columns beside it: below it the height is that of its pressure, which a fast object raises far.
 real Floats::over_top(const Field& surface) const {
     real most = 0;
     for (const Contact& c : contacts_) {
-        const Body& body = *bodies_[c.body];
-        if (c.touches) most = std::max(most, surface[covered_[c.place].column] - c.underside - body.height() - body.top());
+        const Covered& below = covered_[c.place];
+        const real top = c.underside + bodies_[c.body]->height() + bodies_[c.body]->top();
+        for (std::size_t f = 0; f < 4; ++f)
+            if (below.place_beside[f] < 0) most = std::max(most, surface[below.beside[f]] - top);
     }
     return most;
 }
