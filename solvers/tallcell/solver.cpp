@@ -46,16 +46,11 @@ void TallCells<D>::move_surface(real dt) {
     surface_.redistance();
 }
 
-/// φ moves by the missing volume over the surface's area, at most 0.02 h a step, less than motion itself moves it by.
 template <int D>
 void TallCells<D>::control_volume() {
     if (!options_.volume_control) return;
     const auto timed = passes_.time("effect volume_control");
-    const real area = surface_.area();
-    if (area == 0) return;
-    const real most = 0.02 * frame_.h_min(), shift = std::clamp((volume_target_ - surface_.volume()) / area, -most, most);
-    surface_.dilate(shift);
-    volume_shift_ += std::abs(shift);
+    volume_shift_ += std::abs(surface_.regain(volume_target_ - surface_.volume()));
 }
 
 template <int D>
