@@ -40,6 +40,12 @@ template <int D>
 void TallCells<D>::refuse_what_it_cannot(const scene::Scene& scene) const {
     refuse_flat_cells(scene, frame_);
     const char* axis_name[] = {"x", "y", "z"};
+    constexpr real nothing = 1e-9;  // [m/s²]: moves nothing in any run
+    if (gravity_[up_] > nothing)
+        scene.refuse("effects.gravity.g",
+                     std::string("gravity pulls most towards ") + axis_name[up_] + "_max: tall cells stand on the floor at " +
+                         axis_name[up_] + "_min, under the regular ones",
+                     "gravity that points against the axis that it is most along, as g = [0, -9.81], or solver \"mac_water\"");
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1}) {
             const auto kind = state_.sides.side(a, end).kind;
