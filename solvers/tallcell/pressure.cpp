@@ -17,7 +17,6 @@ TallPressure<D>::TallPressure(const Frame<D>& frame, int up, const poisson::Opti
     layout_ = Layout<D>(frame.cells, up, periodic);
     A_.n = layout_.n;
     A_.periodic = layout_.periodic;
-    A_.axes = D - 1;
     nothing_to_do_.converged = true;
 }
 
@@ -53,8 +52,8 @@ template <int D>
 void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>& state) {
     find_runs(state);
     assemble(phi, state);
-    if (A_.knots.count() > 0) solver_.setup(A_);
-    for (auto* list : {&b_, &q_, &mean_}) resize_scratch(*list, at(A_.knots.count()));
+    if (knots_.count() > 0) solver_.setup(A_);
+    for (auto* list : {&b_, &q_, &mean_}) resize_scratch(*list, at(knots_.count()));
 }
 
 template <int D>
@@ -65,7 +64,7 @@ void TallPressure<D>::visit(const MacState<D>& state, int h, int column, Single&
     const Line face = line(state.u[axis], column);
     const real* open = state.solid.any() ? state.solid.open[at(axis)].data() : nullptr;
     visit_faces(
-        A_.knots, lower, column, [&](int row) { return !open || open[face(row)] == 1; },
+        knots_, lower, column, [&](int row) { return !open || open[face(row)] == 1; },
         [&](int row, const Row& l, const Row& r) { single(face(row), row, l, r); }, run);
 }
 
@@ -92,120 +91,6 @@ void TallPressure<D>::find_runs(const MacState<D>& state) {
     }
 }
 
-/// 1/θ between a liquid cell and one of air.
-template <int D>
-real TallPressure<D>::cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const {
-    return std::min(1 - phi[air] / phi[liquid], largest_cut_);
-}
-
-template <int D>
-void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& state) {
-    count_beside(state);
-    parallel_for(0, layout_.columns(), [&](int c) {
-        add_vertical(phi, state, c);
-        for (int f = 0; f < A_.faces(); ++f) add_horizontal(phi, state, c, f);
-    });
-}
-
-template <int D>
-void TallPressure<D>::count_beside(const MacState<D>& state) {
-    A_.resize();
-    const int faces = A_.faces();
-    auto &lowest = A_.lowest, &highest = A_.highest;
-    refill_scratch(lowest, at(A_.knots.count() * faces), std::numeric_limits<int>::max());
-    refill_scratch(highest, lowest.size(), -1);
-    parallel_for(0, layout_.columns(), [&](int c) {
-        for (int f = 0; f < faces; ++f) {
-            const bool own_is_lower = f % 2 == 1;
-            const int owner = own_is_lower ? layout_.upper(c, f / 2) : c;
-            if (owner < 0) continue;
-            const auto beside = [&](int i, int first, int last) {
-                auto &low = lowest[at(faces * i + f)], &high = highest[at(faces * i + f)];
-                low = std::min(low, first), high = std::max(high, last);
-            };
-            visit(
-                state, f / 2, owner,
-                [&](std::size_t, int, const Row& l, const Row& r) {
-                    if (!l.wet || !r.wet) return;
-                    const Row &own = own_is_lower ? l : r, &other = own_is_lower ? r : l;
-                    for (int i = own.knot; i <= own.knot + (own.share > 0); ++i) beside(i, other.knot, other.knot + (other.share > 0));
-                },
-                [&](const Run& run) {
-                    const int own = own_is_lower ? run.lower : run.upper, other = own_is_lower ? run.upper : run.lower;
-                    for (int i = own; i <= own + 1; ++i) beside(i, other, other + 1);
-                });
-        }
-        for (int row = faces * A_.knots.start[at(c)]; row < faces * A_.knots.start[at(c) + 1]; ++row)
-            A_.begin[at(row) + 1] = std::max(0, highest[at(row)] - lowest[at(row)] + 1);
-    });
-    A_.place_entries(lowest);
-}
-
-/// Vertical faces of a column: (q₁ − q₀)²/(H − 1) in an element, 1/θ towards air, nothing towards a wall or a solid.
-template <int D>
-void TallPressure<D>::add_vertical(const Grid<real, D>& phi, const MacState<D>& state, int column) {
-    const Knots& knots = A_.knots;
-    const real k = 1 / (frame_.h[layout_.up] * frame_.h[layout_.up]);
-    const Line cell = line(state.cells, column), face = line(state.u[layout_.up], column);
-    for (int i = knots.start[at(column)]; i < knots.start[at(column) + 1]; ++i) {
-        const int row = knots.row[at(i)], length = knots.length[at(i)];
-        const auto towards = [&](int other, int crossed) {
-            if (state.cells[cell(other)] != Cell::air) return;
-            A_.vertical[at(i)] += k * open(state, layout_.up, face(crossed)) * cut(phi, cell(row), cell(other));
-        };
-        if (row > 0 && (i == knots.start[at(column)] || knots.length[at(i) - 1] == 0)) towards(row - 1, row);
-        if (length > 0) {
-            const real w = k * (length == 1 ? open(state, layout_.up, face(row + 1)) : 1.0) / length;
-            A_.vertical[at(i)] += w;
-            A_.vertical[at(i) + 1] += w;
-            A_.vertical_next[at(i)] -= w;
-        } else if (row + 1 < layout_.rows) {
-            towards(row + 1, row + 1);
-        } else if (state.sides.open(layout_.up, 1)) {
-            A_.vertical[at(i)] += 2 * k;  // p = 0 on the side itself, half a cell away
-        }
-    }
-}
-
-/// Horizontal faces on side f of a column.
-template <int D>
-void TallPressure<D>::add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int column, int f) {
-    const bool own_is_lower = f % 2 == 1;
-    const int h = f / 2, axis = layout_.axes[at(h)], owner = own_is_lower ? layout_.upper(column, h) : column;
-    if (owner < 0) return;
-    const real k = 1 / (frame_.h[axis] * frame_.h[axis]);
-    const int lower = layout_.lower(owner, h);
-    const Line cell_lower = line(state.cells, lower < 0 ? owner : lower), cell_upper = line(state.cells, owner);
-    const auto add_own = [&](const Row& own, real w) {
-        A_.horizontal[at(own.knot)] += w * (1 - own.share) * (1 - own.share);
-        if (own.share == 0) return;
-        A_.horizontal[at(own.knot) + 1] += w * own.share * own.share;
-        A_.horizontal_next[at(own.knot)] += w * own.share * (1 - own.share);
-    };
-    const auto add_pair = [&](const Row& own, const Row& other, real w) {
-        add_own(own, w);
-        for (int i = 0; i <= (own.share > 0); ++i)
-            for (int j = 0; j <= (other.share > 0); ++j)
-                A_.add_beside(own.knot + i, f, other.knot + j, -w * (i ? own.share : 1 - own.share) * (j ? other.share : 1 - other.share));
-    };
-    visit(
-        state, h, owner,
-        [&](std::size_t face, int row, const Row& l, const Row& r) {
-            const Row &own = own_is_lower ? l : r, &other = own_is_lower ? r : l;
-            if (!own.wet) return;
-            const real w = k * open(state, axis, face);
-            if (other.wet) return add_pair(own, other, w);
-            const std::size_t here = (own_is_lower ? cell_lower : cell_upper)(row), there = (own_is_lower ? cell_upper : cell_lower)(row);
-            if (state.cells[there] == Cell::air) add_own(own, w * cut(phi, here, there));
-        },
-        [&](const Run& run) {
-            const auto share = [&](int knot, real y) { return (y - A_.knots.row[at(knot)]) / A_.knots.length[at(knot)]; };
-            const int own = own_is_lower ? run.lower : run.upper, other = own_is_lower ? run.upper : run.lower;
-            for (const real y : {run.middle() - run.spread(), run.middle() + run.spread()})
-                add_pair({true, own, share(own, y)}, {true, other, share(other, y)}, 0.5 * k * run.count);
-        });
-}
-
 template <int D>
 void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
     parallel_for(0, layout_.columns(), [&](int c) {
@@ -219,8 +104,8 @@ void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
         }
         const auto& v = state.u[layout_.up];
         const Line face = line(v, c);
-        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) {
-            const int length = A_.knots.length[at(i)], row = A_.knots.row[at(i)];
+        for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) {
+            const int length = knots_.length[at(i)], row = knots_.row[at(i)];
             real sum = 0;
             for (int j = 1; length > 1 && j <= length; ++j) sum += v[face(row + j)];
             mean_[at(i)] = length > 1 ? sum / length : 0;
@@ -230,7 +115,7 @@ void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
 
 template <int D>
 void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real>& b) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     parallel_for(0, layout_.columns(), [&](int c) {
         const Line vertical = line(state.u[layout_.up], c);
         const real inv_h = frame_.inv_h[layout_.up];
@@ -241,7 +126,7 @@ void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real
             const real above = length > 1 ? mean_[at(i)] : flux(state, layout_.up, vertical(row + 1));
             b[at(i)] = (below - above) * inv_h;
         }
-        for (int f = 0; f < A_.faces(); ++f) {
+        for (int f = 0; f < faces(); ++f) {
             const bool own_is_lower = f % 2 == 1;
             const int h = f / 2, axis = layout_.axes[at(h)], owner = own_is_lower ? layout_.upper(c, h) : c;
             if (owner < 0) continue;
@@ -273,14 +158,14 @@ void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real
 
 template <int D>
 const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacState<D>& state, real dt) {
-    if (A_.knots.count() == 0) return nothing_to_do_;
+    if (knots_.count() == 0) return nothing_to_do_;
     weak_divergence(state, b_);
     const real scale = dt / state.rho;
     parallel_for(0, layout_.columns(), [&](int c) {  // the last pressure is the first guess
         const Line cell = line(state.p, c);
-        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(A_.knots.row[at(i)])];
+        for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(knots_.row[at(i)])];
     });
-    const poisson::Report& report = solver_.solve(A_, b_, q_);
+    const poisson::Report& report = solver_.solve(A_, knots_, b_, q_);
     project_faces(phi, state);
     project_vertical(phi, state);
     return report;
@@ -322,7 +207,7 @@ void TallPressure<D>::project_faces(const Grid<real, D>& phi, MacState<D>& state
 
 template <int D>
 void TallPressure<D>::project_vertical(const Grid<real, D>& phi, MacState<D>& state) {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     const int up = layout_.up;
     auto& v = state.u[up];
     parallel_for(0, layout_.columns(), [&](int c) {
@@ -364,9 +249,9 @@ void TallPressure<D>::spread(MacState<D>& state, real dt) const {
     parallel_for(0, layout_.columns(), [&](int c) {
         const Line cell = line(state.p, c);
         int row = 0;
-        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) {
-            for (; row < A_.knots.row[at(i)]; ++row) state.p[cell(row)] = 0;
-            const int length = std::max(1, A_.knots.length[at(i)]);
+        for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) {
+            for (; row < knots_.row[at(i)]; ++row) state.p[cell(row)] = 0;
+            const int length = std::max(1, knots_.length[at(i)]);
             const real here = scale * q_[at(i)], change = length > 1 ? (scale * q_[at(i) + 1] - here) / length : 0;
             for (int j = 0; j < length; ++j) state.p[cell(row++)] = here + j * change;
         }
@@ -378,7 +263,7 @@ void TallPressure<D>::spread(MacState<D>& state, real dt) const {
 /// say that its top cell then has what flows through its own top face, and that the mean of v is the stored one.
 template <int D>
 void TallPressure<D>::rebuild(MacState<D>& state) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     const int up = layout_.up;
     auto& v = state.u[up];
     parallel_for(0, layout_.columns(), [&](int c) {
@@ -387,7 +272,7 @@ void TallPressure<D>::rebuild(MacState<D>& state) const {
         std::array<real, 4> factor{};
         std::array<int, 4> axis{};
         std::size_t sides = 0;
-        for (int f = 0; f < A_.faces(); ++f) {
+        for (int f = 0; f < faces(); ++f) {
             const int owner = f % 2 == 1 ? layout_.upper(c, f / 2) : c;
             if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
             axis[sides] = layout_.axes[at(f / 2)];
@@ -409,7 +294,7 @@ void TallPressure<D>::rebuild(MacState<D>& state) const {
 
 template <int D>
 real TallPressure<D>::max_divergence(const MacState<D>& state) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     const int up = layout_.up;
     return ordered_max(layout_.columns(), [&](int c) {
         const Line vertical = line(state.u[up], c);
@@ -417,7 +302,7 @@ real TallPressure<D>::max_divergence(const MacState<D>& state) const {
         for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
             const int row = knots.row[at(i)];
             real sum = (flux(state, up, vertical(row + 1)) - flux(state, up, vertical(row))) * frame_.inv_h[up];
-            for (int f = 0; f < A_.faces(); ++f) {
+            for (int f = 0; f < faces(); ++f) {
                 const int owner = f % 2 == 1 ? layout_.upper(c, f / 2) : c;
                 if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
                 const int axis = layout_.axes[at(f / 2)];
@@ -432,7 +317,7 @@ real TallPressure<D>::max_divergence(const MacState<D>& state) const {
 
 template <int D>
 real TallPressure<D>::energy(const Grid<real, D>& phi, const MacState<D>& state) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     return ordered_sum(layout_.columns(), [&](int c) {
         real sum = 0;
         for (int h = 0; h < D - 1; ++h) {
@@ -477,8 +362,8 @@ template <int D>
 typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) const {
     RunsUp runs;
     if (a == layout_.up) {
-        runs.knots_ = &A_.knots;
-        runs.k_ = A_.knots.start[at(column)] - 1, runs.end_ = A_.knots.start[at(column) + 1];
+        runs.knots_ = &knots_;
+        runs.k_ = knots_.start[at(column)] - 1, runs.end_ = knots_.start[at(column) + 1];
         runs.advance();
         return runs;
     }
@@ -491,7 +376,7 @@ typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) con
 
 template <int D>
 void TallPressure<D>::show_heights(Grid<real, D>& to) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     parallel_for(0, layout_.columns(), [&](int c) {
         const Line cell = line(to, c);
         int row = 0;
@@ -511,7 +396,8 @@ std::size_t TallPressure<D>::samples() const {
 
 template <int D>
 std::size_t TallPressure<D>::bytes() const {
-    std::size_t total = A_.bytes() + solver_.bytes() + (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
+    std::size_t total = knots_.bytes() + A_.bytes() + row_index_.capacity() * sizeof(int) + solver_.bytes() +
+                        (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
     for (std::size_t h = 0; h < 2; ++h)
         total += run_start_[h].capacity() * sizeof(int) + runs_[h].capacity() * sizeof(Run) + w_[h].capacity() * sizeof(Pair);
     return total;

@@ -17,6 +17,8 @@ using namespace surface;  // the words of the grid and of its free surface are t
 /// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, as on the uniform grid.
 inline constexpr real thinnest = 0.02;
 
+struct FaceOfColumns;
+
 struct Shape {
     Division division = Division::stacked;
     int depth = 8;  // rows that stay regular below the surface, at least
@@ -33,7 +35,7 @@ public:
     template <class Place>
     void set_surface(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state, Place&& place) {
         find_liquid(phi, closed, state);
-        place(layout_, state.cells, A_.knots);
+        place(layout_, state.cells, knots_);
         finish_surface(phi, state);
     }
 
@@ -52,10 +54,12 @@ public:
     real energy(const Grid<real, D>& phi, const MacState<D>& state) const;
 
     const Layout<D>& layout() const { return layout_; }
-    const Knots& knots() const { return A_.knots; }
+    const Knots& knots() const { return knots_; }
     const ColumnMatrix& matrix() const { return A_; }
     const std::vector<real>& potential() const { return q_; }
     ColumnMultigrid& solver() { return solver_; }
+    /// y = A x, by knots.
+    void multiply(const std::vector<real>& x, std::vector<real>& y) { solver_.multiply(A_, knots_, x, y); }
     /// Of every cell: how high the element is in which it lies [m]; 0 outside the liquid.
     void show_heights(Grid<real, D>& to) const;
     /// The runs of faces along axis a above one another, on the lower side of a column (its own vertical faces where a is up), bottom up.
@@ -93,10 +97,15 @@ private:
     void finish_surface(const Grid<real, D>& phi, const MacState<D>& state);
     void find_runs(const MacState<D>& state);
     void assemble(const Grid<real, D>& phi, const MacState<D>& state);
-    void count_beside(const MacState<D>& state);
+    void find_shared_rows();
+    void place_column(int column);
     void add_vertical(const Grid<real, D>& phi, const MacState<D>& state, int column);
-    void add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int column, int f);
-    real cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const;
+    void add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int z, int f);
+    void add_inner_rows(const Grid<real, D>& phi, const MacState<D>& state, const FaceOfColumns& face, int k);
+    real cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const {
+        return std::min(1 - phi[air] / phi[liquid], largest_cut_);  // 1/θ between a liquid cell and one of air
+    }
+    static constexpr int faces() { return 2 * (D - 1); }
     void project_faces(const Grid<real, D>& phi, MacState<D>& state);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
     void rebuild(MacState<D>& state) const;
@@ -106,7 +115,7 @@ private:
     }
     /// At a row of the element above a knot.
     real pressure_at(int knot, real row) const {
-        const real share = (row - A_.knots.row[at(knot)]) / A_.knots.length[at(knot)];
+        const real share = (row - knots_.row[at(knot)]) / knots_.length[at(knot)];
         return (1 - share) * q_[at(knot)] + share * q_[at(knot) + 1];
     }
     /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
@@ -134,6 +143,8 @@ private:
     Frame<D> frame_;
     Layout<D> layout_;
     poisson::Options options_;
+    Knots knots_;
+    std::vector<int> row_index_;  // of the lattice's rows among those that columns share, −1 for others
     ColumnMatrix A_;
     ColumnMultigrid solver_;
     std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
