@@ -89,6 +89,24 @@ void TallPressure<D>::find_runs(const MacState<D>& state) {
             visit(state, h, c, nothing, [&](const Run& run) { runs_[at(h)][at(i++)] = run; });
         });
     }
+    floor_ = -static_cast<int>(ordered_max(columns, [&](int c) { return static_cast<real>(-covered_from_below(c)); }));
+}
+
+/// Up to which row, from the bottom, a column's faces on its lower sides, and its own, are in runs. Walls have a velocity of their own.
+template <int D>
+int TallPressure<D>::covered_from_below(int column) const {
+    int covered = layout_.rows;
+    for (int h = 0; h < D - 1; ++h) {
+        if (layout_.lower(column, h) < 0) continue;
+        int row = 0;
+        for (int i = run_start_[at(h)][at(column)]; i < run_start_[at(h)][at(column) + 1] && runs_[at(h)][at(i)].row == row; ++i)
+            row += runs_[at(h)][at(i)].count;
+        covered = std::min(covered, row);
+    }
+    int row = 0;  // the face on the floor is one of its own
+    for (int i = knots_.start[at(column)]; i < knots_.start[at(column) + 1] && knots_.row[at(i)] == row && knots_.length[at(i)] > 1; ++i)
+        row += knots_.length[at(i)];
+    return std::min(covered, row);
 }
 
 template <int D>
@@ -109,6 +127,21 @@ void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
             real sum = 0;
             for (int j = 1; length > 1 && j <= length; ++j) sum += v[face(row + j)];
             mean_[at(i)] = length > 1 ? sum / length : 0;
+        }
+    });
+}
+
+template <int D>
+void TallPressure<D>::change_runs(const RunChanges<D>& by) {
+    parallel_for(0, layout_.columns(), [&](int c) {
+        for (int h = 0; h < D - 1; ++h)
+            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
+                const Pair& change = by[at(layout_.axes[at(h)])][at(i)];
+                w_[at(h)][at(i)].minus += change.minus, w_[at(h)][at(i)].plus += change.plus;
+            }
+        for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) {
+            const Pair& change = by[at(layout_.up)][at(i)];
+            if (knots_.length[at(i)] > 1) mean_[at(i)] += 0.5 * (change.minus + change.plus);
         }
     });
 }

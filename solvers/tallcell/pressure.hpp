@@ -17,6 +17,10 @@ using namespace surface;  // the words of the grid and of its free surface are t
 /// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, as on the uniform grid.
 inline constexpr real thinnest = 0.02;
 
+/// What transport changes the samples of runs by: by axis, in the order of the runs; of the vertical axis by knots.
+template <int D>
+using RunChanges = std::array<std::vector<Pair>, D>;
+
 struct FaceOfColumns;
 
 struct Shape {
@@ -42,6 +46,11 @@ public:
     /// Takes from the lattice what the unknowns can carry: moments over rows. Orthogonal, so it adds no energy; where the lattice's
     /// velocity is free of divergence the unknowns' is too, whatever knots it was made on.
     void restrict_velocity(const MacState<D>& state);
+    void change_runs(const RunChanges<D>& by);
+    /// Below this row all faces of the lattice are in runs.
+    int floor_of_singles() const { return floor_; }
+    /// How many runs there are along an axis; of the vertical one, knots.
+    std::size_t run_count(int a) const { return a == layout_.up ? at(knots_.count()) : runs_[layout_.axes[0] == a ? 0 : 1].size(); }
     /// Solves for the pressure and makes the unknowns free of divergence.
     const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt);
     /// Back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
@@ -70,6 +79,8 @@ public:
             while (k_ < end_ && run().row + run().count <= row) advance();
             return k_ < end_ && run().row <= row;
         }
+        /// Its place among all of its axis.
+        std::size_t index() const { return at(k_); }
         /// Whether any is left.
         bool ahead() const { return k_ < end_; }
         Run run() const { return knots_ ? Run{knots_->row[at(k_)] + 1, knots_->length[at(k_)], k_, k_} : (*runs_)[at(k_)]; }
@@ -96,6 +107,7 @@ private:
     void find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const;
     void finish_surface(const Grid<real, D>& phi, const MacState<D>& state);
     void find_runs(const MacState<D>& state);
+    int covered_from_below(int column) const;
     void assemble(const Grid<real, D>& phi, const MacState<D>& state);
     void find_shared_rows();
     void place_column(int column);
@@ -150,8 +162,9 @@ private:
     std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
     std::array<std::vector<Run>, 2> runs_;
     std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]
-    std::vector<real> mean_;              // of the vertical velocity in the element above each knot [m/s]
-    std::vector<real> b_, q_;             // q = dt p/ρ [m²/s]
+    int floor_ = 0;
+    std::vector<real> mean_;   // of the vertical velocity in the element above each knot [m/s]
+    std::vector<real> b_, q_;  // q = dt p/ρ [m²/s]
     real largest_cut_ = 0;
     poisson::Report nothing_to_do_;
 };

@@ -62,7 +62,7 @@ void TallCells<D>::remesh() {
 template <int D>
 void TallCells<D>::advect(real dt) {
     const auto timed = passes_.time("advect");
-    transport_(pressure_, surface_.phi, state_.sides, dt, state_.u);
+    transport_(pressure_, surface_.phi, state_.sides, dt, rate_, state_.u);
 }
 
 template <int D>
@@ -76,6 +76,7 @@ template <int D>
 poisson::Report TallCells<D>::project(real dt) {
     const auto timed = passes_.time("project");
     pressure_.restrict_velocity(state_);
+    pressure_.change_runs(transport_.changes());
     const poisson::Report report = pressure_.project(surface_.phi, state_, dt);
     pressure_.spread(state_, dt);
     sync_periodic(state_.u, state_.sides);
