@@ -54,7 +54,10 @@ public:
     /// Solves for the pressure and makes the unknowns free of divergence.
     const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt);
     /// Back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
-    void spread(MacState<D>& state, real dt) const;
+    void spread(MacState<D>& state, real dt);
+    /// max |u|/h over the rows of runs, as the last spread() made them [1/s]; rows below that of fastest_run_below() are all among them.
+    real fastest_run() const { return fastest_run_; }
+    int fastest_run_below() const { return fastest_run_below_; }
     /// Largest |∇·u| over cells that are knots [1/s]; inside elements it is zero as spread() makes it.
     real max_divergence(const MacState<D>& state) const;
     /// −Cᵀw: minus the divergence that the unknowns have, tested with each knot's hat.
@@ -103,7 +106,7 @@ public:
     std::size_t bytes() const;
 
 private:
-    static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
     void find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const;
     void finish_surface(const Grid<real, D>& phi, const MacState<D>& state);
     void find_runs(const MacState<D>& state);
@@ -120,7 +123,20 @@ private:
     static constexpr int faces() { return 2 * (D - 1); }
     void project_faces(const Grid<real, D>& phi, MacState<D>& state);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
-    void rebuild(MacState<D>& state) const;
+    /// Columns beside one another in a line, of which `count` stand side by side in memory.
+    struct Block {
+        int column, count;
+    };
+    static constexpr int block_columns = 16;
+    template <class F>
+    real largest_of_blocks(F&& f) const;
+    template <class Together, class One>
+    void for_each_run(int h, const Block& block, Together&& together, One&& one) const;
+    template <class Together, class One>
+    void for_each_element(const Block& block, Together&& together, One&& one) const;
+    real spread_runs(MacState<D>& state, int h, const Block& block) const;
+    real rebuild(MacState<D>& state, const Block& block) const;
+    void spread_pressure(MacState<D>& state, const Block& block, real scale) const;
     real pressure_at(const Row& row) const {
         if (!row.wet) return 0;
         return row.share > 0 ? (1 - row.share) * q_[at(row.knot)] + row.share * q_[at(row.knot) + 1] : q_[at(row.knot)];
@@ -162,7 +178,8 @@ private:
     std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
     std::array<std::vector<Run>, 2> runs_;
     std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]
-    int floor_ = 0;
+    int floor_ = 0, fastest_run_below_ = 0;
+    real fastest_run_ = 0;
     std::vector<real> mean_;   // of the vertical velocity in the element above each knot [m/s]
     std::vector<real> b_, q_;  // q = dt p/ρ [m²/s]
     real largest_cut_ = 0;

@@ -313,13 +313,15 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
     const std::size_t first = u.linear(I);
     const std::ptrdiff_t sy = u.stride(1), sz = D == 3 ? u.stride(D - 1) : 0;
     const auto departure = hats_of<D>(from, a, a);
-    sample_near<D>(u.data() + first, sy, sz, departure, to);
+    if constexpr (!Correct) sample_near<D>(u.data() + first, sy, sz, departure, to);
     if constexpr (Correct) {
         Eight low, high, back;
+        const real* predicted = predicted_[a].data() + first;  // that very sample, of the first pass
         bounds_near<D>(u.data() + first, sy, sz, departure, low, high);
         if (!trace(1)) return false;
         sample_near<D>(predicted_[a].data() + first, sy, sz, hats_of<D>(from, a, a), back);
-        for (std::size_t i = 0; i < row_lanes; ++i) to[i] = std::min(std::max(to[i] + 0.5 * (u[first + i] - back[i]), low[i]), high[i]);
+        for (std::size_t i = 0; i < row_lanes; ++i)
+            to[i] = std::min(std::max(predicted[i] + 0.5 * (u[first + i] - back[i]), low[i]), high[i]);
     }
     return true;
 }
