@@ -46,6 +46,7 @@ Key overlay_key(const Key& base, const Key& more) {
     if (more.max) key.max = more.max;
     if (more.only_dim) key.only_dim = more.only_dim;
     if (!more.selector.empty()) key.selector = more.selector;
+    key.steerable = base.steerable || more.steerable;
     key.required = more.required || (base.required && more.fallback.index() == 0);
     key.keys = overlay(base.keys, more.keys);
     if (!variants_of(more).empty()) {

@@ -38,7 +38,8 @@ EffectKind gravity() {
                                    .unit = "m/s^2",
                                    .required = true,
                                    .length = -1,
-                                   .example = "g = [0.0, -9.81]"}},
+                                   .example = "g = [0.0, -9.81]",
+                                   .steerable = true}},
                                  {"g"}});
 }
 
