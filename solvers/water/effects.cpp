@@ -1,5 +1,7 @@
 #include "water/effects.hpp"
 
+#include "geometry/hand.hpp"
+
 namespace weir::water {
 
 using scene::Type;
@@ -14,7 +16,14 @@ std::vector<scene::Variant> effect_schemas() {
     const std::vector<scene::Variant> own{
         {"surface_tension",
          "p = sigma kappa on the surface (ghost-fluid jump).",
-         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .min_open = true}},
+         {{.name = "sigma",
+           .type = Type::number,
+           .doc = "Surface tension.",
+           .unit = "N/m",
+           .required = true,
+           .min = 0,
+           .min_open = true,
+           .steerable = true}},
          {"sigma"}},
         {"viscosity",
          "Friction inside the liquid, with fluid.viscosity; none on the free surface.",
@@ -29,6 +38,7 @@ std::vector<scene::Variant> effect_schemas() {
          "\"volume_shift\" tells how far.",
          {}}};
     list.insert(list.end(), own.begin(), own.end());
+    list.push_back(geometry::hand_schema());
     return list;
 }
 

@@ -1,4 +1,5 @@
 // What a scene of liquid is at t = 0: the level set of its shapes, its markers, its velocity.
+#include "geometry/hand.hpp"
 #include "scene/names.hpp"
 #include "staggered/initial.hpp"
 #include "water/effects.hpp"
@@ -38,7 +39,9 @@ Water<D>::Water(const scene::Scene& scene)
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),
-      effects_(make_effects<D>(body_forces(), scene)) {
+      effects_(make_effects<D>(body_forces(), scene)),
+      hand_(geometry::make_hand(scene)) {
+    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
     refuse_flat_cells(scene, frame_);
     if (const auto* gravity = scene.effect("gravity")) gravity_ = gravity->template vec<D>("g");
     for (int d = 0; d < D; ++d)
