@@ -100,6 +100,14 @@ std::vector<std::string> probe_names(const StatePtr& state) {
     return names;
 }
 
+void set(const StatePtr& state, const std::string& key, const std::string& value, std::optional<real> at) {
+    const Change change(state);
+    if (at)
+        state->simulation.set_at(*at, {key, value});
+    else
+        state->simulation.set({key, value});
+}
+
 void save(const StatePtr& state, const std::filesystem::path& file) {
     Checkpoint checkpoint;
     state->simulation.save(checkpoint);
@@ -194,6 +202,7 @@ void add_simulation(py::module_& module) {
         .def("integrals", integrals)
         .def("probe_names", probe_names)
         .def("probe", probe)
+        .def("set", set)
         .def("save", save)
         .def("restore", restore)
         .def("write_frame", write_frame)

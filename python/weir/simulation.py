@@ -110,6 +110,11 @@ class Simulation:
                 self.step()
             yield self
 
+    def set(self, key, value, at=None):
+        """Changes a key of the scene while it runs, now or at the time `at` [s], which a step then hits: sim.set("effects.gravity.g",
+        [0, -1.6]). Keys that may change are marked so in the manual; others raise BadInput with the reason."""
+        self._core.set(key, _scene.value(value), at)
+
     time = property(lambda self: self._core.time, doc="Simulated time [s].")
     end_time = property(lambda self: self._core.end_time, doc="The scene's end [s].")
     steps = property(lambda self: self._core.steps, doc="Steps so far.")

@@ -2,6 +2,7 @@
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/effects.hpp"
+#include "core/hand.hpp"
 #include "core/passes.hpp"
 #include "core/types.hpp"
 
@@ -116,6 +117,8 @@ public:
     /// every step: they may be far away, on a device.
     virtual bool checks_itself() const { return false; }
     virtual std::vector<Integral> integrals() const = 0;
+    /// The hand that pushes the fluid, where the scene names it and the solver has it (effects.hand).
+    virtual Hand* hand() const { return nullptr; }
     /// Simulated time [s].
     virtual real time() const = 0;
     /// Everything the next step depends on, exactly: restore(save()) continues bit for bit.

@@ -53,8 +53,8 @@ EffectKind buoyancy() {
     return effect_kind<Buoyancy>(
         {"buoyancy",
          "Warm fluid rises and smoke sinks along y: beta (T - ambient) - alpha smoke (Fedkiw et al. 2001).",
-         {{.name = "alpha", .type = Type::number, .doc = "Weight of smoke.", .unit = "m/s^2", .fallback = 0.0},
-          {.name = "beta", .type = Type::number, .doc = "Lift a kelvin.", .unit = "m/(s^2 K)", .fallback = 0.0},
+         {{.name = "alpha", .type = Type::number, .doc = "Weight of smoke.", .unit = "m/s^2", .fallback = 0.0, .steerable = true},
+          {.name = "beta", .type = Type::number, .doc = "Lift a kelvin.", .unit = "m/(s^2 K)", .fallback = 0.0, .steerable = true},
           {.name = "ambient", .type = Type::number, .doc = "Temperature without lift.", .unit = "K", .fallback = 0.0}},
          {"alpha", "beta"}});
 }

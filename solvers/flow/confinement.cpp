@@ -153,7 +153,7 @@ EffectKind confinement() {
     return effect_kind<Confinement>(
         {"confinement",
          "Vorticity confinement: pushes fluid around its vortices (Fedkiw et al. 2001). Adds energy; not for accuracy studies.",
-         {{.name = "epsilon", .type = scene::Type::number, .doc = "Strength.", .required = true, .min = 0}},
+         {{.name = "epsilon", .type = scene::Type::number, .doc = "Strength.", .required = true, .min = 0, .steerable = true}},
          {"epsilon"}});
 }
 

@@ -2,6 +2,7 @@
 #include "staggered/kind.hpp"
 #include "flow/effects.hpp"
 #include "flow/solver.hpp"
+#include "geometry/hand.hpp"
 #include "matter/heat.hpp"
 #include "staggered/inflow.hpp"
 #include "staggered/initial.hpp"
@@ -43,6 +44,7 @@ scene::SolverKind kind() {
     schema.keys = {scheme_key(std::move(methods)), sides_key(), initial_keys()};
     for (Key& key : Heat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = schemas_of(effect_kinds());
+    schema.effects.push_back(geometry::hand_schema());
     return {schema,
             make_without_surface<FlowSolver>,
             {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""}};

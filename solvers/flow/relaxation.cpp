@@ -50,7 +50,7 @@ struct Decay final : Relaxation<D> {
 
 const scene::Key& rate_key() {
     static const scene::Key key{
-        .name = "rate", .type = Type::number, .doc = "Part lost a second.", .unit = "1/s", .required = true, .min = 0};
+        .name = "rate", .type = Type::number, .doc = "Part lost a second.", .unit = "1/s", .required = true, .min = 0, .steerable = true};
     return key;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "flow/emitters.hpp"
+#include "geometry/hand.hpp"
 #include "scene/names.hpp"
 #include "staggered/diagnostics.hpp"
 #include "staggered/initial.hpp"
@@ -116,7 +117,9 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       cfl_(scene.number("time.cfl")),
       side_rate_(fastest_side(state_)),
       wants_vorticity_(lists(scene, "vorticity")),
-      wants_divergence_(lists(scene, "divergence")) {
+      wants_divergence_(lists(scene, "divergence")),
+      hand_(geometry::make_hand(scene)) {
+    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::implicit));
     const auto& cells = state_.cells.values();
     if (std::none_of(cells.begin(), cells.end(), [](poisson::Cell c) { return c == poisson::Cell::fluid; }))
         scene.refuse("solids", "the solids leave no cell for the fluid");
@@ -397,6 +400,7 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
     auto list = flow::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
+    if (hand_) geometry::sum_up(*hand_, D, list);
     if (!solids_.any()) return list;
     if (state_.find("smoke")) {
         list.push_back({"smoke_removed", D == 2 ? "m^2" : "m^3", smoke_removed_});
@@ -416,6 +420,7 @@ void FlowSolver<D>::save(Checkpoint& to) const {
     state_.save(to);
     to.put_value("impulse", impulse_);
     if (heat_) heat_->save(to);
+    if (hand_) hand_->save(to);
     to.put_value("smoke_in_solids", std::array<real, 2>{smoke_removed_, smoke_continued_});
 }
 
@@ -423,6 +428,7 @@ template <int D>
 void FlowSolver<D>::restore(const Checkpoint& from) {
     state_.restore(from);
     if (heat_) heat_->restore(from, state_);
+    if (hand_ && from.has("hand")) hand_->restore(from);
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (from.has("smoke_in_solids")) {

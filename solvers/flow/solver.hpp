@@ -30,6 +30,7 @@ public:
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
+    Hand* hand() const override { return hand_.get(); }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
@@ -88,6 +89,7 @@ private:
     bool wants_vorticity_ = false, wants_divergence_ = false;
     mutable std::vector<Grid<real, D>> vorticity_;  // filled when somebody looks
     mutable Grid<real, D> divergence_;
+    std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
 };
 

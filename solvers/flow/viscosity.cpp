@@ -191,7 +191,12 @@ private:
 };
 
 scene::Key diffusivity(const char* name) {
-    return {.name = name, .type = Type::number, .doc = std::string("Diffusivity of the ") + name + ".", .unit = "m^2/s", .min = 0};
+    return {.name = name,
+            .type = Type::number,
+            .doc = std::string("Diffusivity of the ") + name + ".",
+            .unit = "m^2/s",
+            .min = 0,
+            .steerable = true};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The effects that every particle method has. A new one is a struct here and a row of offers(): that makes it a scene's, and it acts on
 // threads; the other backends refuse it by name until they have it too (device_effects.cpp; reference_solver.cpp of the method).
+#include "geometry/hand.hpp"
 #include "particles/flow.hpp"
 #include "scene/gravity.hpp"
 
@@ -95,12 +96,23 @@ std::unique_ptr<Effect<Flow<D>>> make(const scene::Table& table) {
 /// In the order in which they act.
 template <int D>
 std::vector<Offer<D>> offers() {
-    const Key omega{
-        .name = "omega", .type = Type::number, .doc = "Angular frequency of the field.", .unit = "1/s", .required = true, .min = 0};
+    const Key omega{.name = "omega",
+                    .type = Type::number,
+                    .doc = "Angular frequency of the field.",
+                    .unit = "1/s",
+                    .required = true,
+                    .min = 0,
+                    .steerable = true};
     const Key centre{.name = "centre", .type = Type::numbers, .doc = "Where it vanishes.", .unit = "m", .required = true, .length = -1};
-    const Key c{
-        .name = "c", .type = Type::number, .doc = "How much of the mean is taken in each step.", .fallback = 0.01, .min = 0.0, .max = 1.0};
-    const Key epsilon{.name = "epsilon", .type = Type::number, .doc = "Its strength.", .unit = "m/s", .required = true, .min = 0};
+    const Key c{.name = "c",
+                .type = Type::number,
+                .doc = "How much of the mean is taken in each step.",
+                .fallback = 0.01,
+                .min = 0.0,
+                .max = 1.0,
+                .steerable = true};
+    const Key epsilon{
+        .name = "epsilon", .type = Type::number, .doc = "Its strength.", .unit = "m/s", .required = true, .min = 0, .steerable = true};
     return {{scene::gravity_effect("A constant acceleration."), make<D, Gravity<D>>},
             {{"central_force", "An acceleration -omega^2 (x - centre).", {omega, centre}, {"omega"}}, make<D, CentralForce<D>>},
             {{"xsph", "Velocities are smoothed over neighbours (Schechter & Bridson 2012).", {c}, {"c"}}, make<D, Xsph<D>>},
@@ -112,6 +124,7 @@ std::vector<Offer<D>> offers() {
 std::vector<scene::Variant> effect_schemas() {
     std::vector<scene::Variant> list;
     for (auto& offer : offers<2>()) list.push_back(std::move(offer.schema));
+    list.push_back(geometry::hand_schema());
     return list;
 }
 

@@ -1,5 +1,7 @@
 #include "particles/solver.hpp"
 
+#include "geometry/hand.hpp"
+
 #include <algorithm>
 
 namespace weir::particles {
@@ -28,6 +30,7 @@ std::vector<Integral> ParticleSolver<D>::integrals() const {
     const auto neighbours = neighbour_counts();
     list.push_back({"mean_neighbours", "1", neighbours.mean});
     list.push_back({"max_neighbours", "1", neighbours.most});
+    if (const Hand* hand = this->hand()) geometry::sum_up(*hand, D, list);
     sum_up(list);
     if (heat_) heat_->sum_up(state(), list);
     return list;
@@ -50,12 +53,14 @@ template <int D>
 void HostSolver<D>::save_state(Checkpoint& to) const {
     fluid_.save(to);
     emitters_.save(to);
+    if (hand_) hand_->save(to);
     to.put_value(std::string(this->method()) + ".speed", speed_);
 }
 template <int D>
 void HostSolver<D>::restore_state(const Checkpoint& from) {
     fluid_.restore(from);
     emitters_.restore(from);
+    if (hand_ && from.has("hand")) hand_->restore(from);
     const std::string key = std::string(this->method()) + ".speed";
     speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // the device does not keep it
 }

@@ -10,6 +10,8 @@
 
 #include <memory>
 
+#include <memory>
+
 namespace weir::particles {
 
 /// How much denser than at rest particles are [1].
@@ -70,6 +72,7 @@ public:
     std::string concern() const final { return this->concern_at(speed_); }
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
+    Hand* hand() const final { return hand_.get(); }
 
 protected:
     explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) {}
@@ -81,6 +84,7 @@ protected:
 
     Fluid<D> fluid_;
     Emitters<D> emitters_;
+    std::shared_ptr<Hand> hand_;   // none where the scene names none
     real speed_ = not_applicable;  // of the fastest particle after the last step; not known before the first [m/s]
 };
 

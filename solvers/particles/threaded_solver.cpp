@@ -12,6 +12,11 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
     if (fluid_.warm) this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain);
+    this->hand_ = geometry::make_hand(scene);
+    if (!this->hand_) return;
+    auto hand = std::make_unique<HandOnParticles<D>>(this->hand_);
+    sources_ = hand.get();
+    effects_.add("hand", std::move(hand));
 }
 
 template <int D>

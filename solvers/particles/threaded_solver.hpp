@@ -3,6 +3,7 @@
 #pragma once
 #include "core/effects.hpp"
 #include "particles/flow.hpp"
+#include "particles/hand.hpp"
 #include "particles/pairs.hpp"
 #include "particles/scheme.hpp"
 #include "particles/solid_terms.hpp"
@@ -24,6 +25,11 @@ protected:
     real max_dt() const final { return effects_.max_dt(flow_); }
     /// That the method's own arrays take.
     virtual std::size_t own_bytes() const = 0;
+    /// Emitters, sinks and the hand, before a step.
+    void pour_and_drain(real dt) {
+        this->emitters_.apply(fluid_, dt);
+        if (sources_) sources_->pour_and_drain(fluid_);
+    }
     /// Counts a step; the state follows the sorted order now and then; what has crossed a side is taken back or out.
     void end_step();
     /// Where the passes of the step were: their positions are the pairs'.
@@ -36,6 +42,7 @@ protected:
     SolidTerms<D> solids_;
     Flow<D> flow_;
     Effects<Flow<D>> effects_;
+    HandOnParticles<D>* sources_ = nullptr;  // one of the effects
 
 private:
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]

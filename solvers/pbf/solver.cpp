@@ -19,7 +19,7 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene) : Base(Options(scene), scene,
 /// Numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport PbfSolver<D>::step(real dt) {
-    emitters_.apply(fluid_, dt);
+    this->pour_and_drain(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7

@@ -17,7 +17,7 @@ public:
 
 private:
     using Base = Pbf<particles::ThreadedSolver<D>>;
-    using Base::fluid_, Base::emitters_, Base::kernels_, Base::walls_, Base::pairs_, Base::solids_, Base::flow_, Base::effects_;
+    using Base::fluid_, Base::kernels_, Base::walls_, Base::pairs_, Base::solids_, Base::flow_, Base::effects_;
     using Base::passes_, Base::options_, Base::speed_, Base::step_, Base::last_dt_;
 
     void stay() override;

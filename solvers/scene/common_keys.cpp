@@ -94,20 +94,29 @@ Key time() {
                       .required = true,
                       .min = 0,
                       .min_open = true,
-                      .example = "end = 1.0"},
+                      .example = "end = 1.0",
+                      .steerable = true},
                      {.name = "cfl",
                       .type = Type::number,
                       .doc = "How many cells the fastest fluid may cross in one step, where `dt` is not given.",
                       .fallback = 0.5,
                       .min = 0,
-                      .min_open = true},
+                      .min_open = true,
+                      .steerable = true},
                      {.name = "dt",
                       .type = Type::number,
                       .doc = "A fixed step, in place of one from `cfl`.",
                       .unit = "s",
                       .min = 0,
-                      .min_open = true},
-                     {.name = "max_dt", .type = Type::number, .doc = "No step is longer.", .unit = "s", .min = 0, .min_open = true},
+                      .min_open = true,
+                      .steerable = true},
+                     {.name = "max_dt",
+                      .type = Type::number,
+                      .doc = "No step is longer.",
+                      .unit = "s",
+                      .min = 0,
+                      .min_open = true,
+                      .steerable = true},
                      {.name = "stop_when_steady",
                       .type = Type::number,
                       .doc = "End the run after the first step in which no component of the velocity on the grid changed faster than this. "
@@ -135,7 +144,8 @@ Key fluid() {
                  .doc = "Kinematic viscosity. It acts only where effects.viscosity is named.",
                  .unit = "m^2/s",
                  .fallback = 0.0,
-                 .min = 0}}};
+                 .min = 0,
+                 .steerable = true}}};
 }
 
 Key side_temperature(std::string doc) { return {.name = "temperature", .type = Type::number, .doc = std::move(doc), .unit = "K"}; }
@@ -280,6 +290,17 @@ Key probes() {
             .variants_from = &probe_kinds};
 }
 
+Key changes() {
+    return {.name = "changes",
+            .type = Type::tables,
+            .doc =
+                "Keys that change while the run goes on, in the order of time. Steps meet these times exactly; a change is the same as "
+                "going on from a checkpoint with another --set. Keys that may are marked so.",
+            .keys = {{.name = "time", .type = Type::number, .doc = "When.", .unit = "s", .required = true, .min = 0},
+                     {.name = "key", .type = Type::text, .doc = "Which, such as \"effects.gravity.g\".", .required = true},
+                     {.name = "value", .type = Type::any, .doc = "What that key takes.", .required = true}}};
+}
+
 Key output() {
     return {.name = "output",
             .type = Type::table,
@@ -331,6 +352,7 @@ const std::vector<Key>& common_keys() {
         emitters(),
         initial(),
         probes(),
+        changes(),
         output(),
     };
     return list;

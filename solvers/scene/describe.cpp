@@ -39,6 +39,7 @@ std::string key_text(const Key& key, std::size_t indent) {
     if (key.required) line += "; required";
     if (!fallback.empty()) line += fmt::format("; {} if absent", fallback);
     if (key.only_dim) line += fmt::format("; only in {}D", key.only_dim);
+    if (key.steerable) line += "; may change while a run goes on";
     line += "\n" + wrapped(key.doc, indent + 4);
     if (table)
         for (const Key& k : key.keys) line += key_text(k, indent + 4);

@@ -44,10 +44,12 @@ struct Document {
 Document parse_document(std::string_view source, const std::string& file);
 /// A TOML value by itself; false, with a message and its place behind "v = ", where it is none.
 bool parse_value(std::string_view value, Node& node, std::string& error, Place& where);
+/// The value of an override, its places in "key=value"; false, and why, where it is none.
+bool override_value(const Override& change, int number, Node& value, std::vector<Problem>& problems);
 /// "key=value" laid over the tree; tables on the way to the key are made where they are missing.
 void apply_override(Node& root, const Override& change, int number, std::vector<Problem>& problems);
 
-/// A longer text is refused; far above any scene that people write.
-inline constexpr std::size_t max_source_bytes = std::size_t{1} << 20;
+/// A longer text is refused; far above any scene that people write, and half an hour of what a hand does in one that is recorded.
+inline constexpr std::size_t max_source_bytes = std::size_t{1} << 23;
 
 }  // namespace weir::scene

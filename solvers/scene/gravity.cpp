@@ -5,6 +5,7 @@ namespace weir::scene {
 Variant gravity_effect(std::string doc) {
     Key g{.name = "g", .type = Type::numbers, .doc = "Acceleration.", .unit = "m/s^2", .required = true, .length = -1};
     g.example = "g = [0.0, -9.81]";
+    g.steerable = true;
     return {"gravity", std::move(doc), {std::move(g)}, {"g"}};
 }
 

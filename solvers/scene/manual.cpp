@@ -16,7 +16,8 @@ std::string row(const Key& key, const std::string& path) {
     const auto fallback = default_text(key);
     const std::string absent = key.required ? "required" : fallback.empty() ? "" : fmt::format("`{}`", fallback);
     const std::string dim = key.only_dim ? fmt::format(" Only in {}D.", key.only_dim) : "";
-    return fmt::format("| `{}` | {} | {} | {}{} |\n", path, escaped(value_text(key)), escaped(absent), escaped(key.doc), dim);
+    const char* steers = key.steerable ? " *May change while a run goes on.*" : "";
+    return fmt::format("| `{}` | {} | {} | {}{}{} |\n", path, escaped(value_text(key)), escaped(absent), escaped(key.doc), dim, steers);
 }
 
 /// Keys one by one; those of plain nested tables by their dotted names.

@@ -1,5 +1,6 @@
 // Names that a user may have meant.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,5 +21,12 @@ std::string known(const std::vector<std::string>& names);
 std::string quote(std::string_view text);                      // "text", control characters escaped, long texts cut
 std::string quote_all(const std::vector<std::string>& names);  // "a", "b" and "c"
 std::string number_text(double value);                         // shortest text that reads back exactly
+
+/// Takes the first key off a path: of "grid.cells" it gives "grid" and leaves "cells".
+inline std::string_view first_part(std::string_view& path) {
+    const std::string_view part = path.substr(0, path.find('.'));
+    path.remove_prefix(std::min(part.size() + 1, path.size()));
+    return part;
+}
 
 }  // namespace weir::scene

@@ -90,21 +90,15 @@ Override to_override(std::string_view text) {
     return change;
 }
 
-void apply_override(Node& root, const Override& change, int number, std::vector<Problem>& problems) {
-    const auto refuse = [&](int column, const std::string& message, const std::string& hint = "") {
-        problems.push_back({.place = {0, column, number}, .width = 1, .message = message, .hint = hint});
+bool override_value(const Override& change, int number, Node& value, std::vector<Problem>& problems) {
+    const int value_column = count_characters(change.key) + 2;
+    const auto refuse = [&](int column, const std::string& message) {
+        problems.push_back({.place = {0, column, number}, .width = 1, .message = message});
+        return false;
     };
-    std::vector<Step> steps;
-    int column = 1;
-    if (const auto error = split(change.key, steps, column); !error.empty())
-        return refuse(column, error, "a key looks like grid.cells or solids[0].centre");
-
-    if (change.value.find_first_not_of(' ') == std::string::npos) return refuse(count_characters(change.key) + 2, "the value is missing");
-
-    Node value;
+    if (change.value.find_first_not_of(' ') == std::string::npos) return refuse(value_column, "the value is missing");
     std::string error;
     Place where;
-    const int value_column = count_characters(change.key) + 2;
     if (is_bare_word(change.value)) {
         value.kind = Node::Kind::text;
         value.text = change.value;
@@ -114,6 +108,20 @@ void apply_override(Node& root, const Override& change, int number, std::vector<
     } else {
         return refuse(std::max(value_column, where.column + value_column - 5), error);
     }
+    return true;
+}
+
+void apply_override(Node& root, const Override& change, int number, std::vector<Problem>& problems) {
+    const auto refuse = [&](int column, const std::string& message, const std::string& hint = "") {
+        problems.push_back({.place = {0, column, number}, .width = 1, .message = message, .hint = hint});
+    };
+    std::vector<Step> steps;
+    int column = 1;
+    if (const auto error = split(change.key, steps, column); !error.empty())
+        return refuse(column, error, "a key looks like grid.cells or solids[0].centre");
+
+    Node value;
+    if (!override_value(change, number, value, problems)) return;
 
     Node* at = &root;
     std::string path;

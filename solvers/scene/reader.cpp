@@ -121,6 +121,8 @@ std::optional<Value> Reader::value(const Node& node, const Key& key, const std::
             return tables(node, key, path);
         case Type::named:
             return named(node, key, path);
+        case Type::any:
+            return any(node, key, path);
         default:
             return scalar(node, key, path);
     }
@@ -146,6 +148,31 @@ std::optional<Value> Reader::scalar(const Node& node, const Key& key, const std:
     }
     wrong_type(node, key, path);
     return std::nullopt;
+}
+
+/// Whatever it is, but a table; lists are of numbers or of texts.
+std::optional<Value> Reader::any(const Node& node, const Key& key, const std::string& path) {
+    using Kind = Node::Kind;
+    const auto as = [&](Type type) {
+        Key one = key;
+        one.type = type;
+        return value(node, one, path);
+    };
+    switch (node.kind) {
+        case Kind::flag:
+            return as(Type::flag);
+        case Kind::integer:
+            return as(Type::integer);
+        case Kind::number:
+            return as(Type::number);
+        case Kind::text:
+            return as(Type::text);
+        case Kind::list:
+            return as(!node.list.empty() && node.list.front().kind == Kind::text ? Type::texts : Type::numbers);
+        default:
+            wrong_type(node, key, path);
+            return std::nullopt;
+    }
 }
 
 std::optional<Value> Reader::list(const Node& node, const Key& key, const std::string& path) {

@@ -21,6 +21,8 @@ public:
     /// A whole file.
     Table root(const Node& node, const std::vector<Key>& keys);
     Table table(const Node& node, const std::vector<Key>& keys, const std::string& path);
+    /// One value by itself; nothing, and why, where it is not what the key takes.
+    std::optional<Value> one(const Node& node, const Key& key, const std::string& path) { return value(node, key, path); }
 
 private:
     /// The keys that may stand in one table: its own, and those of the variant that it chose.
@@ -36,6 +38,7 @@ private:
     void absent(const Key& key, const Node& around, const std::string& path, const std::string& owner_path, Table& out);
     std::optional<Value> value(const Node& node, const Key& key, const std::string& path);
     std::optional<Value> scalar(const Node& node, const Key& key, const std::string& path);
+    std::optional<Value> any(const Node& node, const Key& key, const std::string& path);
     std::optional<Value> list(const Node& node, const Key& key, const std::string& path);
     std::optional<Table> table_of(const Node& node, const Key& key, const std::string& path);
     std::optional<Table> chosen(const Node& node, const Key& key, const std::string& path);

@@ -57,6 +57,8 @@ std::string expected(const Key& key, int dim) {
             return "a table";
         case Type::tables:
             return "a list of tables";
+        case Type::any:
+            return "a value";
     }
     return {};
 }

@@ -6,6 +6,7 @@
 #include "scene/reader.hpp"
 #include "scene/rules.hpp"
 #include "scene/solver_kind.hpp"
+#include "scene/steer.hpp"
 
 #include <fmt/format.h>
 
@@ -86,6 +87,7 @@ Scene parse(std::string_view source, const std::string& file, const std::vector<
     scene.root_ = reader.root(document.root, keys);
     if (solver && solver->columns) one_cell_along_y(scene.root_);
     check_rules(scene.root_, scene.dim_, file, problems);
+    if (solver && problems.empty()) check_changes(scene.root_, scene.dim_, file, *solver, problems);
     name_overrides(problems, overrides);
     if (!problems.empty()) throw BadScene(problems, source);
 
@@ -138,6 +140,17 @@ const Table* Scene::effect(std::string_view name) const {
     if (!found) return nullptr;
     std::get<Table>(*effects).mark_read(name);
     return &std::get<Table>(*found);
+}
+
+Scene Scene::steered(const Override& change, const std::vector<SolverSchema>& solvers) const {
+    const auto own = std::find_if(solvers.begin(), solvers.end(), [&](const SolverSchema& s) { return s.name == solver_; });
+    Scene other = *this;
+    other.overrides_.push_back(change);
+    std::vector<Problem> problems;
+    steer(other.root_, dim_, *own, change, static_cast<int>(overrides_.size()), problems);
+    name_overrides(problems, other.overrides_);
+    if (!problems.empty()) throw BadScene(std::move(problems), source_);
+    return other;
 }
 
 Scene Scene::without_effect(std::string_view name) const {

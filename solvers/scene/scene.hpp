@@ -116,6 +116,8 @@ public:
     int dim() const { return dim_; }
     /// Parameters of an effect that the scene names; nullptr where it does not.
     const Table* effect(std::string_view name) const;
+    /// The same scene with a key changed while its run goes on. Throws BadInput where the key or its value may not be (scene/steer.hpp).
+    Scene steered(const Override& change, const std::vector<SolverSchema>& solvers) const;
     /// The same scene as if it did not name the effect.
     Scene without_effect(std::string_view name) const;
     /// A problem at a key of this scene ("solids[0].centre"), for checks that need more than the schema, such as geometry. Where the
@@ -162,5 +164,9 @@ std::string read_text(const std::filesystem::path& path);
 /// A table as text that reads back as the same table: numbers in their shortest exact form.
 std::string to_toml(const Table& table);
 std::string to_json(const Table& table);
+/// A value as the text of an override: a number, a list, a text in quotes.
+std::string to_toml(const Value& value);
+/// The scene again, from what it gives: its defaults are not said. Effects stand in lines of their own, as do the entries of their lists.
+std::string to_scene_text(const Table& root);
 
 }  // namespace weir::scene

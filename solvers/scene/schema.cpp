@@ -1,6 +1,8 @@
 // How a solver's keys lie over the common ones, and the small look-ups that every user of the schema needs.
 #include "scene/schema.hpp"
 
+#include "scene/names.hpp"
+
 #include <algorithm>
 
 namespace weir::scene {
@@ -46,6 +48,7 @@ Key overlay_key(const Key& base, const Key& more) {
     if (more.max) key.max = more.max;
     if (more.only_dim) key.only_dim = more.only_dim;
     if (!more.selector.empty()) key.selector = more.selector;
+    key.steerable = base.steerable || more.steerable;
     key.required = more.required || (base.required && more.fallback.index() == 0);
     key.keys = overlay(base.keys, more.keys);
     if (!variants_of(more).empty()) {
@@ -53,13 +56,6 @@ Key overlay_key(const Key& base, const Key& more) {
         key.variants_from = nullptr;
     }
     return key;
-}
-
-/// "sides.*" gives "sides", and leaves "*".
-std::string_view first_part(std::string_view& path) {
-    const std::string_view part = path.substr(0, path.find('.'));
-    path.remove_prefix(std::min(part.size() + 1, path.size()));
-    return part;
 }
 
 /// Takes the path out of the keys, and out of those of their variants.

@@ -21,6 +21,7 @@ enum class Type {
     table,     // nested keys in `keys`
     tables,    // list of tables, each with `keys`
     named,     // table whose own keys are names out of `variants`, each with that variant's keys (effects)
+    any,       // a flag, number, text, or list of numbers or texts: whatever another key takes (changes)
 };
 
 /// A default as the scene would write it. monostate: no default; the key is absent unless given. For a list as long as the scene's
@@ -58,6 +59,7 @@ struct Key {
     const std::vector<Variant>& (*variants_from)() = nullptr;  // in place of `variants`, where those contain themselves (union of shapes)
     int only_dim = 0;                                          // 2 or 3: the key exists only in scenes of that dimension
     std::string example{};                                     // as a scene would write it; shown where a required key is missing
+    bool steerable = false;                                    // may change while a run goes on (scene/steer.hpp)
 };
 
 /// What a solver adds to the common keys, and the effects that it has. A key with the name of a common one changes that one: its

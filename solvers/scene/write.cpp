@@ -70,6 +70,61 @@ std::string write(const Table& table, const Style& style) {
 
 }  // namespace
 
+std::string to_toml(const Value& value) { return write(value, toml); }
+
+namespace {
+
+bool is_given(const Place& place) { return place.column > 0; }
+
+/// What the scene says of a table; what it leaves to the schema is left out.
+Table given(const Table& table) {
+    Table out;
+    for (const auto& key : table.keys()) {
+        const Value& value = *table.find(key);
+        const Place place = table.place(key);
+        if (const auto* inner = std::get_if<Table>(&value)) {
+            Table part = given(*inner);
+            if (is_given(place) || !part.keys().empty()) out.set(key, std::move(part), place);
+        } else if (const auto* list = std::get_if<std::vector<Table>>(&value)) {
+            std::vector<Table> parts;
+            for (const Table& t : *list) parts.push_back(given(t));
+            if (is_given(place) || !parts.empty()) out.set(key, std::move(parts), place);
+        } else if (is_given(place)) {
+            out.set(key, value, place);
+        }
+    }
+    return out;
+}
+
+/// One line, or for a list of tables one for each.
+std::string scene_lines(const std::string& path, const Value& value) {
+    const auto* list = std::get_if<std::vector<Table>>(&value);
+    if (!list || list->empty()) return path + " = " + write(value, toml) + "\n";
+    std::string out = path + " = [\n";
+    for (const Table& t : *list) out += "    " + write(t, toml) + ",\n";
+    return out + "]\n";
+}
+
+}  // namespace
+
+std::string to_scene_text(const Table& root) {
+    std::string out;
+    const Table said = given(root);
+    for (const auto& key : said.keys()) {
+        const Value& value = *said.find(key);
+        if (key != "effects") {
+            out += scene_lines(key, value);
+            continue;
+        }
+        for (const auto& effect : std::get<Table>(value).keys()) {
+            const auto& table = std::get<Table>(*std::get<Table>(value).find(effect));
+            if (table.keys().empty()) out += "effects." + effect + " = {}\n";
+            for (const auto& inner : table.keys()) out += scene_lines("effects." + effect + "." + inner, *table.find(inner));
+        }
+    }
+    return out;
+}
+
 std::string to_json(const Table& table) { return write(table, json); }
 
 std::string to_toml(const Table& table) {

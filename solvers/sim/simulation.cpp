@@ -40,9 +40,13 @@ long cells_of(const scene::Scene& scene) {
     return cells;
 }
 
-std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind) {
     const ThreadsWorth worth(cells_of(scene));
-    return sim::kind_named(scene.solver(), kinds).make(scene);
+    return kind.make(scene);
+}
+
+void refuse_ignored(const scene::Scene& scene, const scene::SolverKind& kind) {
+    if (auto ignored = scene::ignored_keys(scene, kind.schema); !ignored.empty()) scene.refuse(std::move(ignored));
 }
 
 /// Looked at before anything of it is built.
@@ -77,17 +81,15 @@ Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::r
 
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
     : scene_(unread(fitting(std::move(scene), kinds))),
-      solver_(make_solver(scene_, kinds)),
+      kind_(sim::kind_named(scene_.solver(), kinds)),
+      solver_(make_solver(scene_, kind_)),
       probes_(scene_, *solver_),
-      end_(scene_.number("time.end")),
       every_(scene_.root().number_or("output.every", infinity)),
-      fixed_dt_(scene_.root().number_or("time.dt", 0)),
-      max_dt_(scene_.root().number_or("time.max_dt", infinity)),
-      guard_(scene_.text("time.guard") != "off"),
-      steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)) {
+      steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
+      changes_(scene::changes_of(scene_.root())) {
+    read_times();
     check_output_fields(scene_, solver_->fields());
-    if (auto ignored = scene::ignored_keys(scene_, sim::kind_named(scene_.solver(), kinds).schema); !ignored.empty())
-        scene_.refuse(std::move(ignored));
+    refuse_ignored(scene_, kind_);
     probes_.sample(*solver_);
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }
@@ -97,9 +99,60 @@ int Simulation::threads() const {
     return weir::threads();
 }
 
+void Simulation::read_times() {
+    end_ = scene_.number("time.end");
+    fixed_dt_ = scene_.root().number_or("time.dt", 0);
+    max_dt_ = scene_.root().number_or("time.max_dt", infinity);
+    guard_ = scene_.text("time.guard") != "off";
+}
+
+/// The solver is made anew of the changed scene and given the state, as a restart does: nothing in a solver needs to know of changes, and
+/// what it derives from its scene fits the scene.
+void Simulation::steer(const scene::Override& change) {
+    scene::Scene changed = unread(scene_.steered(change, {kind_.schema}));
+    Checkpoint state;
+    solver_->save(state);
+    std::unique_ptr<Solver> solver = make_solver(changed, kind_);
+    if (!change.key.starts_with("time.") && !changed.root().was_read(change.key))
+        changed.refuse(change.key, change.key + " does nothing in this scene");
+    solver->restore(state);
+    if (const Hand* hand = solver_->hand()) solver->hand()->keys = hand->keys;
+    solver->passes().reset();
+    for (const Pass& pass : static_cast<const Solver&>(*solver_).passes().list()) solver->passes().add(pass.name, pass.seconds, pass.calls);
+    solver_ = std::move(solver);
+    scene_ = std::move(changed);
+    read_times();
+}
+
+void Simulation::set(const scene::Override& change) { steer(change); }
+void Simulation::set(const std::string& key, real value) { steer({key, scene::number_text(value)}); }
+void Simulation::set(const std::string& key, std::span<const real> values) {
+    steer({key, scene::to_toml(scene::Value(std::vector<double>(values.begin(), values.end())))});
+}
+
+void Simulation::set_at(real time, const scene::Override& change) {
+    if (time < this->time() || (static_cast<std::size_t>(changed_) < changes_.size() && time < changes_.back().time))
+        throw BadInput(fmt::format("{} cannot change at {} s: the run is at {} s, and changes come in the order of time", change.key,
+                                   scene::number_text(time), scene::number_text(this->time())));
+    scene_.steered(change, {kind_.schema});  // refuses what it would then
+    changes_.push_back({time, change});
+}
+
+/// Those that are due.
+void Simulation::meet_changes() {
+    for (; static_cast<std::size_t>(changed_) < changes_.size(); ++changed_) {
+        const auto& next = changes_[static_cast<std::size_t>(changed_)];
+        if (!reached(next.time)) return;
+        steer(next.what);
+    }
+}
+
 StepReport Simulation::step() { return step_until(infinity); }
 
-StepReport Simulation::step_until(real t) { return step_towards(std::min(t, finished() && t < infinity ? infinity : next_target())); }
+StepReport Simulation::step_until(real t) {
+    meet_changes();
+    return step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
+}
 
 void Simulation::run_until(real t) {
     while (!reached(t)) step_until(t);
@@ -107,9 +160,10 @@ void Simulation::run_until(real t) {
 
 StepReport Simulation::step_towards(real target) {
     const ThreadsWorth worth(cells_of(scene_));
-    const real frame_target = next_target();
+    const real frame_target = next_frame();
     StepReport report;
     try {
+        longest_dt_ = std::max(longest_dt_, uncut_dt());
         const real wanted = wanted_dt(target);
         const StepLimit stable = limit();
         const real dt = within_limit(wanted, stable);
@@ -135,8 +189,16 @@ StepReport Simulation::step_towards(real target) {
 
 bool Simulation::reached(real t) const { return time() >= t - slack(t); }
 
-/// The next frame, or the end where that comes first. A frame that rounding puts just before the end is the end.
+/// The next frame, the end or a change, whichever comes first.
 real Simulation::next_target() const {
+    real target = next_frame();
+    for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
+        if (!reached(changes_[at].time)) return std::min(target, changes_[at].time);
+    return target;
+}
+
+/// The next frame, or the end where that comes first. A frame that rounding puts just before the end is the end.
+real Simulation::next_frame() const {
     if (every_ == infinity || finished()) return end_;
     real k = std::floor(time() / every_) + 1;
     while (reached(k * every_)) ++k;
@@ -144,10 +206,12 @@ real Simulation::next_target() const {
     return frame >= end_ - 1e-9 * every_ ? end_ : frame;
 }
 
+real Simulation::uncut_dt() const { return fixed_dt_ > 0 ? fixed_dt_ : std::min(solver_->advised_dt(), max_dt_); }
+
 real Simulation::wanted_dt(real target) const {
     const real remaining = target - time();
     const bool fixed = fixed_dt_ > 0;
-    const real dt = fixed ? fixed_dt_ : std::min(solver_->advised_dt(), max_dt_);
+    const real dt = uncut_dt();
     if (!(dt > slack(time())) && remaining > 0)
         throw NumericalFailure("time step", "the advised time step is " + scene::number_text(dt) + " s: time no longer advances");
     if (remaining <= 0) return dt;
@@ -182,12 +246,25 @@ void Simulation::save(Checkpoint& to) const {
     to.put_value("sim.steps", steps_);
     to.put_value("sim.frame", frame_);
     to.put_value("sim.at_frame", at_frame_);
+    if (changed_ > 0) to.put_value("sim.changed", changed_);
     probes_.save(to);
     solver_->save(to);
 }
 
+/// The scene as it stood when the checkpoint was made. One that was read from the checkpoint has the changes in it, and perhaps others
+/// behind them that the user wants.
+void Simulation::resume_changes(const Checkpoint& from) {
+    const auto met = from.has("sim.changed") ? from.get_value<std::int64_t>("sim.changed") : 0;
+    for (; changed_ < met && static_cast<std::size_t>(changed_) < changes_.size(); ++changed_) {
+        const auto& what = changes_[static_cast<std::size_t>(changed_)].what;
+        const auto& done = scene_.overrides();
+        if (std::none_of(done.begin(), done.end(), [&](const auto& o) { return o.key == what.key && o.value == what.value; })) steer(what);
+    }
+}
+
 void Simulation::restore(const Checkpoint& from) {
     try {
+        resume_changes(from);
         solver_->restore(from);
         probes_.restore(from);
         steps_ = from.get_value<std::int64_t>("sim.steps");

@@ -8,11 +8,14 @@
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
 #include "scene/solver_kind.hpp"
+#include "scene/steer.hpp"
 #include "sim/probes.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +41,19 @@ public:
     /// What a user should know, one line each, each kind once: the first step that was longer than the solver is stable for, with its
     /// limit and why; the solver's own concern about the state.
     const std::vector<std::string>& warnings() const { return warnings_; }
+
+    /// Changes a key that the schema marks as steerable, from the next step on: as if the run went on from a checkpoint with another
+    /// --set. Throws BadInput where the key or the value may not be, and leaves all as it was.
+    void set(const scene::Override& change);
+    void set(const std::string& key, real value);
+    void set(const std::string& key, std::span<const real> values);
+    /// The same at a time that is not over yet and not before that of a change which waits: steps meet it exactly, as if the scene had
+    /// named it in its `changes`.
+    void set_at(real time, const scene::Override& change);
+    /// A time that no step up to now would have been cut for, had it been known that something happens there.
+    real horizon() const { return time() + 2.5 * std::max(longest_dt_, uncut_dt()); }
+    /// Every change that the run is to meet, those that it has met included.
+    const std::vector<scene::TimedChange>& changes() const { return changes_; }
 
     bool finished() const { return reached(end_) || steady_; }
     /// The run ended because nothing changed any more (time.stop_when_steady).
@@ -68,7 +84,13 @@ public:
     void restore(const Checkpoint& from);
 
 private:
+    real next_frame() const;
     real next_target() const;
+    real uncut_dt() const;
+    void read_times();
+    void steer(const scene::Override& change);
+    void meet_changes();
+    void resume_changes(const Checkpoint& from);
     real wanted_dt(real target) const;
     StepLimit limit() const { return guard_ ? solver_->stable_dt() : StepLimit{}; }
     real within_limit(real dt, const StepLimit& limit) const;
@@ -76,6 +98,7 @@ private:
     StepReport step_towards(real target);
 
     scene::Scene scene_;
+    scene::SolverKind kind_;
     std::unique_ptr<Solver> solver_;
     sim::Probes probes_;
     real end_ = 0, every_ = infinity, fixed_dt_ = 0, max_dt_ = infinity;  // fixed_dt_ 0: the solver advises
@@ -85,6 +108,9 @@ private:
     std::vector<std::vector<real>> last_velocity_;  // where it is, that of the last step
     bool split_ = false, concerned_ = false;        // whether a step was taken in parts, or the solver had a concern
     std::vector<std::string> warnings_;
+    std::vector<scene::TimedChange> changes_;
+    std::int64_t changed_ = 0;  // how many of them the run has met
+    real longest_dt_ = 0;       // that was wanted so far, before it was cut for a frame [s]
 };
 
 /// The scene that a checkpoint was made from, as its text and overrides. Throws BadInput.

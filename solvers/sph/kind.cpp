@@ -51,20 +51,22 @@ std::vector<scene::Variant> effects() {
                     "walls and solids with slip = \"no\".",
                     {},
                     {"fluid.viscosity"}});
-    list.push_back({"density_diffusion",
-                    "Density spreads over neighbours, but for what it varies by at rest (delta-SPH: Molteni & Colagrossi 2009; Fourtakas "
-                    "et al. 2019).",
-                    {{.name = "delta", .type = Type::number, .doc = "Its strength.", .fallback = 0.1, .min = 0, .max = 1}},
-                    {"delta"},
-                    "scheme.density = \"continuity\""});
-    list.push_back({"surface_tension",
-                    "Stress of the colour's gradient (Müller et al. 2003, eq. 15; Lafaurie et al. 1994); keeps momentum.",
-                    {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0}},
-                    {"sigma"},
-                    "scheme.tension = true"});
+    list.push_back(
+        {"density_diffusion",
+         "Density spreads over neighbours, but for what it varies by at rest (delta-SPH: Molteni & Colagrossi 2009; Fourtakas "
+         "et al. 2019).",
+         {{.name = "delta", .type = Type::number, .doc = "Its strength.", .fallback = 0.1, .min = 0, .max = 1, .steerable = true}},
+         {"delta"},
+         "scheme.density = \"continuity\""});
+    list.push_back(
+        {"surface_tension",
+         "Stress of the colour's gradient (Müller et al. 2003, eq. 15; Lafaurie et al. 1994); keeps momentum.",
+         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .steerable = true}},
+         {"sigma"},
+         "scheme.tension = true"});
     list.push_back({"artificial_viscosity",
                     "Viscosity of approaching pairs only (Monaghan 1992).",
-                    {{.name = "alpha", .type = Type::number, .doc = "Its strength.", .fallback = 0.05, .min = 0}},
+                    {{.name = "alpha", .type = Type::number, .doc = "Its strength.", .fallback = 0.05, .min = 0, .steerable = true}},
                     {"alpha"},
                     "scheme.density = \"continuity\""});
     list.push_back({"rest_density",

@@ -18,8 +18,7 @@ public:
 
 private:
     using Base = Sph<particles::ThreadedSolver<D>>;
-    using Base::fluid_, Base::emitters_, Base::kernels_, Base::walls_, Base::pairs_, Base::solids_, Base::flow_, Base::effects_,
-        Base::passes_;
+    using Base::fluid_, Base::kernels_, Base::walls_, Base::pairs_, Base::solids_, Base::flow_, Base::effects_, Base::passes_;
     using Base::options_, Base::speed_, Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
 
     SphSolver(const scene::Scene& scene, particles::Fluid<D>&& start);

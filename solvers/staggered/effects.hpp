@@ -2,6 +2,7 @@
 // and the solver; what no scene names allocates nothing.
 #pragma once
 #include "core/effects.hpp"
+#include "core/hand.hpp"
 #include "scene/scene.hpp"
 #include "staggered/state.hpp"
 
@@ -32,6 +33,10 @@ Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& 
 
 /// du/dt = g: acts on every fluid.
 EffectKind gravity();
+
+/// The hand (geometry/hand.hpp), which acts at this stage.
+template <int D>
+std::unique_ptr<MacEffect<D>> hand_effect(std::shared_ptr<Hand> hand, Stage stage);
 
 /// Registers the two instantiations of one template.
 template <template <int> class E>

@@ -1,5 +1,6 @@
 #include "water/effects.hpp"
 
+#include "geometry/hand.hpp"
 #include "surface/start.hpp"
 
 namespace weir::water {
@@ -16,7 +17,14 @@ std::vector<scene::Variant> effect_schemas() {
     const std::vector<scene::Variant> own{
         {"surface_tension",
          "p = sigma kappa on the surface (ghost-fluid jump).",
-         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .min_open = true}},
+         {{.name = "sigma",
+           .type = Type::number,
+           .doc = "Surface tension.",
+           .unit = "N/m",
+           .required = true,
+           .min = 0,
+           .min_open = true,
+           .steerable = true}},
          {"sigma"}},
         {"viscosity",
          "Friction inside the liquid, with fluid.viscosity; none on the free surface.",
@@ -28,6 +36,7 @@ std::vector<scene::Variant> effect_schemas() {
          {"fluid.viscosity"}},
         surface::volume_control()};
     list.insert(list.end(), own.begin(), own.end());
+    list.push_back(geometry::hand_schema());
     return list;
 }
 

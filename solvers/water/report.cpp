@@ -1,4 +1,5 @@
 // What the water shows of itself: fields, integrals, checkpoints.
+#include "geometry/hand.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
 #include "water/solver.hpp"
@@ -33,6 +34,7 @@ std::vector<Integral> Water<D>::integrals() const {
     list.insert(list.begin() + 1, {"marker_volume", list[0].unit, markers_.volume * static_cast<real>(markers_.count())});
     list.push_back({"markers", "", static_cast<real>(markers_.count())});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
+    if (hand_) geometry::sum_up(*hand_, D, list);
     list.push_back({"escaped_markers", "", static_cast<real>(escaped_)});
     list.push_back({"reseeded_markers", "", static_cast<real>(reseeded_)});
     return list;
@@ -49,6 +51,7 @@ void Water<D>::save(Checkpoint& to) const {
     to.put_value("water.reals", reals);
     to.put_value("water.counts", counts);
     to.put_value("water.rate", rate_);
+    if (hand_) hand_->save(to);
 }
 
 template <int D>
@@ -63,6 +66,7 @@ void Water<D>::restore(const Checkpoint& from) {
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = counts[1], reseeded_ = counts[2];
+    if (hand_ && from.has("hand")) hand_->restore(from);
     markers_.sort(frame_);
     pressure_.set_surface(surface_, closed_, state_);
     mark_liquid_faces();

@@ -60,6 +60,7 @@ public:
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
+    Hand* hand() const override { return hand_.get(); }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
@@ -89,6 +90,7 @@ private:
     bool is_free(const Vec<D>& x) const;
     void impose_emitters(real dt, real Emitter<D>::Face::*speed);
     void carry_emitters_velocity(real dt);
+    void pour_and_drain_by_hand();
     const Grid<std::uint8_t, D>& not_solved_for(real dt);
     void curvature();
     void correct_surface(real dt);
@@ -129,7 +131,8 @@ private:
     real rate_ = 0;  // max |u|/h over known faces [1/s]
     int up_ = 1;     // the axis that gravity is most along
     std::int64_t escaped_ = 0, reseeded_ = 0;
-    real volume_shift_ = 0;  // how far volume control moved the surface, all steps together [m]
+    real volume_shift_ = 0;       // how far volume control moved the surface, all steps together [m]
+    std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
 };
 

@@ -20,6 +20,14 @@ void for_each_serial(const Index<D>& lo, const Index<D>& hi, F&& f) {
     }
 }
 
+/// Which of a cell's half cells a point lies in.
+template <int D>
+int half_of(const Vec<D>& x, const Vec<D>& centre) {
+    int half = 0;
+    for (int d = 0; d < D; ++d) half |= (x[d] > centre[d]) << d;
+    return half;
+}
+
 }  // namespace
 
 /// Adds markers to half cells of I that have none, up to `wanted` in the cell, with the velocity of the liquid there.
@@ -27,11 +35,8 @@ template <int D>
 bool Water<D>::fill_cell(const Index<D>& I, int wanted) {
     const std::size_t cell = surface_.phi.linear(I);
     int occupied = 0, count = markers_.in_cell(cell);
-    for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p) {
-        int half = 0;
-        for (int d = 0; d < D; ++d) half |= (markers_.position(p)[d] > frame_.centre(I)[d]) << d;
-        occupied |= 1 << half;
-    }
+    for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p)
+        occupied |= 1 << half_of(markers_.position(p), frame_.centre(I));
     bool added = false;
     for (int sub = 0; sub < Markers<D>::per_cell && count < wanted; ++sub) {
         if (occupied >> sub & 1) continue;
@@ -100,6 +105,53 @@ void Water<D>::pour_and_drain(real dt) {
     const std::size_t poured = markers_.count() - (all - departed);
     volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(poured);
     markers_.sort(frame_);
+    if (hand_) pour_and_drain_by_hand();
+}
+
+/// Poured liquid fills the half cells of the brush in which there is no marker, one each, so that it comes as fast as there is room; a
+/// drain takes the markers that it covers. The level set follows, and the ledger.
+template <int D>
+void Water<D>::pour_and_drain_by_hand() {
+    const auto brush = hand_->at<D>(state_.time);
+    const bool pours = brush.kind == HandKind::pour;
+    if (!pours && brush.kind != HandKind::drain) return;
+    const std::size_t all = markers_.count();
+    if (!pours && all == 0) return;
+    const real each = pours ? frame_.cell_volume() / Markers<D>::per_cell : volume_target_ / static_cast<real>(all);
+    const auto account = [&](const Vec<D>& u, real volume) {
+        for (int a = 0; a < D; ++a) hand_->impulse[a] += state_.rho * volume * u[a];
+        hand_->mass += state_.rho * volume;
+        volume_target_ += volume;
+    };
+    if (pours) {
+        for (std::size_t cell = 0; cell < product(frame_.cells); ++cell) {
+            const Index<D> I = frame_.index_of(cell);
+            const Vec<D> centre = frame_.centre(I);
+            if (norm(centre - brush.centre) > brush.radius + norm(frame_.h) || (!closed_.empty() && closed_(I))) continue;
+            surface_.phi(I) = std::min(surface_.phi(I), norm(centre - brush.centre) - brush.radius);
+            int occupied = 0;
+            for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p) occupied |= 1 << half_of(markers_.position(p), centre);
+            for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
+                const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed + static_cast<std::uint64_t>(steps_) + 1);
+                if ((occupied >> half_of(x, centre) & 1) || !brush.covers(x) || !is_free(x)) continue;
+                markers_.add(x, brush.velocity);
+                account(brush.velocity, each);
+            }
+        }
+    } else {
+        markers_.retain([&](std::size_t p) {
+            if (!brush.covers(markers_.position(p))) return true;
+            Vec<D> u{};
+            if (markers_.carries_velocity())
+                for (int a = 0; a < D; ++a) u[a] = markers_.v[static_cast<std::size_t>(a)][p];
+            account(u, -each);
+            return false;
+        });
+        for_each_cell(frame_.cells, [&](const Index<D>& I) {
+            surface_.phi(I) = std::max(surface_.phi(I), brush.radius - norm(frame_.centre(I) - brush.centre));
+        });
+    }
+    if (markers_.count() != all || !pours) markers_.sort(frame_);
 }
 
 /// Faces of an emitter's cells have its velocity: that of the liquid inside, or what the pressure sees of it (emitters.hpp).

@@ -1,4 +1,5 @@
 // What a scene of liquid is at t = 0: the level set of its shapes, its markers, its velocity.
+#include "geometry/hand.hpp"
 #include "scene/names.hpp"
 #include "staggered/initial.hpp"
 #include "water/effects.hpp"
@@ -25,7 +26,9 @@ Water<D>::Water(const scene::Scene& scene)
       solids_(solids_of<D>(scene), state_),
       effects_(make_effects<D>(body_forces(), scene)),
       gravity_(gravity_of<D>(scene)),
-      up_(up_axis<D>(gravity_)) {
+      up_(up_axis<D>(gravity_)),
+      hand_(geometry::make_hand(scene)) {
+    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
     refuse_flat_cells(scene, frame_);
     markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));

@@ -25,8 +25,13 @@ const std::vector<std::string> of_the_run{
     "grid.origin = [0, 0]",
     "time.dt = 0.001",
     "time.max_dt = 0.001\ntime.guard = \"off\"",
+    "changes = [ { time = 0.5, key = \"time.max_dt\", value = 0.1 } ]",
     "output = { every = 0.5, fields = [], faces = true, precision = \"single\", compression = \"none\" }",
 };
+const std::string hand =
+    "effects.hand = { rate = 10, keyframes = [ { time = 0, kind = \"push\", centre = [0.5, 0.5], radius = 0.1, velocity = [1, 0], speed = "
+    "0 "
+    "} ] }";
 /// With `field` as one that the solver has.
 std::vector<std::string> probes(const std::string& field) {
     const std::string of = ", field = \"" + field + "\"";
@@ -107,7 +112,8 @@ std::map<std::string, Said> everything() {
                           "effects.gravity.g = [0, -1]",
                           "effects.central_force = { omega = 1, centre = [0, 0] }",
                           "effects.xsph.c = 0.1",
-                          "effects.vorticity.epsilon = 0.1"};
+                          "effects.vorticity.epsilon = 0.1",
+                          hand};
     const Lines liquid{"liquid = [ { shape = \"box\", min = [0, 0], max = [0.5, 0.5] } ]"};
     const Lines refused_by_particles{inflow + " } }", "output.fields = [\"vorticity\"]"};
     said["mac"] = {
@@ -119,7 +125,7 @@ std::map<std::string, Said> everything() {
                   "scheme = { advection = \"conservative\", flux = \"central\" }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
                   "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.buoyancy = { alpha = 1, beta = 1, ambient = 0 }",
                   "effects.confinement = { epsilon = 0.1 }", "effects.diffusion = { scheme = \"explicit\", temperature = 1, smoke = 1 }",
-                  "effects.cooling = { rate = 1, ambient = 0 }", "effects.decay = { rate = 1 }",
+                  "effects.cooling = { rate = 1, ambient = 0 }", "effects.decay = { rate = 1 }", hand,
                   "effects.viscosity = { scheme = \"explicit\" }\nfluid.viscosity = 1"}),
         of_the_surface,
         {"solids = [ { shape = \"cylinder\", from = [0.4, 0.4, 0.4], to = [0.6, 0.4, 0.4], radius = 0.2, motion = { kind = \"rotation\", "
@@ -130,7 +136,7 @@ std::map<std::string, Said> everything() {
     said["mac_water"] = {
         liquid, all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, poisson, grid_velocities, walls, open_sides,
                     Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
-                    Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }",
+                    Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }", hand,
                           "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4",
                           "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]",
                           "effects.surface_tension.sigma = 1", "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"})};

@@ -210,6 +210,22 @@ def test_pictures_and_frames(tmp_path):
     assert "grid.pvd" in names and (tmp_path / "grid.pvd").exists()
 
 
+def test_keys_change_while_it_runs():
+    """On the moon from the start, and from half way on: as the scene would say it."""
+    sim = weir.Simulation(dam)
+    sim.set("effects.gravity.g", [0.0, -1.6])
+    sim.run()
+    moon = weir.Simulation(changed(effects={"gravity": {"g": [0.0, -1.6]}}))
+    moon.run()
+    assert np.array_equal(sim["level_set"], moon["level_set"])
+    later, written = weir.Simulation(dam), weir.Simulation(changed(changes=[{"time": 0.1, "key": "effects.gravity.g", "value": [0.0, -1.6]}]))
+    later.set("effects.gravity.g", [0.0, -1.6], at=0.1)
+    later.run(), written.run()
+    assert np.array_equal(later["level_set"], written["level_set"]) and not np.array_equal(later["level_set"], moon["level_set"])
+    with pytest.raises(weir.BadInput, match="grid.cells"):
+        sim.set("grid.cells", [3, 3])
+
+
 # --- what is refused
 def test_a_dict_is_refused_as_a_file_is(tmp_path):
     wrong = changed(solver="mac_water", grid={"cells": [32, -16], "size": [1.0, 0.5]}, time={"end": "soon"},

@@ -1,0 +1,101 @@
+#include "geometry/hand.hpp"
+
+#include <string>
+
+namespace weir::geometry {
+
+using scene::Key;
+using scene::Type;
+
+scene::Variant hand_schema() {
+    const std::vector<Key> keyframe{
+        {.name = "time", .type = Type::number, .doc = "It holds from here until the next.", .unit = "s", .required = true, .min = 0},
+        {.name = "kind",
+         .type = Type::choice,
+         .doc =
+             "push: towards `velocity`. pull: towards the brush's centre, with `speed` at its edge. pour: fluid with `velocity` fills what "
+             "is empty in the brush (smoke, where fluid fills the domain). drain: fluid (smoke) is taken out. off: nothing.",
+         .fallback = std::string("push"),
+         .choices = {hand_kinds.begin(), hand_kinds.end()}},
+        {.name = "centre", .type = Type::numbers, .doc = "Of the brush; obligatory but for off.", .unit = "m", .length = -1},
+        {.name = "radius", .type = Type::number, .doc = "Of the brush; obligatory but for off.", .unit = "m", .min = 0, .min_open = true},
+        {.name = "velocity",
+         .type = Type::numbers,
+         .doc = "Target of push and pour.",
+         .unit = "m/s",
+         .fallback = std::vector<double>{0},
+         .length = -1},
+        {.name = "speed", .type = Type::number, .doc = "Of pull.", .unit = "m/s", .fallback = 0.0, .min = 0}};
+    return {"hand",
+            "A round brush by keyframes that pushes, pulls, pours or drains: du/dt = rate w (target - u) with w = (1 - r^2/radius^2)^2 "
+            "inside it, taken exactly over the step; no target is faster than a cell a step. The integrals hand_impulse_x .. and hand_mass "
+            "tell what it has given. It does not reach around periodic sides.",
+            {{.name = "rate",
+              .type = Type::number,
+              .doc = "How fast the fluid follows in the middle of the brush.",
+              .unit = "1/s",
+              .fallback = 50.0,
+              .min = 0,
+              .steerable = true},
+             {.name = "keyframes", .type = Type::tables, .doc = "In the order of time.", .keys = keyframe}},
+            {"rate"}};
+}
+
+namespace {
+
+HandKind hand_kind_named(const std::string& name) {
+    return static_cast<HandKind>(std::find(hand_kinds.begin(), hand_kinds.end(), name) - hand_kinds.begin());
+}
+
+Vec<3> point(const scene::Table& t, const char* key) {
+    Vec<3> p{};
+    if (t.has(key)) {
+        const auto& list = t.numbers(key);
+        std::copy(list.begin(), list.end(), p.begin());
+    }
+    return p;
+}
+
+}  // namespace
+
+std::shared_ptr<Hand> make_hand(const scene::Scene& scene) {
+    const scene::Table* table = scene.effect("hand");
+    if (!table) return nullptr;
+    auto hand = std::make_shared<Hand>();
+    hand->rate = table->number("rate");
+    const auto& frames = table->tables("keyframes");
+    hand->keys.reserve(frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const scene::Table& t = frames[i];
+        const std::string path = "effects.hand.keyframes[" + std::to_string(i) + "]";
+        hand->keys.push_back({t.number("time"), hand_kind_named(t.text("kind")), point(t, "centre"), t.number_or("radius", 0),
+                              point(t, "velocity"), t.number("speed")});
+        if (i > 0 && hand->keys[i].time < hand->keys[i - 1].time) scene.refuse(path + ".time", "it lies before that of the keyframe above");
+        if (hand->keys[i].kind == HandKind::off) continue;
+        for (const char* key : {"centre", "radius"})
+            if (!t.has(key)) scene.refuse(path, path + " has no \"" + key + "\"", "only a keyframe that is off needs none");
+    }
+    return hand;
+}
+
+scene::Table to_table(const HandKey& key, int dim) {
+    const scene::Place given{1, 1};
+    const auto list = [&](const Vec<3>& v) { return std::vector<double>(v.begin(), v.begin() + dim); };
+    scene::Table t;
+    t.set("time", key.time, given);
+    t.set("kind", std::string(hand_kinds[static_cast<std::size_t>(key.kind)]), given);
+    if (key.kind == HandKind::off) return t;
+    t.set("centre", list(key.centre), given);
+    t.set("radius", key.radius, given);
+    if (key.kind == HandKind::pull) t.set("speed", key.speed, given);
+    if (key.kind == HandKind::push || key.kind == HandKind::pour) t.set("velocity", list(key.velocity), given);
+    return t;
+}
+
+void sum_up(const Hand& hand, int dim, std::vector<Integral>& list) {
+    const std::string per_depth = dim == 2 ? "/m" : "";
+    for (int a = 0; a < dim; ++a) list.push_back({std::string("hand_impulse_") + "xyz"[a], "kg m/s" + per_depth, hand.impulse[a]});
+    list.push_back({"hand_mass", "kg" + per_depth, hand.mass});
+}
+
+}  // namespace weir::geometry
