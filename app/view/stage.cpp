@@ -131,6 +131,13 @@ void Stage::set_colours(const std::string& field) {
     scale_->SetTitle(title_of(field).c_str());
 }
 
+void Stage::colour(vtkMapper* mapper, vtkDataSet* shown) {
+    if (!shown) return mapper->ScalarVisibilityOff();
+    widen(shown);
+    mapper->SetLookupTable(colours_);
+    mapper->UseLookupTableScalarRangeOn();
+}
+
 void Stage::add_particles(const Frame& frame, vtkPolyData* points, const std::string& field) {
     if (points->GetNumberOfPoints() == 0) return;
     if (points->GetNumberOfPolys() + points->GetNumberOfLines() > 0) return add_surface(frame, points, field);
@@ -151,12 +158,7 @@ void Stage::add_particles(const Frame& frame, vtkPolyData* points, const std::st
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.16, 0.42, 0.66);
     actor->GetProperty()->LightingOff();
-    if (shown) {
-        widen(shown);
-        mapper->SetLookupTable(colours_);
-        mapper->UseLookupTableScalarRangeOn();
-    } else
-        mapper->ScalarVisibilityOff();
+    colour(mapper, shown);
     add(actor.Get());
 }
 
@@ -169,23 +171,16 @@ void Stage::add_surface(const Frame& frame, vtkPolyData* surface, const std::str
     actor->GetProperty()->SetColor(0.16, 0.42, 0.66);
     actor->GetProperty()->SetSpecular(0.4);
     actor->GetProperty()->SetLineWidth(3);
-    if (shown) {
-        widen(shown);
-        mapper->SetLookupTable(colours_);
-        mapper->UseLookupTableScalarRangeOn();
-    } else
-        mapper->ScalarVisibilityOff();
+    colour(mapper, shown);
     add(actor.Get());
 }
 
 void Stage::add_sheet(const Frame& frame, const std::string& field) {
     const auto shown = coloured(frame.grid, frame, field);
     if (!shown) return;
-    widen(shown);
     vtkNew<vtkDataSetMapper> mapper;
     mapper->SetInputData(shown);
-    mapper->SetLookupTable(colours_);
-    mapper->UseLookupTableScalarRangeOn();
+    colour(mapper, shown);
     mapper->InterpolateScalarsBeforeMappingOn();
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);

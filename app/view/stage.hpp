@@ -12,6 +12,7 @@
 
 class vtkActor;
 class vtkLookupTable;
+class vtkMapper;
 class vtkProp;
 class vtkRenderer;
 class vtkScalarBarActor;
@@ -45,6 +46,8 @@ private:
     void add_cloud(const Frame& frame, const std::string& field);
     void add_solids(real time);
     void add_outline();
+    /// Colours by the field of `shown`; plain where that is null.
+    void colour(vtkMapper* mapper, vtkDataSet* shown);
     void widen(vtkDataSet* shown);
     void set_colours(const std::string& field);
     void add(vtkSmartPointer<vtkProp> prop);

@@ -51,17 +51,15 @@ struct GridView {
     std::array<real, 3> spacing{0, 0, 0};  // [m]
 };
 
-/// The names by which solvers show their free surface: a cell field, signed distance to it [m], negative in the liquid; depth and height of
-/// the surface of columns of water, on a grid of one cell along y [m]; and the particle sets of grid and of particle solvers.
+/// The names by which solvers show their free surface: a cell field, signed distance to it [m], negative in the liquid; or on a grid of one
+/// cell along y the surface's y [m], with the water's depth where it ends at a bed; and the particle sets of grid and of particle solvers.
 inline constexpr const char* level_set_name = "level_set";
 inline constexpr const char* column_depth_name = "depth";
-inline constexpr const char* column_surface_name = "surface";
+inline constexpr const char* surface_height_name = "surface";
 inline constexpr const char* marker_set_name = "markers";
 inline constexpr const char* particle_set_name = "particles";
 
-/// And those whose surface is a height over each point: a cell field on a grid of one cell along y, the surface's y [m]. The same surface
-/// as points in space, which may have moved sideways too.
-inline constexpr const char* surface_height_name = "height";
+/// The same surface as points in space, which may have moved sideways too.
 inline constexpr const char* surface_set_name = "surface";
 
 /// A particle set whose points stand in rows, x fastest, and are the corners of a surface: a line where there is one row.

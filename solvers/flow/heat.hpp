@@ -8,28 +8,15 @@
 #include "core/grid.hpp"
 #include "core/solver.hpp"
 #include "flow/effects.hpp"
+#include "matter/melting.hpp"
+#include "staggered/conduction.hpp"
 #include "staggered/ghosts.hpp"
 
 #include <optional>
 
 namespace weir::flow {
 
-/// Solid and liquid of a heat curve, as the loops over cells use them.
-struct Melting {
-    real T = 0;                      // of melting [K]
-    real h_solid = 0, h_liquid = 0;  // the ends of the plateau [J/kg]
-    real c_solid = 0, c_liquid = 0;  // [J/(kg K)]
-    real k_solid = 0, k_liquid = 0;  // [W/(m K)]
-    real boils_above = infinity;     // [J/kg]
-
-    real temperature(real h) const { return h < h_solid ? T + (h - h_solid) / c_solid : h > h_liquid ? T + (h - h_liquid) / c_liquid : T; }
-    real liquid(real h) const { return h >= h_liquid ? 1 : h <= h_solid ? 0 : (h - h_solid) / (h_liquid - h_solid); }
-    /// At the temperature of melting, that of the liquid.
-    real enthalpy(real at) const { return at < T ? h_solid + c_solid * (at - T) : h_liquid + c_liquid * (at - T); }
-    /// dH/dT; 0 on the plateau, where the temperature does not change.
-    real capacity(real h) const { return h < h_solid ? c_solid : h > h_liquid ? c_liquid : 0; }
-    real conductivity(real share) const { return k_solid + share * (k_liquid - k_solid); }
-};
+using matter::Melting;
 
 template <int D>
 class Heat {
@@ -43,8 +30,11 @@ public:
     Heat(const scene::Scene& scene, MacState<D>& state);
     /// Enthalpies from the temperatures at the start, which it refuses below 0 K and above boiling.
     void start(MacState<D>& s, const scene::Scene& scene);
-    /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it. With the temperature of before, or with that after the step.
+    /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it (conduction.hpp).
     void conduct(MacState<D>& s, real dt);
+    /// u += dt g ∫β dT along y, β the substance's expansion from its melting point (Boussinesq); nothing in ice.
+    void lift(MacState<D>& s, real dt) const;
+    bool lifts() const { return lightness_.has_value(); }
     /// u* becomes β u*, and the state's mobility is β. Whether that may have changed.
     bool slow(MacState<D>& s, real dt);
     /// After the projection, which has taken all of (dt/ρ) ∇p away: gives back 1 − β of it.
@@ -67,28 +57,21 @@ private:
     void read_heaters(const scene::Scene& scene, const MacState<D>& s);
     void read_sides(const scene::Scene& scene, MacState<D>& s);
     void set_source(const MacState<D>& s);
-    void set_conductances(const MacState<D>& s, const Grid<real, D>& h);
     void note(MacState<D>& s);
-    void implicit(MacState<D>& s, real dt, int halvings);
-    bool solve(Grid<real, D>& h, real a);
-    void count(const MacState<D>& s, const Padded<D>& T, real dt);
-    void correct(real a, const Grid<real, D>& h, real tolerance);
-    void flow(const Padded<D>& T, Grid<real, D>& out) const;
-    real through_sides(const Padded<D>& T) const;
-    real source(const Index<D>& I) const { return source_.empty() ? 0 : source_(I); }
 
     Melting melting_;
-    real drag_;  // C [kg/(m³ s)]
-    bool explicit_;
-    Boundary<D> boundary_, no_flux_, correction_;
+    real gravity_;                                // that acts on what is lighter [m/s²]
+    std::optional<matter::Lightness> lightness_;  // where it does
+    real cfl_;
+    real drag_;                    // C [kg/(m³ s)]
+    bool explicit_, beside_flow_;  // in one stage; while it flows, not after: with fluxes, whose steady states know no step
+    Conduction<D> conduction_;
     std::vector<Heater> heaters_;
     Grid<real, D> source_, wall_source_;  // [W/m³]; empty where the scene has none
-    Grid<real, D> liquid_, start_, residual_, change_, image_, rest_, capacity_, inverse_;
-    Padded<D> k_, T_, direction_;
-    std::array<Grid<real, D>, D> conductance_;  // k/h² of faces [W/(m³ K)]
-    MacVelocity<D> slowed_;                     // β u*
-    bool slows_ = false;                        // anywhere, in the last step
-    real added_ = 0;                            // by sides and heaters since the start [J, in 2D a metre]
+    Grid<real, D> liquid_;
+    MacVelocity<D> slowed_;                 // β u*
+    bool any_ice_ = false, slows_ = false;  // anywhere; and in the last step
+    real added_ = 0;                        // by sides and heaters since the start [J, in 2D a metre]
 };
 
 }  // namespace weir::flow

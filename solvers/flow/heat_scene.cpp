@@ -2,6 +2,7 @@
 #include "core/error.hpp"
 #include "flow/heat.hpp"
 #include "geometry/shape.hpp"
+#include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
 
@@ -15,90 +16,40 @@ using poisson::Cell;
 using scene::Key;
 using scene::Type;
 
-Melting melting_of(const scene::Scene& scene) {
-    const auto substance = matter::substance_of(scene);
-    const real p = scene.number("heat.pressure");
-    const auto curve = [&] {
-        try {
-            return substance->heat_curve(p);
-        } catch (const BadInput& error) {
-            scene.refuse("heat.pressure", error.what());
-        }
-    }();
-    if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
-        scene.refuse("heat.pressure",
-                     std::string("at ") + scene::number_text(p) + " Pa " + substance->name() + " is never a liquid that freezes",
-                     "solver \"mac\" knows solid and liquid");
-    Melting m;
-    m.T = curve.begins_at(1), m.h_solid = curve.highest(0), m.h_liquid = curve.lowest(1);
-    m.c_solid = curve.heat_capacity(0), m.c_liquid = curve.heat_capacity(1);
-    m.k_solid = substance->conduction(thermo::State::solid).conductivity;
-    m.k_liquid = substance->conduction(thermo::State::liquid).conductivity;
-    if (curve.states() > 2) m.boils_above = curve.highest(1);
-    const real ice = substance->colder_density(thermo::Boundary::melting, m.T),
-               melt = substance->warmer_density(thermo::Boundary::melting, m.T);
-    const real rho = scene.number("fluid.density");
-    if (rho < 0.9 * std::min(ice, melt) || rho > 1.1 * std::max(ice, melt))
-        scene.refuse("fluid.density",
-                     "fluid.density is " + scene::number_text(rho) + " kg/m^3, which is no density of " + substance->name(),
-                     "solid " + scene::number_text(std::round(ice * 10) / 10) + ", liquid " +
-                         scene::number_text(std::round(melt * 10) / 10) + " kg/m^3: this solver takes one for both");
-    return m;
-}
-
-/// Conditions of a correction, or of a conductivity: nothing passes but around a periodic axis.
-template <int D>
-Boundary<D> without_values(Boundary<D> boundary) {
-    for (auto& axis : boundary.end)
-        for (auto& rule : axis)
-            if (rule.kind != EndRule::Kind::periodic) rule = {EndRule::Kind::neumann, 0, {}};
-    return boundary;
-}
-
 std::string side_path(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
 
 }  // namespace
 
 template <int D>
 std::vector<Key> Heat<D>::keys() {
-    Key substance = matter::substance_key();
-    substance.required = false;
-    substance.doc += " Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike.";
-    return {substance,
-            {.name = "heat",
-             .type = Type::table,
-             .doc = "How a substance takes up heat. Only where `substance` is named.",
-             .keys = {{.name = "pressure",
-                       .type = Type::number,
-                       .doc = "At which it melts and boils.",
-                       .unit = "Pa",
-                       .fallback = 101325.0,
-                       .min = 0,
-                       .min_open = true},
-                      {.name = "conduction",
-                       .type = Type::choice,
-                       .doc = "explicit limits the step to about rho c h^2/(6 dim k); implicit does not, and is first order in time.",
-                       .fallback = std::string("implicit"),
-                       .choices = {"implicit", "explicit"}},
-                      {.name = "drag",
-                       .type = Type::number,
-                       .doc = "C of Carman and Kozeny's drag C (1 - f)^2/(f^3 + 0.001) in cells that are part solid.",
-                       .unit = "kg/(m^3 s)",
-                       .fallback = 1.6e6,
-                       .min = 0,
-                       .min_open = true}}},
-            {.name = "heaters",
-             .type = Type::tables,
-             .doc = "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.",
-             .keys = {{.name = "power",
-                       .type = Type::number,
-                       .doc = "Heat given off; in 2D by a metre of depth. Negative: a cooler.",
-                       .unit = "W",
-                       .required = true},
-                      {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
-                      {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
-             .selector = "shape",
-             .variants_from = &scene::shapes}};
+    return {
+        matter::substance_key_of_heat(
+            "Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike."),
+        {.name = "heat",
+         .type = Type::table,
+         .doc = "How a substance takes up heat. Only where `substance` is named.",
+         .keys = {matter::pressure_key(),
+                  {.name = "conduction",
+                   .type = Type::choice,
+                   .doc =
+                       "In time, first order. stages: as many explicit stages as a step of its length needs; explicit: one, which limits "
+                       "the step to about rho c h^2/(6 dim k).",
+                   .fallback = std::string("stages"),
+                   .choices = {"stages", "explicit"}},
+                  {.name = "gravity",
+                   .type = Type::number,
+                   .doc = "Lifts the melt along y by as much lighter as it is than at its melting point, by the substance's expansion.",
+                   .unit = "m/s^2",
+                   .fallback = 0.0},
+                  {.name = "drag",
+                   .type = Type::number,
+                   .doc = "C of Carman and Kozeny's drag C (1 - f)^2/(f^3 + 0.001) in cells that are part solid.",
+                   .unit = "kg/(m^3 s)",
+                   .fallback = 1.6e6,
+                   .min = 0,
+                   .min_open = true}}},
+        matter::heaters_key(
+            "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.")};
 }
 
 template <int D>
@@ -108,7 +59,15 @@ void Heat<D>::needs(FieldPlan& plan) {
 
 template <int D>
 Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
-    : melting_(melting_of(scene)), drag_(scene.number("heat.drag")), explicit_(scene.text("heat.conduction") == "explicit") {
+    : melting_(matter::melting_of(scene, "mac")),
+      gravity_(scene.number("heat.gravity")),
+      cfl_(scene.number("time.cfl")),
+      drag_(scene.number("heat.drag")),
+      explicit_(scene.text("heat.conduction") == "explicit"),
+      beside_flow_(scheme_of(scene) == Scheme::conservative) {
+    if (gravity_ != 0) lightness_.emplace(scene);
+    if (const auto* buoyancy = scene.effect("buoyancy"); buoyancy && gravity_ != 0 && buoyancy->number("beta") != 0)
+        scene.refuse("effects.buoyancy.beta", "heat.gravity lifts the melt by the substance's own expansion already", "one of them");
     if (scene.effect("cooling"))
         scene.refuse("effects.cooling", "cooling changes a temperature, and here heat is what is kept",
                      "heaters with a negative power, or sides with a temperature");
@@ -120,14 +79,8 @@ Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
                          "heaters have a power");
     auto& temperature = s.field("temperature");
     temperature.derived = true;
-    for (auto* grid : {&liquid_, &start_, &residual_, &change_, &image_, &rest_, &capacity_, &inverse_}) *grid = Grid<real, D>(s.extent());
-    for (auto* padded : {&k_, &T_, &direction_}) *padded = Padded<D>(s.extent());
-    for (int a = 0; a < D; ++a) {
-        conductance_[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent());
-        s.mobility[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent(), 1);
-    }
-    slowed_ = MacVelocity<D>(s.u.cells, s.u.h, s.u.origin);
-    boundary_ = temperature.boundary, no_flux_ = without_values(boundary_), correction_ = boundary_.homogeneous();
+    liquid_ = Grid<real, D>(s.extent());
+    conduction_ = Conduction<D>(melting_, s.extent(), s.u.h, s.rho, temperature.boundary);
     read_sides(scene, s);
     read_heaters(scene, s);
 }
@@ -144,8 +97,7 @@ void Heat<D>::read_sides(const scene::Scene& scene, MacState<D>& s) {
             const bool passes = side.kind == geometry::SideKind::inflow || side.kind == geometry::SideKind::outflow;
             if (side.temperature) {
                 const real T = *side.temperature;
-                if (!(T > 0))
-                    scene.refuse(path + ".temperature", "a temperature of " + scene::number_text(T) + " K", "temperatures are above 0 K");
+                matter::check_temperature(scene, path + ".temperature", T);
                 const real h = melting_.enthalpy(T);
                 if (h > melting_.boils_above)
                     scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils",
@@ -169,7 +121,7 @@ void Heat<D>::read_heaters(const scene::Scene& scene, const MacState<D>& s) {
         const auto& table = tables[i];
         const std::string path = "heaters[" + std::to_string(i) + "]";
         Heater heater{table.number("start"), table.number_or("end", infinity), 0, {}};
-        if (!(heater.end > heater.start)) scene.refuse(path + ".end", path + ".end is not after its start");
+        matter::check_heater(scene, i);
         const auto shape = geometry::make_shape<D>(table);
         bool covers = false;
         for (std::size_t c = 0; c < product(s.extent()); ++c) {

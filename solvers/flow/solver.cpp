@@ -165,6 +165,7 @@ void FlowSolver<D>::remember() {
 template <int D>
 void FlowSolver<D>::remember_fields() {
     for (auto& field : state_.fields) {
+        if (field.derived) continue;
         fill(field.before, field.values, field.boundary);
         solids_.extend_field(state_, field.before);
     }
@@ -174,10 +175,14 @@ void FlowSolver<D>::remember_fields() {
 /// what is carried has it in.
 template <int D>
 void FlowSolver<D>::depart(real dt) {
-    if (options_.scheme == Scheme::conservative) return apply(Stage::force, dt);
+    if (options_.scheme == Scheme::conservative) {
+        lift(dt);
+        return apply(Stage::force, dt);
+    }
     if (options_.scheme != Scheme::maccormack) return;
     for (const Stage stage : {Stage::implicit, Stage::force, Stage::carried}) effects_.depart(stage, state_, 0.5 * dt, passes_);
-    if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force)) {
+    lift(0.5 * dt);
+    if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force) || (heat_ && heat_->lifts())) {
         sync_periodic(state_.u, state_.sides);
         solids_.set_faces(state_);  // no force moves a solid
     }
@@ -191,7 +196,9 @@ void FlowSolver<D>::depart(real dt) {
 template <int D>
 void FlowSolver<D>::arrive(real dt) {
     if (options_.scheme == Scheme::conservative) return;
-    apply(Stage::force, options_.scheme == Scheme::maccormack ? 0.5 * dt : dt);
+    const real part = options_.scheme == Scheme::maccormack ? 0.5 * dt : dt;
+    lift(part);
+    apply(Stage::force, part);
     sync_periodic(state_.u, state_.sides);
 }
 
@@ -266,6 +273,11 @@ void FlowSolver<D>::conduct(real dt) {
     if (!heat_) return;
     const auto timed = passes_.time("heat");
     heat_->conduct(state_, dt);
+}
+
+template <int D>
+void FlowSolver<D>::lift(real dt) {
+    if (heat_) heat_->lift(state_, dt);
 }
 
 /// Where ice resists, the velocity follows the pressure less than elsewhere: the matrix knows by how much.

@@ -57,6 +57,7 @@ private:
     void blend(const Substep& stage);
     void move_solids(real t);
     void conduct(real dt);
+    void lift(real dt);
     void slow(real dt);
     void project(real dt);
     void hold();

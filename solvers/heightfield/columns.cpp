@@ -60,7 +60,11 @@ Columns::Columns(const scene::Scene& scene)
     make_stiffness();
     if (!floats_.empty()) {
         displaced_.resize(state_.plane.count());
-        floats_.enter(surface_, rate_, k_);
+        try {
+            floats_.enter(surface_, rate_, k_);
+        } catch (const NumericalFailure& failure) {  // on the bed, or in one another
+            scene.refuse("floats", failure.what());
+        }
     }
     if (scene.effect("gravity")) plans_.push_back({.name = "gravity", .inside = "move columns"});
     if (const auto* t = scene.effect("damping")) {
@@ -98,6 +102,9 @@ void Columns::make_stiffness() {
     }
     limit_ = stiffest > 0 ? std::sqrt(2 / stiffest) : infinity;
 }
+
+/// Neither waves nor objects pass more than so much of a column; an object that leaps over columns pushes nothing there.
+real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pace(state_.time)); }
 
 StepReport Columns::step(real dt) {
     if (!floats_.empty()) {
@@ -151,7 +158,7 @@ void Columns::check() const {
         real most = -infinity;
         for (int i = 0; i < plane.nx; ++i) {
             const std::size_t c = plane.at(i, r);
-            const real shallow = state_.h[c] > 0 ? state_.bed[c] - surface_[c] : -infinity;
+            const real shallow = state_.h[c] > 0 && !floats_.covers(c) ? state_.bed[c] - surface_[c] : -infinity;
             if (!(shallow <= most)) most = shallow;
             if (std::isnan(most)) break;
         }
@@ -200,8 +207,16 @@ real Columns::sum(F&& f) const {
 std::vector<Integral> Columns::integrals() const {
     const real columns = sum([&](std::size_t c) { return surface_[c] - state_.bed[c]; });
     const real volume = columns + floats_.missing(surface_);
-    std::vector<Integral> list = {
-        {"volume", "m^3", volume}, {"poured_volume", "m^3", state_.poured}, {"volume_balance", "m^3", volume - state_.poured}};
+    if (!floats_.empty()) floats_.displaced(surface_, displaced_);
+    // of the water's top over its level at rest; below objects it is lower than the height that its pressure stands for
+    const real raised = sum([&](std::size_t c) {
+        const real up = surface_[c] - (displaced_.empty() ? 0 : displaced_[c]) - state_.bed[c] - state_.h[c];
+        return state_.h[c] > 0 ? up * up : 0;
+    });
+    std::vector<Integral> list = {{"volume", "m^3", volume},
+                                  {"poured_volume", "m^3", state_.poured},
+                                  {"volume_balance", "m^3", volume - state_.poured},
+                                  {"potential_energy", "J", 0.5 * state_.rho * state_.g * raised}};
     for (std::size_t b = 0; b < floats_.count(); ++b) {
         const std::string name = fmt::format("float{}_", b);
         const Pushed& p = floats_.pushed(b);

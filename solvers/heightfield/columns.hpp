@@ -10,7 +10,7 @@ class Columns final : public Solver {
 public:
     explicit Columns(const scene::Scene& scene);
     StepReport step(real dt) override;
-    real advised_dt() const override { return cfl_ * limit_; }
+    real advised_dt() const override;
     StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }
     std::string concern() const override;
     FieldSet fields() const override;

@@ -1,7 +1,7 @@
 #include "heightfield/effects.hpp"
 
 #include "core/parallel.hpp"
-#include "geometry/shape.hpp"
+#include "scene/gravity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -118,16 +118,8 @@ private:
 }  // namespace
 
 std::vector<scene::Variant> effect_schemas() {
-    return {{"gravity",
-             "Weight: what drives the water of a height field. The part along y makes its waves; the rest pushes it along the bed.",
-             {{.name = "g",
-               .type = Type::numbers,
-               .doc = "Acceleration.",
-               .unit = "m/s^2",
-               .required = true,
-               .length = -1,
-               .example = "g = [0.0, -9.81]"}},
-             {"g"}},
+    return {scene::gravity_effect(
+                "Weight: what drives the water of a height field. The part along y makes its waves; the rest pushes it along the bed."),
             {"friction",
              "Of the bed.",
              {{.name = "law",

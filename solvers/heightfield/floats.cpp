@@ -44,6 +44,10 @@ public:
                 if (const real covered = part(x0, x1, i, plane_.dx) * part(z0, z1, k, plane_.dz); covered > 1e-12)
                     covers.push_back({plane_.at(i, k), std::min(1.0, covered), 0});
     }
+    real pace(real t) const override {
+        const Vec<D> v = motion_.pose(t).velocity;
+        return std::abs(v[0]) / plane_.dx + (D == 3 ? std::abs(v[D - 1]) / plane_.dz : 0);
+    }
     real mass() const override { return mass_; }
     real height() const override { return height_; }
     real speed() const override { return speed_; }
@@ -68,6 +72,21 @@ private:
     real height_ = 0, speed_ = 0, mass_ = 0;
 };
 
+/// What begins beyond the sides would float on water that is not there; a box that is dragged in from beyond may.
+void refuse_beyond_sides(const scene::Scene& scene, const scene::Table& box, const std::string& path, const Plane& plane) {
+    const auto &at = box.numbers("at"), &size = box.numbers("size");
+    const bool heaves = box.flag("heave");
+    const auto along = [&](char name, std::size_t a, real low, real high) {
+        const real slack = 1e-9 * (high - low), first = at[a] - size[a] / 2, last = at[a] + size[a] / 2;
+        const bool all = first >= low - slack && last <= high + slack, none = last <= low || first >= high;
+        if (heaves ? all : !none || box.has("motion")) return;
+        scene.refuse(path + ".at", fmt::format("this object reaches from {0} = {1:g} to {2:g} m; the domain from {3:g} to {4:g} m {5}",
+                                               name, first, last, low, high, none ? "has none of it" : "has not all of it"));
+    };
+    along('x', 0, plane.x0, plane.x0 + plane.nx * plane.dx);
+    if (plane.dim == 3) along('z', 2, plane.z0, plane.z0 + plane.nz * plane.dz);
+}
+
 template <int D>
 std::unique_ptr<Body> make_box(const scene::Scene& scene, std::size_t n, const Plane& plane, real rho) {
     const scene::Table& table = scene.root().tables("floats")[n];
@@ -78,6 +97,7 @@ std::unique_ptr<Body> make_box(const scene::Scene& scene, std::size_t n, const P
     if (table.flag("heave") && table.number("density") >= 1)
         scene.refuse(path + ".density", "what is as dense as water sinks, and a height field knows nothing below the surface",
                      "density is relative to the water's; heave = false holds the object where its motion says");
+    refuse_beyond_sides(scene, table, path, plane);
     if (table.has("motion"))
         if (const std::string& kind = table.text("motion.kind"); kind == "rotation")
             scene.refuse(path + ".motion", "objects on columns do not turn", "known: constant, sinusoidal, keyframes without angle");
@@ -405,11 +425,20 @@ void Floats::displaced(const Field& surface, Field& to) const {
     }
 }
 
+real Floats::pace(real t) const {
+    real most = 0;
+    for (const auto& body : bodies_) most = std::max(most, body->pace(t));
+    return most;
+}
+
+/// By the columns beside it: below it the height is that of its pressure, which a fast object raises far.
 real Floats::over_top(const Field& surface) const {
     real most = 0;
     for (const Contact& c : contacts_) {
-        const Body& body = *bodies_[c.body];
-        if (c.touches) most = std::max(most, surface[covered_[c.place].column] - c.underside - body.height() - body.top());
+        const Covered& below = covered_[c.place];
+        const real top = c.underside + bodies_[c.body]->height() + bodies_[c.body]->top();
+        for (std::size_t f = 0; f < 4; ++f)
+            if (below.place_beside[f] < 0) most = std::max(most, surface[below.beside[f]] - top);
     }
     return most;
 }

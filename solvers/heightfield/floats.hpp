@@ -31,6 +31,8 @@ public:
     virtual ~Body() = default;
     /// To time t along the ways that the water has no say in; tells what it covers then.
     virtual void move(real t, std::vector<Cover>& covers) = 0;
+    /// How many columns it passes a second at time t.
+    virtual real pace(real t) const = 0;
     /// What resists being lifted [kg]; infinity for a body whose height is prescribed.
     virtual real mass() const = 0;
     /// Its own height [m] and the speed of that [m/s]: what the water decides of.
@@ -59,6 +61,8 @@ public:
     bool empty() const { return bodies_.empty(); }
     std::size_t count() const { return bodies_.size(); }
     const Body& body(std::size_t b) const { return *bodies_[b]; }
+    /// Whether a body is over a column, or was in the last step: its surface is the height that its pressure stands for.
+    bool covers(std::size_t column) const { return !place_of_.empty() && place_of_[column] >= 0; }
     const Pushed& pushed(std::size_t b) const { return pushed_[b]; }
     /// Places the bodies at t = 0 in water whose surface is given: what they displace is taken away from below them.
     void enter(const Field& surface, const Field& rate, Stiffness& k);
@@ -69,6 +73,8 @@ public:
     void after(real dt, Field& surface, Field& rate);
     /// Depth that bodies displace in each column.
     void displaced(const Field& surface, Field& to) const;
+    /// Columns that the fastest passes a second at time t.
+    real pace(real t) const;
     /// The highest column of water above the top of a body [m]; 0 where none is.
     real over_top(const Field& surface) const;
     /// Volume of water less that of free columns with these surfaces [m^3].

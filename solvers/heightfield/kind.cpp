@@ -16,25 +16,28 @@ Key scheme_keys() {
     return {.name = "scheme",
             .type = Type::table,
             .doc = "Numerical methods.",
-            .keys = {{.name = "model",
-                      .type = Type::choice,
-                      .doc = "shallow_water: the equations of long waves of any height, with currents and dry ground. columns: each is "
-                             "pulled by the heights of its neighbours, the linear wave equation of real-time graphics, with floating and "
-                             "dragged objects.",
-                      .fallback = std::string("shallow_water"),
-                      .choices = {"shallow_water", "columns"}},
-                     {.name = "limiter",
-                      .type = Type::choice,
-                      .doc = "Of the slopes of depth, surface and velocity; none: first order.",
-                      .fallback = std::string("mc"),
-                      .choices = {"none", "minmod", "van_leer", "mc"}},
-                     {.name = "dry_depth",
-                      .type = Type::number,
-                      .doc = "Water that is thinner stands still.",
-                      .unit = "m",
-                      .fallback = 1e-6,
-                      .min = 0,
-                      .min_open = true}}};
+            .keys = {
+                {.name = "model",
+                 .type = Type::choice,
+                 .doc = "shallow_water: the equations of long waves of any height, with currents and dry ground. columns: each is "
+                        "pulled by the heights of its neighbours, the linear wave equation of real-time graphics, with floating and "
+                        "dragged objects.",
+                 .fallback = std::string("shallow_water"),
+                 .choices = {"shallow_water", "columns"}},
+                {.name = "limiter",
+                 .type = Type::choice,
+                 .doc = "Of the slopes of depth, surface and velocity. none: first order; mc: the sharpest, which leaves ripples in steady "
+                        "flow over a bed with corners, where van_leer settles.",
+                 .fallback = std::string("mc"),
+                 .choices = {"none", "minmod", "van_leer", "mc"}},
+                {.name = "dry_depth",
+                 .type = Type::number,
+                 .doc = "Water that is thinner stands still. Fronts on dry ground are wrong by up to three times this over the water's "
+                        "depth.",
+                 .unit = "m",
+                 .fallback = 1e-6,
+                 .min = 0,
+                 .min_open = true}}};
 }
 
 Key terrain_key() {

@@ -35,10 +35,11 @@ void for_each_column(const Plane& plane, F&& f) {
 Field formula_field(const Scene& scene, const std::string& path, const Plane& plane) {
     const scene::Formula f = scene::formula_at(scene, path, coordinates(plane));
     Field values(plane.count());
-    for_each_column(plane, [&](int i, int k) {
-        const real at[2] = {plane.x(i), plane.z(k)};
-        values[plane.at(i, k)] = f(at);
-    });
+    for (int k = 0; k < plane.nz; ++k)  // threads would wait for one another
+        for (int i = 0; i < plane.nx; ++i) {
+            const real at[2] = {plane.x(i), plane.z(k)};
+            values[plane.at(i, k)] = f(at);
+        }
     for (std::size_t c = 0; c < values.size(); ++c)
         if (!std::isfinite(values[c])) {
             const int i = static_cast<int>(c) % plane.nx, k = static_cast<int>(c) / plane.nx;

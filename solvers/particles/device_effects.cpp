@@ -31,6 +31,7 @@ std::vector<EffectPlan> plans_of(const scene::Scene& scene) {
 template <int D>
 DeviceEffects<D>::DeviceEffects(const scene::Scene& scene)
     : emitters(scene, Domain<D>(scene)), end(scene.number("time.end")), plans(plans_of(scene)) {
+    if (heat_is_named(scene)) heat = std::make_shared<Heat<D>>(scene, Domain<D>(scene));
     if (const auto* e = scene.effect("gravity")) gravity = true, g = e->template vec<D>("g");
     if (const auto* e = scene.effect("central_force"))
         central_force = true, omega = e->number("omega"), centre = e->template vec<D>("centre");

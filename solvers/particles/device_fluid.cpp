@@ -95,6 +95,12 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
     if (solid_) plan_.want(near_solid, 1), plan_.want(terms, 4 * sizeof(float));
     if (effects_.xsph || effects_.vorticity) plan_.want(velocities_, 4 * sizeof(float));
     if (effects_.vorticity) plan_.want(omegas_, 4 * sizeof(float));
+    if (effects_.heat) {
+        for (Memory* number : {&enthalpy, &warming_, &by_walls_}) plan_.want(*number, sizeof(double));
+        heat_pairs_ = constant(effects_.heat->single_pairs());
+        heat_walls_ = constant(effects_.heat->single_walls());
+        heat_states_ = constant(effects_.heat->states());
+    }
     plan_.want(list, static_cast<std::size_t>(room_) * sizeof(int));
     state_params = constant(state_params_of(effects, host_.domain, support_));
     wall_params = constant(setup.walls);
@@ -109,17 +115,21 @@ template <int D>
 void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     std::string program = program_of({"prelude_opencl.h", "params.h", "state_params.h", "single.inl", "pair.inl", "pbf_pair.inl"});
     const auto& sinks = effects_.emitters.sinks();
-    if (solid_ || !sinks.empty()) program += program_of({"shapes.cl"});
+    const bool heated = effects_.heat && !effects_.heat->heaters().empty();
+    if (solid_ || !sinks.empty() || heated) program += program_of({"shapes.cl"});
     if (solid_) program += text_of(host_.domain.solids) + program_of({"solids.cl"});
     if (!sinks.empty()) program += text_of<D>(sinks);
+    if (heated) program += text_of<D>(effects_.heat->heaters());
     std::vector<std::string> files{"state.cl", "sort.cl", "list.cl", "finish.cl"};
     if (solid_) files.insert(files.end() - 1, "solid_terms.cl");
+    if (effects_.heat) files.insert(files.end(), {"heat_params.h", "heat_state.inl", "heat_walls.inl", "heat_pair.inl", "heat.cl"});
     files.insert(files.end(), setup.files.begin(), setup.files.end());
     std::string defines = "-cl-std=CL1.2 -DWEIR_DIM=" + std::to_string(D) + " -DWEIR_KERNEL=" + std::to_string(setup.kernel) +
                           " -DWEIR_GROUP=" + std::to_string(group_) + " " + setup.defines;
     if (repeats_) defines += periods(host_.domain);
     if (open_) defines += " -DWEIR_OPEN";
     if (!sinks.empty()) defines += " -DWEIR_SINKS";
+    if (heated) defines += " -DWEIR_HEATERS";
     if (effects_.gravity) defines += " -DWEIR_GRAVITY";
     if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
     if (effects_.xsph) defines += " -DWEIR_XSPH";
@@ -163,6 +173,7 @@ void DeviceFluid<D>::upload() {
     }
     device_->upload(density, host_.density.data(), n * sizeof(real));
     device_->upload(carried, host_.carried.data(), n * sizeof(real));
+    if (host_.warm) device_->upload(enthalpy, host_.enthalpy.data(), n * sizeof(real));
     if (solid_) place_solids();
     const std::vector<int> ids(host_.id.begin(), host_.id.end());
     device_->upload(id_, ids.data(), n * sizeof(int));
@@ -179,6 +190,7 @@ void DeviceFluid<D>::download() const {
     }
     device_->download(host_.density.data(), density, n * sizeof(real));
     device_->download(host_.carried.data(), carried, n * sizeof(real));
+    if (host_.warm) device_->download(host_.enthalpy.data(), enthalpy, n * sizeof(real));
     std::vector<int> ids(n);
     device_->download(ids.data(), id_, n * sizeof(int));
     std::copy(ids.begin(), ids.end(), host_.id.begin());
@@ -265,6 +277,7 @@ void DeviceFluid<D>::reorder() {
     };
     arrange(x, x_star, D), arrange(v, x_star, D);  // x* is not needed any more
     arrange(density, scratch_, 1), arrange(carried, scratch_, 1);
+    if (host_.warm) arrange(enthalpy, scratch_, 1);
     run("gather_names", {count(), order, id_, names_});
     std::swap(id_, names_);
 }

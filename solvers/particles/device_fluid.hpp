@@ -7,6 +7,7 @@
 #include "particles/cell_sort.hpp"
 #include "particles/device_memory.hpp"
 #include "particles/emitters.hpp"
+#include "particles/heat.hpp"
 #include "particles/passes.hpp"
 #include "particles/scheme.hpp"
 
@@ -35,13 +36,14 @@ DeviceSetup with_scheme(DeviceSetup own, const Scheme& scheme, const Domain<D>& 
 template <int D>
 struct DeviceEffects {
     bool gravity = false, central_force = false, xsph = false, vorticity = false;
-    Vec<D> g{};            // [m/s^2]
-    real omega = 0;        // of the central force [1/s]
-    Vec<D> centre{};       // [m]
-    real smoothing = 0;    // c of XSPH
-    real confinement = 0;  // epsilon of vorticity [m/s]
-    Emitters<D> emitters;  // and sinks
-    real end = 0;          // of the run: until then they let in [s]
+    Vec<D> g{};                     // [m/s^2]
+    real omega = 0;                 // of the central force [1/s]
+    Vec<D> centre{};                // [m]
+    real smoothing = 0;             // c of XSPH
+    real confinement = 0;           // epsilon of vorticity [m/s]
+    std::shared_ptr<Heat<D>> heat;  // where a substance is named
+    Emitters<D> emitters;           // and sinks
+    real end = 0;                   // of the run: until then they let in [s]
     std::vector<EffectPlan> plans;
 
     DeviceEffects() = default;
@@ -55,6 +57,10 @@ std::string text_of(const geometry::Solids<D>& solids);
 /// Whether a place is in a sink, likewise.
 template <int D>
 std::string text_of(const std::vector<geometry::ShapePtr<D>>& sinks);
+
+/// Whether a place is in heater number `which`, likewise.
+template <int D>
+std::string text_of(const std::vector<typename Heat<D>::Heater>& heaters);
 
 /// Everything of a scene that only the processor's path has, as problems at its keys: throws BadScene if there is any.
 void refuse_what_devices_lack(const scene::Scene& scene);
@@ -103,6 +109,8 @@ public:
     void leave_solids();
     /// XSPH and vorticity, where the scene names them.
     void finish(real dt);
+    /// Heat over dt, between particles where a has them.
+    void conduct(Heat<D>& heat, real dt);
     /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory; what has crossed a side is
     /// taken back or out.
     void end_step();
@@ -137,6 +145,7 @@ public:
     const DevicePlan& plan() const { return plan_; }
 
     Memory x, v, x_star, density, carried;            // state, double precision
+    Memory enthalpy;                                  // where particles carry heat
     Memory order, a, b, neighbours, list;             // sorted particles: owners, float4, their neighbours
     Memory clamps;                                    // how often walls and solids put a particle back, and from how far
     Memory near_solid, terms, poses;                  // of solids: sorted particles near one, what they add there; where they are
@@ -157,7 +166,9 @@ private:
     void cross_sides();
     void place_solids();
     void meet_solids();
-    void append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities);
+    void append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities,
+                const std::vector<real>& enthalpies);
+    void feed(Heat<D>& heat, real dt);
     bool take_out(std::string_view find_stayers);
     std::size_t most_particles() const;
 
@@ -172,6 +183,7 @@ private:
     DeviceEffects<D> effects_;
     real speed_ = 0;
     std::uint32_t clamps_seen_ = 0;
+    Memory warming_, by_walls_, heat_pairs_, heat_walls_, heat_states_;
     Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;
     Memory start_, members_, blocks_, parts_, needed_;
     std::size_t cells_room_ = 0;

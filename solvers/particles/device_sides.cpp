@@ -17,17 +17,20 @@ void DeviceFluid<D>::let_in(real dt) {
     auto& emitters = effects_.emitters;
     if (emitters.empty()) return;
     std::array<std::vector<real>, D> places, velocities;
-    emitters.emit(host_.time, dt, [&](const Vec<D>& at, const Vec<D>& velocity) {
+    std::vector<real> enthalpies;
+    emitters.emit(host_.time, dt, [&](const Vec<D>& at, const Vec<D>& velocity, real h) {
+        enthalpies.push_back(h);
         const Vec<D> kept = host_.domain.kept(at, host_.clamps);
         for (std::size_t axis = 0; axis < D; ++axis) places[axis].push_back(kept[axis]), velocities[axis].push_back(velocity[axis]);
     });
-    append(places, velocities);
+    append(places, velocities, enthalpies);
     if (!emitters.sinks().empty() && count() > 0) take_out("find_what_is_in_no_sink");
 }
 
 /// Behind the last particle. Where there is no room, through the host, which takes more memory before it uploads again.
 template <int D>
-void DeviceFluid<D>::append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities) {
+void DeviceFluid<D>::append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities,
+                            const std::vector<real>& enthalpies) {
     const auto n = places[0].size();
     if (n == 0) return;
     if (device_is_old_ || static_cast<std::size_t>(count_) + n > static_cast<std::size_t>(stride_)) {
@@ -35,7 +38,7 @@ void DeviceFluid<D>::append(const std::array<std::vector<real>, D>& places, cons
         for (std::size_t i = 0; i < n; ++i) {
             Vec<D> at, velocity;
             for (std::size_t axis = 0; axis < D; ++axis) at[axis] = places[axis][i], velocity[axis] = velocities[axis][i];
-            fluid.add(at, velocity);
+            fluid.add(at, velocity, enthalpies[i]);
         }
         return;
     }
@@ -49,6 +52,7 @@ void DeviceFluid<D>::append(const std::array<std::vector<real>, D>& places, cons
     device_->upload(id_, ids.data(), n * sizeof(int), first * sizeof(int));
     device_->upload(density, std::vector<real>(n, host_.rho0).data(), n * sizeof(real), first * sizeof(real));
     device_->upload(carried, std::vector<real>(n, 0).data(), n * sizeof(real), first * sizeof(real));
+    if (host_.warm) device_->upload(enthalpy, enthalpies.data(), n * sizeof(real), first * sizeof(real));
     count_ += static_cast<int>(n);
     host_is_old_ = true;
 }

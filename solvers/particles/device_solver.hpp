@@ -20,7 +20,9 @@ protected:
     using Memory = backend::Memory;
     using Reduced = typename DeviceFluid<D>::Reduced;
     DeviceSolver(const Scheme& scheme, const Fluid<D>& start, const DeviceEffects<D>& effects, const DeviceSetup& own)
-        : fluid_(start, effects, with_scheme(own, scheme, start.domain)) {}
+        : fluid_(start, effects, with_scheme(own, scheme, start.domain)) {
+        this->heat_ = effects.heat;
+    }
     const Fluid<D>& state() const final { return fluid_.host(); }
     const Fluid<D>& setting() const final { return fluid_.setting(); }
     real speed() const final { return fluid_.speed(); }
@@ -28,6 +30,10 @@ protected:
     real max_dt() const final { return fluid_.max_dt(); }
     void save_state(Checkpoint& to) const final { fluid_.save(to); }
     void restore_state(const Checkpoint& from) final { fluid_.restore(from); }
+
+    void conduct(real dt) final {
+        if (this->heat_) fluid_.conduct(*this->heat_, dt);
+    }
 
     DeviceFluid<D> fluid_;
 };

@@ -1,6 +1,7 @@
 // The effects that every particle method has. A new one is a struct here and a row of offers(): that makes it a scene's, and it acts on
 // threads; the other backends refuse it by name until they have it too (device_effects.cpp; reference_solver.cpp of the method).
 #include "particles/flow.hpp"
+#include "scene/gravity.hpp"
 
 #include <memory>
 
@@ -94,14 +95,13 @@ std::unique_ptr<Effect<Flow<D>>> make(const scene::Table& table) {
 /// In the order in which they act.
 template <int D>
 std::vector<Offer<D>> offers() {
-    const Key g{.name = "g", .type = Type::numbers, .doc = "The acceleration.", .unit = "m/s^2", .required = true, .length = -1};
     const Key omega{
         .name = "omega", .type = Type::number, .doc = "Angular frequency of the field.", .unit = "1/s", .required = true, .min = 0};
     const Key centre{.name = "centre", .type = Type::numbers, .doc = "Where it vanishes.", .unit = "m", .required = true, .length = -1};
     const Key c{
         .name = "c", .type = Type::number, .doc = "How much of the mean is taken in each step.", .fallback = 0.01, .min = 0.0, .max = 1.0};
     const Key epsilon{.name = "epsilon", .type = Type::number, .doc = "Its strength.", .unit = "m/s", .required = true, .min = 0};
-    return {{{"gravity", "A constant acceleration.", {g}, {"g"}}, make<D, Gravity<D>>},
+    return {{scene::gravity_effect("A constant acceleration."), make<D, Gravity<D>>},
             {{"central_force", "An acceleration -omega^2 (x - centre).", {omega, centre}, {"omega"}}, make<D, CentralForce<D>>},
             {{"xsph", "Velocities are smoothed over neighbours (Schechter & Bridson 2012).", {c}, {"c"}}, make<D, Xsph<D>>},
             {{"vorticity", "Vorticity confinement (Macklin & Müller 2013, eq. 16).", {epsilon}, {"epsilon"}}, make<D, Confinement<D>>}};

@@ -1,5 +1,7 @@
 #include "particles/emitters.hpp"
 
+#include "particles/heat.hpp"
+
 #include <algorithm>
 
 namespace weir::particles {
@@ -47,6 +49,7 @@ Emitters<D>::Emitters(const scene::Scene& scene, const Domain<D>& domain) {
         if (e.sites.empty()) scene.refuse(path, "the emitter is thinner than the particles' spacing: it covers the centre of no cell");
         if (std::all_of(e.sites.begin(), e.sites.end(), [&](const Vec<D>& x) { return domain.solids.distance(x) <= 0; }))
             scene.refuse(path, "the emitter begins inside solids: nothing can leave it");
+        if (heat_is_named(scene)) e.enthalpy = emitted_enthalpy(scene, emitters_.size());
         emitters_.push_back(std::move(e));
     }
     if (scene.has("sinks")) sinks_ = geometry::make_shapes<D>(scene.root().tables("sinks"));
@@ -55,7 +58,7 @@ Emitters<D>::Emitters(const scene::Scene& scene, const Domain<D>& domain) {
 
 template <int D>
 void Emitters<D>::apply(Fluid<D>& fluid, real dt) {
-    emit(fluid.time, dt, [&](const Vec<D>& x, const Vec<D>& u) { fluid.add(fluid.domain.kept(x, fluid.clamps), u); });
+    emit(fluid.time, dt, [&](const Vec<D>& x, const Vec<D>& u, real h) { fluid.add(fluid.domain.kept(x, fluid.clamps), u, h); });
     if (!sinks_.empty())
         fluid.remove_if([&](int i) {
             const Vec<D> x = fluid.position(i);

@@ -16,7 +16,7 @@ public:
     bool empty() const { return emitters_.empty() && sinks_.empty(); }
     /// Everything that enters in (time, time + dt], and everything that has reached a sink.
     void apply(Fluid<D>& fluid, real dt);
-    /// add(x, u) for everything that enters in (time, time + dt].
+    /// add(x, u, enthalpy) for everything that enters in (time, time + dt].
     template <class F>
     void emit(real time, real dt, F&& add);
     /// How many particles will have entered until then.
@@ -28,6 +28,7 @@ public:
 private:
     struct Emitter {
         Vec<D> velocity{};
+        real enthalpy = 0;  // specific, where particles carry heat [J/kg]
         real start = 0, end = infinity, period = infinity;
         std::vector<Vec<D>> sites;  // of one layer
     };
@@ -45,7 +46,7 @@ void Emitters<D>::emit(real time, real dt, F&& add) {
             const real born = emitter.start + static_cast<real>(layers_[e]) * emitter.period;
             if (born > emitter.end || born > time + dt) break;
             const real age = std::max<real>(0, time - born);  // layers due within a step are spread along the flow
-            for (const auto& site : emitter.sites) add(site + age * emitter.velocity, emitter.velocity);
+            for (const auto& site : emitter.sites) add(site + age * emitter.velocity, emitter.velocity, emitter.enthalpy);
         }
     }
 }

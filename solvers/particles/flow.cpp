@@ -1,6 +1,7 @@
 #include "particles/flow.hpp"
 
 #include "particles/emitters.hpp"
+#include "particles/heat.hpp"
 #include "scene/names.hpp"
 
 namespace weir::particles {
@@ -103,6 +104,7 @@ Fluid<D> initial_fluid(const scene::Scene& scene) {
     Fluid<D> fluid(scene);
     refuse_nothing(scene, fluid);
     set_initial_velocity(scene, fluid);
+    if (heat_is_named(scene)) Heat<D>(scene, fluid.domain).start(scene, fluid);
     return fluid;
 }
 

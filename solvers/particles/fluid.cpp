@@ -23,7 +23,7 @@ Fluid<D>::Fluid(const scene::Scene& scene) : domain(scene), rho0(scene.number("f
 }
 
 template <int D>
-void Fluid<D>::add(const Vec<D>& at, const Vec<D>& velocity) {
+void Fluid<D>::add(const Vec<D>& at, const Vec<D>& velocity, real h) {
     for (int a = 0; a < D; ++a) {
         x[static_cast<std::size_t>(a)].push_back(at[a]);
         v[static_cast<std::size_t>(a)].push_back(velocity[a]);
@@ -31,6 +31,7 @@ void Fluid<D>::add(const Vec<D>& at, const Vec<D>& velocity) {
     id.push_back(next_id++);
     density.push_back(rho0);
     carried.push_back(0);
+    if (warm) enthalpy.push_back(h);
 }
 
 template <int D>
@@ -40,6 +41,7 @@ void Fluid<D>::resize(int count) {
     id.resize(n);
     density.resize(n);
     carried.resize(n);
+    if (warm) enthalpy.resize(n);
 }
 
 template <int D>
@@ -66,6 +68,7 @@ void Fluid<D>::reorder(const std::vector<int>& order) {
     arrange(id);
     arrange(density);
     arrange(carried);
+    if (warm) arrange(enthalpy);
 }
 
 template <int D>
@@ -140,6 +143,7 @@ void Fluid<D>::save(Checkpoint& to) const {
     to.put("particles.id", id);
     to.put("particles.density", density);
     to.put("particles.carried", carried);
+    if (warm) to.put("particles.enthalpy", enthalpy);
     to.put("particles.clock", std::vector<real>{time, next_id});
     to.put_value("particles.steps", steps);
     to.put_value("particles.clamps", clamps);
@@ -154,6 +158,7 @@ void Fluid<D>::restore(const Checkpoint& from) {
     from.get("particles.id", id);
     from.get("particles.density", density);
     from.get("particles.carried", carried);
+    if (warm) from.get("particles.enthalpy", enthalpy);
     std::vector<real> clock;
     from.get("particles.clock", clock);
     time = clock.at(0);

@@ -20,6 +20,8 @@ struct Fluid {
     std::vector<real> id;                   // in order of birth; particles change places in the arrays
     std::vector<real> density;              // of the last step [kg/m^3]
     std::vector<real> carried;              // a number that the solver keeps for each particle (PBF: the multiplier over dt^2)
+    bool warm = false;                      // whether they carry heat
+    std::vector<real> enthalpy;             // then: specific [J/kg]
     real rho0 = 1, mass = 1;                // [kg/m^3], [kg] (2D: per metre of depth)
     real time = 0;                          // [s]
     std::int64_t steps = 0;
@@ -47,7 +49,7 @@ struct Fluid {
         for (std::size_t a = 0; a < D; ++a) c[a] = f[a].data();
         return c;
     }
-    void add(const Vec<D>& at, const Vec<D>& velocity);
+    void add(const Vec<D>& at, const Vec<D>& velocity, real h = 0);
     void resize(int count);
     /// Takes out the particles for which gone(i) holds; the others keep their order.
     template <class F>
@@ -64,7 +66,7 @@ struct Fluid {
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
     std::size_t bytes() const {
-        std::size_t values = id.capacity() + density.capacity() + carried.capacity() + scratch_.capacity();
+        std::size_t values = id.capacity() + density.capacity() + carried.capacity() + enthalpy.capacity() + scratch_.capacity();
         for (int a = 0; a < D; ++a) values += x[static_cast<std::size_t>(a)].capacity() + v[static_cast<std::size_t>(a)].capacity();
         return values * sizeof(real);
     }
@@ -84,6 +86,7 @@ void Fluid<D>::remove_if(F&& gone) {
         id[at] = id[from];
         density[at] = density[from];
         carried[at] = carried[from];
+        if (warm) enthalpy[at] = enthalpy[from];
     }
     resize(to);
 }

@@ -1,15 +1,18 @@
 #include "particles/kind.hpp"
 
+#include "particles/heat.hpp"
+
 namespace weir::particles {
 
 scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::Key>& in_initial) {
     scene::Key initial = initial_key();
     initial.keys.insert(initial.keys.end(), in_initial.begin(), in_initial.end());
+    initial.keys.push_back(initial_temperature_key());
     own.keys.push_back(std::move(initial));
     own.keys.push_back(sinks_key());
+    for (scene::Key& key : heat_keys()) own.keys.push_back(std::move(key));
     const auto shared = effect_schemas();
-    for (const char* key : {"time.stop_when_steady", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters.temperature",
-                            "emitters.smoke", "initial.temperature", "initial.smoke"})
+    for (const char* key : {"time.stop_when_steady", "sides.*.smoke", "sides.*.profile", "emitters.smoke", "initial.smoke"})
         own.without.push_back(key);
     own.effects.insert(own.effects.begin(), shared.begin(), shared.end());
     return own;

@@ -18,12 +18,15 @@ namespace single = weir::particles::single;
 #define BITS(x) ((whole)(x))
 #define FROM_BITS(i) ((vf)(i))
 #define RSQRT(x) inverse_root(x)
+using single::HeatParams;
+using single::HeatWalls;
 using single::PbfParams;
 using single::SphParams;
 using single::WallParams;
 // clang-format off
 #include "particles/kernels/single.inl"
 #include "particles/kernels/pair.inl"
+#include "particles/kernels/heat_walls.inl"
 // clang-format on
 
 inline void prefetch(const std::uint32_t* row) { _mm_prefetch(reinterpret_cast<const char*>(row + 16 * lanes), _MM_HINT_T0); }
@@ -81,6 +84,50 @@ inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int
     return {out[0], out[1], out[2], out[3]};
 }
 
+/// Without loss in a.
+WEIR_ALWAYS void add(vd& sum, vf a) { sum += __builtin_convertvector(a, vd); }
+
+/// The walls within reach of the particles of one slice, by themselves and where they meet: one plane an axis in each image.
+struct HeatImages {
+    struct Image {
+        int planes, plane[3];  // 2 axis, one more for the upper wall
+        bool held;             // the image is as far from theta on the other side
+        float theta;
+        vf height[3];  // of the slice's particles above the planes
+    };
+    Image of[26];
+    int count;
+};
+WEIR_ALWAYS vf heat_height(const vf* x, int plane, const single::HeatWalls* w) {
+    const int axis = plane / 2;
+    return heat_above(plane % 2 ? broadcast(w->hi[axis]) - x[axis] : x[axis] - broadcast(w->lo[axis]), w);
+}
+inline void heat_images(const Four& i, const single::HeatWalls* w, float h, HeatImages& images) {
+    const vf x[3] = {i.x, i.y, i.z};
+    images.count = 0;
+    for (int plane = 0; plane < 6; ++plane) {
+        const int axis = plane / 2, before = images.count;
+        const vf height = heat_height(x, plane, w);
+        if (!any_below(height, h)) continue;
+        const bool held = plane % 2 ? w->hi_held[axis] : w->lo_held[axis];
+        const float theta = plane % 2 ? w->hi_theta[axis] : w->lo_theta[axis];
+        for (int m = -1; m < before; ++m) {  // the plane by itself, and behind each image so far that lies along other axes
+            HeatImages::Image& image = images.of[images.count];
+            if (m < 0) {
+                image.planes = 0, image.held = false, image.theta = 0;
+            } else {
+                if (images.of[m].plane[images.of[m].planes - 1] / 2 == axis) continue;
+                image = images.of[m];
+            }
+            image.plane[image.planes] = plane;
+            image.height[image.planes++] = height;
+            if (held && !image.held) image.theta = theta;
+            image.held = image.held != held;
+            ++images.count;
+        }
+    }
+}
+
 namespace muller {
 #define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
 #define WEIR_SLOPE(r2, p) spiky_slope(r2, (p)->h)
@@ -88,6 +135,8 @@ namespace muller {
 #include "particles/kernels/pbf_passes.inl"
 
 #include "particles/kernels/sph_passes.inl"
+
+#include "particles/kernels/heat_passes.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
 #undef WEIR_LAPLACIAN
@@ -99,6 +148,8 @@ namespace spline {
 #include "particles/kernels/pbf_passes.inl"
 
 #include "particles/kernels/sph_passes.inl"
+
+#include "particles/kernels/heat_passes.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
 #undef WEIR_LAPLACIAN
@@ -110,6 +161,8 @@ namespace c2 {
 #include "particles/kernels/pbf_passes.inl"
 
 #include "particles/kernels/sph_passes.inl"
+
+#include "particles/kernels/heat_passes.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
 #undef WEIR_LAPLACIAN
@@ -125,21 +178,24 @@ const PassTable passes_avx512{"avx512",
                               build,
                               {muller::table, spline::table, c2::table},
                               {muller::finish_table, spline::finish_table, c2::finish_table},
-                              {muller::sph_table, spline::sph_table, c2::sph_table}};
+                              {muller::sph_table, spline::sph_table, c2::sph_table},
+                              {muller::heat, spline::heat, c2::heat}};
 #elif WEIR_ISA == 256
 const PassTable passes_avx2{"avx2",
                             lanes,
                             build,
                             {muller::table, spline::table, c2::table},
                             {muller::finish_table, spline::finish_table, c2::finish_table},
-                            {muller::sph_table, spline::sph_table, c2::sph_table}};
+                            {muller::sph_table, spline::sph_table, c2::sph_table},
+                            {muller::heat, spline::heat, c2::heat}};
 #else
 const PassTable passes_sse2{"sse2",
                             lanes,
                             build,
                             {muller::table, spline::table, c2::table},
                             {muller::finish_table, spline::finish_table, c2::finish_table},
-                            {muller::sph_table, spline::sph_table, c2::sph_table}};
+                            {muller::sph_table, spline::sph_table, c2::sph_table},
+                            {muller::heat, spline::heat, c2::heat}};
 #endif
 
 }  // namespace weir::particles

@@ -98,6 +98,18 @@ struct SphPass {
 /// What SPH's force pass computes beside the gradient of pressure, and which form that has.
 enum SphTerm : unsigned { sph_summed = 1, sph_artificial = 2, sph_viscous = 4 };
 
+/// What the pass of heat reads and writes: float4 arrays (x, y, z, theta), and rates of specific enthalpy [J/(kg s)].
+struct HeatPass {
+    const single::HeatParams* p = nullptr;
+    const single::HeatWalls* walls = nullptr;
+    int count = 0;
+    const float* positions = nullptr;
+    double* to = nullptr;
+    double* by_walls = nullptr;  // the part of it that comes from walls; null: none is held at a temperature
+    const std::size_t* first = nullptr;
+    const int* rows = nullptr;
+};
+
 /// One instruction set's passes; each works on the slices of one chunk.
 struct PassTable {
     const char* name;
@@ -121,6 +133,7 @@ struct PassTable {
         void (*normal)(const SphPass&, const ListChunk&);
         void (*tension)(const SphPass&, const ListChunk&);
     } sph[3];
+    void (*heat[3])(const HeatPass&, const ListChunk&);
 };
 
 extern const PassTable passes_sse2, passes_avx2, passes_avx512;

@@ -13,6 +13,9 @@ using plain::PbfParams;
 using plain::SphParams;
 using plain::WallParams;
 #include "particles/kernels/pair.inl"
+using plain::HeatParams;
+using plain::HeatWalls;
+#include "particles/kernels/heat_walls.inl"
 
 namespace muller {
 #define WEIR_DENSITY(r2, p) poly6(r2, (p)->h2)
@@ -21,6 +24,8 @@ namespace muller {
 #include "particles/kernels/pbf_pair.inl"
 
 #include "particles/kernels/sph_pair.inl"
+
+#include "particles/kernels/heat_pair.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
 #undef WEIR_LAPLACIAN
@@ -32,6 +37,8 @@ namespace spline {
 #include "particles/kernels/pbf_pair.inl"
 
 #include "particles/kernels/sph_pair.inl"
+
+#include "particles/kernels/heat_pair.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
 #undef WEIR_LAPLACIAN
@@ -43,6 +50,8 @@ namespace c2 {
 #include "particles/kernels/pbf_pair.inl"
 
 #include "particles/kernels/sph_pair.inl"
+
+#include "particles/kernels/heat_pair.inl"
 #undef WEIR_DENSITY
 #undef WEIR_SLOPE
 #undef WEIR_LAPLACIAN
@@ -59,11 +68,12 @@ struct Functions {
     double (*sph_push)(double, double, const SphParams*);
     double (*sph_drag)(double, double, const SphParams*);
     double (*sph_colour)(double, double, const SphParams*);
+    double (*heat_flow)(double, double, const HeatParams*);
 };
 #define WEIR_FUNCTIONS(k)                                                                                                 \
     {                                                                                                                     \
         k::pbf_density, k::pbf_slope, k::pbf_correction_with_pressure, k::sph_add_density, k::sph_rate, k::sph_diffusion, \
-            k::sph_add_artificial, k::sph_push, k::sph_drag, k::sph_colour                                                \
+            k::sph_add_artificial, k::sph_push, k::sph_drag, k::sph_colour, k::heat_flow                                  \
     }
 constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(spline), WEIR_FUNCTIONS(c2)};
 
@@ -233,6 +243,60 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
         }
     }
     return a;
+}
+
+namespace {
+
+/// One wall, or several that meet, behind which each particle has an image.
+struct HeatImage {
+    std::vector<int> planes;  // 2 axis, one more for the upper wall
+    bool held = false;
+    double theta = 0;
+};
+std::vector<HeatImage> images_behind(const HeatWalls& w) {
+    std::vector<HeatImage> images;
+    for (int which = 1; which < 27; ++which) {
+        HeatImage image;
+        for (int a = 0, rest = which; a < 3; ++a, rest /= 3) {
+            if (rest % 3 == 0) continue;
+            const bool upper = rest % 3 == 2, held = upper ? w.hi_held[a] : w.lo_held[a];
+            image.planes.push_back(2 * a + upper);
+            if (held && !image.held) image.theta = upper ? w.hi_theta[a] : w.lo_theta[a];
+            image.held = image.held != held;
+        }
+        images.push_back(image);
+    }
+    return images;
+}
+double height(const Point& x, int plane, const HeatWalls& w) {
+    const int a = plane / 2;
+    return heat_above(plane % 2 ? w.hi[a] - x[static_cast<std::size_t>(a)] : x[static_cast<std::size_t>(a)] - w.lo[a], &w);
+}
+
+}  // namespace
+
+ReferencePairs::Warming ReferencePairs::warming(const std::vector<Point>& x, const std::vector<double>& theta, const HeatParams& p,
+                                                const HeatWalls& w) const {
+    Warming to{std::vector<double>(x.size()), std::vector<double>(x.size())};
+    const auto images = images_behind(w);
+    const auto behind = [&](double r2, std::size_t i, std::size_t j, const HeatImage& image) {
+        for (const int plane : image.planes) r2 = heat_behind(r2, height(x[i], plane, w), height(x[j], plane, w));
+        return r2;
+    };
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        for (const HeatImage& image : images)
+            if (image.held) to.by_walls[i] += functions[kernel].heat_flow(behind(p.guard, i, i, image), 2 * (image.theta - theta[i]), &p);
+        for (const std::size_t j : neighbours[i]) {
+            const Point d = apart(x[i], x[j], period);
+            const double r2 = distance2(d[0], d[1], d[2], p.guard), rise = theta[j] - theta[i];
+            to.rate[i] += functions[kernel].heat_flow(r2, rise, &p);
+            for (const HeatImage& image : images)
+                (image.held ? to.by_walls : to.rate)[i] +=
+                    functions[kernel].heat_flow(behind(r2, i, j, image), image.held ? 2 * image.theta - theta[j] - theta[i] : rise, &p);
+        }
+        to.rate[i] += to.by_walls[i];
+    }
+    return to;
 }
 
 template <int D>

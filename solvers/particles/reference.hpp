@@ -21,6 +21,13 @@ struct ReferencePairs {
     std::vector<Point> solid;  // gradient of the part inside solids at each particle; empty: no solids
     std::vector<double> solid_part;
     Neighbours neighbours;
+
+    /// Rates of specific enthalpy by conduction, and the part of each that comes from walls held at a temperature.
+    struct Warming {
+        std::vector<double> rate, by_walls;
+    };
+    Warming warming(const std::vector<Point>& x, const std::vector<double>& theta, const plain::HeatParams& p,
+                    const plain::HeatWalls& walls) const;
 };
 
 /// The pair physics of PBF over all pairs.

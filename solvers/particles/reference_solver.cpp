@@ -18,6 +18,7 @@ ReferenceSolver<D, Physics>::ReferenceSolver(const Scheme& scheme, Fluid<D>&& st
 template <int D, class Physics>
 void ReferenceSolver<D, Physics>::take(const scene::Scene& scene, const ReferenceEffects& effects) {
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
+    if (fluid_.warm) this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain);
     for (const auto& [name, pass] : effects)
         if (scene.effect(name)) plans_.push_back({.name = name, .inside = pass});
 }
@@ -29,8 +30,28 @@ void ReferenceSolver<D, Physics>::end_step() {
 }
 
 template <int D, class Physics>
+void ReferenceSolver<D, Physics>::conduct_at(const std::vector<Point>& x, real dt) {
+    if (!this->heat_) return;
+    const auto timed = this->passes_.time("heat");
+    Heat<D>& heat = *this->heat_;
+    heat.feed(fluid_, dt);
+    const int parts = heat.parts(dt);
+    const real part = dt / parts;
+    std::vector<double> theta(x.size());
+    for (int p = 0; p < parts; ++p) {
+        for (std::size_t i = 0; i < x.size(); ++i) theta[i] = heat.theta(fluid_.enthalpy[i]);
+        const auto warming = reference_.warming(x, theta, heat.plain_pairs(), heat.plain_walls());
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            fluid_.enthalpy[i] += part * warming.rate[i];
+            heat.add(fluid_.mass * part * warming.by_walls[i]);
+        }
+    }
+    heat.check(fluid_);
+}
+
+template <int D, class Physics>
 std::size_t ReferenceSolver<D, Physics>::bytes() const {
-    return fluid_.bytes() + own_bytes() + bytes_of(reference_.neighbours);
+    return fluid_.bytes() + own_bytes() + bytes_of(reference_.neighbours) + (this->heat_ ? this->heat_->bytes() : 0);
 }
 
 template class ReferenceSolver<2, ReferencePbf>;

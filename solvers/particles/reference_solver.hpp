@@ -30,6 +30,8 @@ protected:
     /// That the method's own arrays take.
     virtual std::size_t own_bytes() const = 0;
     void end_step();
+    /// Between particles that are at x, whose neighbours are known.
+    void conduct_at(const std::vector<Point>& x, real dt);
 
     using HostSolver<D>::fluid_;
     Physics reference_;  // its numbers p are the method's

@@ -21,6 +21,9 @@ inline constexpr int lanes = 4;
 typedef float vf __attribute__((vector_size(4 * lanes), may_alias));
 typedef int whole __attribute__((vector_size(4 * lanes), may_alias));
 
+/// As many doubles.
+typedef double vd __attribute__((vector_size(8 * lanes), may_alias));
+
 /// The four components of `lanes` particles.
 struct Four {
     vf x, y, z, w;

@@ -18,6 +18,7 @@ FieldSet ParticleSolver<D>::fields() const {
     const Fluid<D>& fluid = state();
     fluid.show(set);
     show(fluid, set);
+    if (heat_) heat_->show(fluid, set);
     return set;
 }
 
@@ -28,6 +29,7 @@ std::vector<Integral> ParticleSolver<D>::integrals() const {
     list.push_back({"mean_neighbours", "1", neighbours.mean});
     list.push_back({"max_neighbours", "1", neighbours.most});
     sum_up(list);
+    if (heat_) heat_->sum_up(state(), list);
     return list;
 }
 
@@ -35,11 +37,13 @@ template <int D>
 void ParticleSolver<D>::save(Checkpoint& to) const {
     save_state(to);
     save_more(to);
+    if (heat_) heat_->save(to);
 }
 template <int D>
 void ParticleSolver<D>::restore(const Checkpoint& from) {
     restore_state(from);
     restore_more(from);
+    if (heat_) heat_->restore(from);
 }
 
 template <int D>

@@ -6,6 +6,9 @@
 #include "core/solver.hpp"
 #include "particles/emitters.hpp"
 #include "particles/fluid.hpp"
+#include "particles/heat.hpp"
+
+#include <memory>
 
 namespace weir::particles {
 
@@ -52,7 +55,11 @@ protected:
     virtual StepLimit stable_at(real speed) const = 0;
     virtual std::string concern_at(real) const { return {}; }
 
+    /// Conduction over dt [s], heaters and walls: where the scene names a substance, else nothing.
+    virtual void conduct(real dt) = 0;
+
     Passes passes_;
+    std::shared_ptr<Heat<D>> heat_;  // where the scene names a substance
 };
 
 /// A particle solver whose state is in the processor's memory.

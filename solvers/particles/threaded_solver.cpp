@@ -11,6 +11,7 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
       flow_{fluid_, pairs_, kernels_, {}, {}, scheme.kernel()} {
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
+    if (fluid_.warm) this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain);
 }
 
 template <int D>
@@ -20,8 +21,40 @@ void ThreadedSolver<D>::end_step() {
 }
 
 template <int D>
+void ThreadedSolver<D>::conduct(real dt) {
+    if (!this->heat_) return;
+    const auto timed = this->passes_.time("heat");
+    Heat<D>& heat = *this->heat_;
+    heat.feed(fluid_, dt);
+    const auto n = static_cast<std::size_t>(pairs_.size());
+    if (warming_.size() < n) warming_.resize(n + n / 8);
+    if (heat.held() && by_walls_.size() < n) by_walls_.resize(warming_.size());
+    const HeatPass job{
+        &heat.single_pairs(),  &heat.single_walls(), pairs_.size(), pairs_.a(), warming_.data(), heat.held() ? by_walls_.data() : nullptr,
+        pairs_.list().first(), pairs_.list().rows()};
+    const auto pass = pairs_.table().heat[flow_.kernel];
+    const int parts = heat.parts(dt);
+    const real part = dt / parts;
+    for (int p = 0; p < parts; ++p) {
+        float* x = pairs_.a();
+        pairs_.each(
+            [&](int k) { x[4 * k + 3] = static_cast<float>(heat.theta(fluid_.enthalpy[static_cast<std::size_t>(pairs_.owner(k))])); });
+        pairs_.list().each_chunk([&](const ListChunk& chunk) { pass(job, chunk); });
+        pairs_.each([&](int k) {
+            if (!pairs_.is_image(k))
+                fluid_.enthalpy[static_cast<std::size_t>(pairs_.owner(k))] += part * warming_[static_cast<std::size_t>(k)];
+        });
+        if (heat.held())
+            heat.add(fluid_.mass * part *
+                     block_sum(pairs_.size(), [&](int k) { return pairs_.is_image(k) ? 0 : by_walls_[static_cast<std::size_t>(k)]; }));
+    }
+    heat.check(fluid_);
+}
+
+template <int D>
 std::size_t ThreadedSolver<D>::bytes() const {
-    return fluid_.bytes() + pairs_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes();
+    return fluid_.bytes() + pairs_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes() +
+           (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + (this->heat_ ? this->heat_->bytes() : 0);
 }
 
 template class ThreadedSolver<2>;

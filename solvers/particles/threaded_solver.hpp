@@ -26,6 +26,8 @@ protected:
     virtual std::size_t own_bytes() const = 0;
     /// Counts a step; the state follows the sorted order now and then; what has crossed a side is taken back or out.
     void end_step();
+    /// Where the passes of the step were: their positions are the pairs'.
+    void conduct(real dt) final;
 
     using HostSolver<D>::fluid_;
     single::PbfParams kernels_{};  // the method's, as PBF, XSPH and vorticity read them
@@ -34,6 +36,9 @@ protected:
     SolidTerms<D> solids_;
     Flow<D> flow_;
     Effects<Flow<D>> effects_;
+
+private:
+    std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
 };
 
 }  // namespace weir::particles

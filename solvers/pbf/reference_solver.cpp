@@ -51,7 +51,8 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
     const real slow = std::max(dt, last_dt_);
     if (options_.warm_start > 0)
         for (std::size_t i = 0; i < multiplier_.size(); ++i) fluid_.carried[i] = multiplier_[i] / (slow * slow);
-    update(dt, slow);  // 20-21, 23-24
+    update(dt, slow);   // 20-21, 23-24
+    this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = compression();

@@ -27,6 +27,7 @@ private:
     void correct();
     void update(real dt, real slow) override;
     Compression compression() const override;
+    void conduct(real dt) override { this->conduct_at(x_star_, dt); }
     std::size_t own_bytes() const override;
 
     std::vector<Vec<D>> predicted_;

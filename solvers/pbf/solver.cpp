@@ -35,6 +35,7 @@ StepReport PbfSolver<D>::step(real dt) {
     keep_multipliers(slow);
     update(dt, slow);                                   // 20-21, 23-24
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
+    this->conduct(dt);                                  // only where a substance is named
     last_dt_ = dt;
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = compression();

@@ -95,7 +95,7 @@ struct WaterColumns {
     const FieldView *depth, *surface;
     explicit operator bool() const { return depth && surface; }
 };
-WaterColumns columns_of(const FieldSet& fields) { return {fields.find(column_depth_name), fields.find(column_surface_name)}; }
+WaterColumns columns_of(const FieldSet& fields) { return {fields.find(column_depth_name), fields.find(surface_height_name)}; }
 
 /// Films thinner than this part of the deepest water are no front: a scheme that keeps depths positive lets traces run ahead.
 constexpr real film = 1e-3;

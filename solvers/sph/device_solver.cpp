@@ -67,6 +67,7 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     fluid_.finish(dt);  // XSPH, vorticity
+    this->conduct(dt);  // only where a substance is named
     const real speed = fluid_.max_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.density, fluid_.parts()});
     const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now

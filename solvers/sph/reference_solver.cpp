@@ -55,6 +55,7 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     kick(dt);                                        // eq. 10 and 14
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(fluid_, dt);
+    this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = fluid_.max_speed();
     real sum = 0, worst = 0;
     for (const real rho : fluid_.density) sum += std::max<real>(0, rho / rho_rest_ - 1), worst = std::max(worst, rho / rho_rest_ - 1);

@@ -28,6 +28,7 @@ private:
     void add_drag_of_solids(Points& to) const;
     void kick(real dt);
     void advance_densities(real dt);
+    void conduct(real dt) override { this->conduct_at(x_, dt); }
     std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }
 
     Points x_;  // where the step began

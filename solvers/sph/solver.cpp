@@ -54,6 +54,7 @@ StepReport SphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
+    this->conduct(dt);                                  // only where a substance is named
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = particles::compression_of(fluid_, rho_rest_);
     this->end_step();

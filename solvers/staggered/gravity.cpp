@@ -1,11 +1,10 @@
 // Gravity: a constant acceleration of all fluid.
+#include "scene/gravity.hpp"
 #include "staggered/effects.hpp"
 
 namespace weir::staggered {
 
 namespace {
-
-using scene::Type;
 
 /// du/dt = g
 template <int D>
@@ -29,17 +28,6 @@ struct Gravity final : MacEffect<D> {
 
 }  // namespace
 
-EffectKind gravity() {
-    return effect_kind<Gravity>({"gravity",
-                                 "A constant acceleration of all fluid.",
-                                 {{.name = "g",
-                                   .type = Type::numbers,
-                                   .doc = "Acceleration.",
-                                   .unit = "m/s^2",
-                                   .required = true,
-                                   .length = -1,
-                                   .example = "g = [0.0, -9.81]"}},
-                                 {"g"}});
-}
+EffectKind gravity() { return effect_kind<Gravity>(scene::gravity_effect("A constant acceleration of all fluid.")); }
 
 }  // namespace weir::staggered

@@ -127,28 +127,36 @@ void add_gradient(MacVelocity<D>& u, const MacState<D>& s, real factor) {
 template <int D>
 Projection<D>::Projection(const PoissonChoice& choice, const MacState<D>& s)
     : solver_(poisson::make_solver<D>(choice.method, choice.options)), rhs_(s.extent()) {
-    bool open = false;
     for (int a = 0; a < D; ++a) {
         const real ratio = s.u.h[0] / s.u.h[a];
         matrix_.axis_weight[a] = ratio * ratio;
         matrix_.periodic[static_cast<std::size_t>(a)] = s.sides.periodic(a);
-        open = open || s.sides.open(a, 0) || s.sides.open(a, 1);
     }
-    if (open || s.solid.any() || !s.mobility[0].empty())
-        for (int a = 0; a < D; ++a) matrix_.weight[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent(), 1);
     set_matrix(s);
 }
 
 template <int D>
 void Projection<D>::set_matrix(const MacState<D>& s) {
     matrix_.cells = s.cells;
-    for (int a = 0; a < D && !matrix_.weight[0].empty(); ++a) {
+    bool weighted = s.solid.any() || !s.mobility[0].empty();
+    for (int a = 0; a < D; ++a) weighted = weighted || s.sides.open(a, 0) || s.sides.open(a, 1);
+    for (int a = 0; a < D && weighted; ++a) {
         auto& weight = matrix_.weight[static_cast<std::size_t>(a)];
-        for_each_cell(weight.extent(), [&](const Index<D>& I) {
-            const int end = I[a] == 0 ? 0 : I[a] == s.u.cells[a] ? 1 : -1;
-            const real open = s.solid.any() ? s.solid.open[static_cast<std::size_t>(a)](I) : 1;
-            const real side = end < 0 || s.sides.periodic(a) ? 1 : s.sides.open(a, end) ? 2 : 0;  // 2: p = 0 half a cell away
-            weight(I) = side * open * (s.mobility[0].empty() ? 1 : s.mobility[static_cast<std::size_t>(a)](I));
+        if (weight.empty()) weight = Grid<real, D>(s.u[a].extent());
+        const auto* open = s.solid.any() ? &s.solid.open[static_cast<std::size_t>(a)] : nullptr;
+        const auto* moves = s.mobility[0].empty() ? nullptr : &s.mobility[static_cast<std::size_t>(a)];
+        const int n = s.u.cells[a];
+        const auto of_side = [&](int end) {  // 2: p = 0 half a cell away
+            return s.sides.periodic(a) ? 1.0 : s.sides.open(a, end) ? 2.0 : 0.0;
+        };
+        for_each_row(Index<D>{}, weight.extent(), [&](const Index<D>& first, int count) {
+            real* to = &weight(first);
+            const real side = a == 0 ? 1 : first[a] == 0 ? of_side(0) : first[a] == n ? of_side(1) : 1;
+            for (int i = 0; i < count; ++i) to[i] = side;
+            if (a == 0 && first[0] == 0) to[0] = of_side(0);
+            if (a == 0 && first[0] + count > n) to[count - 1] = of_side(1);
+            for (int i = 0; open && i < count; ++i) to[i] *= (&(*open)(first))[i];
+            for (int i = 0; moves && i < count; ++i) to[i] *= (&(*moves)(first))[i];
         });
     }
     solver_->setup(matrix_);

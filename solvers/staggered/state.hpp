@@ -55,7 +55,7 @@ struct MacState {
     std::vector<NamedField<D>> fields;    // carried by the flow
     std::vector<NamedField<D>> scratch;
     geometry::Sides<D> sides;
-    /// How far a face follows the pressure, in [0, 1]; empty: all of them do.
+    /// How far a face follows the pressure, in [0, 1]; empty: all of them do, as long as nothing has held one back.
     std::array<Grid<real, D>, D> mobility;
     real rho = 1;   // density [kg/m³]
     real nu = 0;    // kinematic viscosity [m²/s]; acts only through the effect "viscosity"

@@ -264,6 +264,15 @@ void LevelSet<D>::dilate(real shift) {
     parallel_for(0, static_cast<int>(band_.size()), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) -= shift; });
 }
 
+template <int D>
+real LevelSet<D>::regain(real missing) {
+    const real surface = area();
+    if (surface == 0) return 0;
+    const real most = 0.02 * frame_.h_min(), shift = std::clamp(missing / surface, -most, most);
+    dilate(shift);
+    return shift;
+}
+
 /// With the band: which cells it holds is part of the state.
 template <int D>
 void LevelSet<D>::save(Checkpoint& to) const {

@@ -36,6 +36,9 @@ public:
     void redistance();
     /// φ −= shift within the band: moves the surface outwards by `shift` [m].
     void dilate(real shift);
+    /// Moves the surface outwards by the missing volume [m^D] over its area, at most a fiftieth of a cell, less than motion itself moves
+    /// it by. Answers how far [m].
+    real regain(real missing);
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
 

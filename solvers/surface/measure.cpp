@@ -56,6 +56,25 @@ real Measure<D>::height_at_lower_end(int up) const {
     return max_over(column, [&](const Index<D>& I) { return crossing(I, up); });
 }
 
+template <int D>
+std::vector<Integral> Measure<D>::integrals(const MacVelocity<D>& u, real rho, const Vec<D>& gravity, int up, real target) const {
+    const std::string volume_unit = D == 2 ? "m^2" : "m^3", per_depth = D == 2 ? "/m" : "";
+    const Vec<D> p = momentum(u, rho);
+    std::vector<Integral> list = {
+        {"volume", volume_unit, surface_.volume()},
+        {"volume_target", volume_unit, target},
+        {"kinetic_energy", "J" + per_depth, kinetic_energy(u, rho)},
+        {"potential_energy", "J" + per_depth, potential_energy(gravity, rho)},
+        {"momentum_x", "kg m/s" + per_depth, p[0]},
+        {"momentum_y", "kg m/s" + per_depth, p[1]},
+    };
+    if constexpr (D == 3) list.push_back({"momentum_z", "kg m/s", p[2]});
+    list.push_back({"front_x", "m", furthest(0)});
+    list.push_back({"top", "m", furthest(up)});
+    list.push_back({"height_at_x_min", "m", height_at_lower_end(up)});
+    return list;
+}
+
 template class Measure<2>;
 template class Measure<3>;
 

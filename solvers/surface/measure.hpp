@@ -1,5 +1,6 @@
 // What liquid below a level set amounts to: energies, momentum, where its surface stands.
 #pragma once
+#include "core/solver.hpp"
 #include "surface/level_set.hpp"
 
 namespace weir::surface {
@@ -18,6 +19,8 @@ public:
     real furthest(int axis) const;
     /// The same of the cells at the lower end of x, or of y where `up` is x.
     real height_at_lower_end(int up) const;
+    /// All of that, as solvers with a free surface list it; `target`: the volume that the liquid should have.
+    std::vector<Integral> integrals(const MacVelocity<D>& u, real rho, const Vec<D>& gravity, int up, real target) const;
 
 private:
     /// Liquid part of a cell; where φ is only continued, in cells that solids close, there is none.

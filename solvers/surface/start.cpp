@@ -1,5 +1,7 @@
 #include "surface/start.hpp"
 
+#include "scene/names.hpp"
+
 namespace weir::surface {
 
 namespace {
@@ -70,7 +72,34 @@ void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>
     surface.redistance();
 }
 
-template void start_level_set(const geometry::Shape<2>&, const geometry::Solids<2>&, const Frame<2>&, LevelSet<2>&);
-template void start_level_set(const geometry::Shape<3>&, const geometry::Solids<3>&, const Frame<3>&, LevelSet<3>&);
+template <int D>
+void refuse_flat_cells(const scene::Scene& scene, const Frame<D>& frame) {
+    const real ratio = frame.h_max() / frame.h_min();
+    if (ratio > flattest_cell * (1 + 1e-9))
+        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " times as long as thin; water stays stable up to " +
+                                       scene::number_text(flattest_cell) + " times");
+}
+
+template <int D>
+void refuse_no_volume(const scene::Scene& scene, const geometry::Shape<D>& liquid, const Frame<D>& frame) {
+    const real inside = sum_over(frame.cells, [&](const Index<D>& I) { return liquid.contains(frame.centre(I)) ? 1.0 : 0.0; });
+    if (inside > 0) scene.refuse("liquid", "all liquid lies inside solids");
+    scene.refuse("liquid", "no liquid lies in the domain, or all of it is thinner than a cell");
+}
+
+scene::Variant volume_control() {
+    return {"volume_control",
+            "Moves the surface, at most a fiftieth of a cell a step, so that the volume stays what was put in; the integral "
+            "\"volume_shift\" tells how far.",
+            {}};
+}
+
+#define WEIR_INSTANTIATE(D)                                                                                              \
+    template void start_level_set(const geometry::Shape<D>&, const geometry::Solids<D>&, const Frame<D>&, LevelSet<D>&); \
+    template void refuse_flat_cells(const scene::Scene&, const Frame<D>&);                                               \
+    template void refuse_no_volume(const scene::Scene&, const geometry::Shape<D>&, const Frame<D>&);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
 
 }  // namespace weir::surface

@@ -73,10 +73,7 @@ scene::SolverKind kind() {
                    scheme_keys(),
                    initial_keys()};
     schema.effects = schemas_of(body_forces());
-    schema.effects.push_back({"volume_control",
-                              "Moves the surface, at most a fiftieth of a cell a step, so that the volume stays what it was; the integral "
-                              "\"volume_shift\" tells how far.",
-                              {}});
+    schema.effects.push_back(surface::volume_control());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
     return {schema,
             staggered::make<TallCells>,

@@ -12,86 +12,191 @@ namespace weir::tallcell {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr int lanes = 64;  // columns of one line that are solved side by side
 
-/// Sum over all knots of f(i), column by column in order: no result depends on the number of threads.
+template <class I>
+constexpr std::size_t at(I i) {
+    return static_cast<std::size_t>(i);
+}
+
+/// f(z, begin, end) for the columns of one parity of every line, in blocks. `parity(z)` says which.
+template <class Parity, class F>
+void for_each_block(const ColumnPlaces& places, int z_begin, int z_end, Parity&& parity, F&& f) {
+    const int blocks = (places.even() + lanes - 1) / lanes;
+    parallel_for(0, (z_end - z_begin) * blocks, [&](int i) {
+        const int z = z_begin + i / blocks, begin = i % blocks * lanes, end = std::min(begin + lanes, places.of_parity(parity(z)));
+        if (begin < end) f(z, begin, end);
+    });
+}
+
+/// to[i] += Σ W x of the four columns beside one another's, in one shared row; all pointers are at the first column.
+template <class T, bool Tall>
+inline void add_beside(const std::array<std::vector<T>, 2>& W, const std::array<std::vector<T>, 2>& W_next, const T* x, std::size_t first,
+                       const Beside& to, std::ptrdiff_t row, int count, T* sum) {
+    const T *w0 = W[0].data() + first, *w1 = W[1].data() + first, *n0 = W_next[0].data() + first, *n1 = W_next[1].data() + first;
+    const T* v = x + first;
+#pragma omp simd
+    for (int i = 0; i < count; ++i)
+        sum[i] += (w0[i] * v[i + to.x_lower] + w0[i + to.x_upper] * v[i + to.x_upper]) +
+                  (w1[i] * v[i + to.z_lower] + w1[i + to.z_upper] * v[i + to.z_upper]);
+    if constexpr (Tall) {
+#pragma omp simd
+        for (int i = 0; i < count; ++i)
+            sum[i] += ((n0[i] * v[i + to.x_lower + row] + n0[i - row] * v[i + to.x_lower - row]) +
+                       (n0[i + to.x_upper] * v[i + to.x_upper + row] + n0[i + to.x_upper - row] * v[i + to.x_upper - row])) +
+                      ((n1[i] * v[i + to.z_lower + row] + n1[i - row] * v[i + to.z_lower - row]) +
+                       (n1[i + to.z_upper] * v[i + to.z_upper + row] + n1[i + to.z_upper - row] * v[i + to.z_upper - row]));
+    }
+}
+
+/// Rᵀ downwards: what rows inside elements say to the knot below. `above` is what has been gathered for it.
+template <class T>
+inline void gather_down(const real* share, T* y, T* above, int count) {
+    for (int i = 0; i < count; ++i) {
+        const T s = static_cast<T>(share[i]);
+        const bool knot = s == 0;
+        y[i] += knot ? above[i] : 0;
+        above[i] = knot ? 0 : above[i] + (1 - s) * y[i];
+    }
+}
+
+/// Rᵀ upwards: what they say to the knot above; nothing is left of them.
+template <class T>
+inline void gather_up(const real* share, T* y, T* below, int count) {
+    for (int i = 0; i < count; ++i) {
+        const T s = static_cast<T>(share[i]), own = y[i];
+        const bool knot = s == 0;
+        y[i] = knot ? own + below[i] : 0;
+        below[i] = knot ? 0 : below[i] + s * own;
+    }
+}
+
+template <class T>
+using Lanes = std::array<T, at(lanes)>;
+
+/// y := Rᵀ y in columns of one parity of a line.
+template <class T>
+void gather(const ColumnMatrix& A, int z, int parity, int begin, int end, T* y) {
+    Lanes<T> carried{};
+    for (int k = A.mixed_end - 1; k >= 0; --k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        gather_down(A.share.data() + first, y + first, carried.data(), end - begin);
+    }
+    carried.fill(0);
+    for (int k = 0; k < A.mixed_end; ++k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        gather_up(A.share.data() + first, y + first, carried.data(), end - begin);
+    }
+}
+
+/// x := R x: rows inside elements from their knots.
+template <class T>
+void interpolate(const ColumnMatrix& A, int z, int parity, int begin, int end, T* x) {
+    const int count = end - begin;
+    Lanes<T> carried{};
+    for (int k = A.mixed_end - 1; k >= 0; --k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        const real* share = A.share.data() + first;
+        T* v = x + first;
+        for (int i = 0; i < count; ++i) {
+            carried[at(i)] = share[i] == 0 ? v[i] : carried[at(i)];
+            v[i] = carried[at(i)];
+        }
+    }
+    for (int k = 0; k < A.mixed_end; ++k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        const real* share = A.share.data() + first;
+        T* v = x + first;
+        for (int i = 0; i < count; ++i) {
+            carried[at(i)] = share[i] == 0 ? v[i] : carried[at(i)];
+            v[i] = carried[at(i)] + static_cast<T>(share[i]) * (v[i] - carried[at(i)]);
+        }
+    }
+}
+
+template <class T>
+void interpolate(const ColumnMatrix& A, std::vector<T>& x) {
+    if (A.mixed_end == 0) return;
+    parallel_for(0, A.n[1], [&](int z) {
+        for (const int parity : {0, 1})
+            for (int begin = 0; begin < A.of_parity(parity); begin += lanes)
+                interpolate(A, z, parity, begin, std::min(begin + lanes, A.of_parity(parity)), x.data());
+    });
+}
+
+/// Sum over all entries of f(i), in blocks of one size: no result depends on the number of threads.
 template <class F>
-real sum_over_knots(const Knots& knots, F&& f) {
-    constexpr int block = 64;
-    const int columns = knots.columns();
-    return ordered_sum((columns + block - 1) / block, [&](int b) {
+real sum_over_entries(std::size_t count, F&& f) {
+    constexpr std::size_t block = 8192;
+    return ordered_sum(static_cast<int>((count + block - 1) / block), [&](int b) {
         real sum = 0;
-        for (int i = knots.start[at(b * block)]; i < knots.start[at(std::min(columns, (b + 1) * block))]; ++i) sum += f(at(i));
+        const std::size_t begin = at(b) * block, end = std::min(count, begin + block);
+#pragma omp simd reduction(+ : sum)
+        for (std::size_t i = begin; i < end; ++i) sum += f(i);
         return sum;
     });
 }
 
-real dot(const Knots& knots, const std::vector<real>& a, const std::vector<real>& b) {
-    return sum_over_knots(knots, [&](std::size_t i) { return a[i] * b[i]; });
-}
-
-/// f(i) for all knots, threaded over columns.
-template <class F>
-void for_each_knot(const Knots& knots, F&& f) {
-    parallel_for(0, knots.columns(), [&](int c) {
-        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) f(at(i));
+/// y = A x, and x·y.
+real multiply_and_dot(const ColumnMatrix& A, std::vector<real>& x, std::vector<real>& y) {
+    const std::ptrdiff_t row = A.row_stride();
+    return ordered_sum(A.n[1], [&](int z) {
+        wrap_line(A, z, x.data());
+        real dot = 0;
+        for (const int parity : {0, 1})
+            for (int begin = 0; begin < A.of_parity(parity); begin += lanes) {
+                const int count = std::min(lanes, A.of_parity(parity) - begin);
+                const Beside to(A, z, parity);
+                for (int k = 0; k < A.rows; ++k) {
+                    const std::size_t first = A.first(z, k, parity) + at(begin);
+                    const real *v = x.data() + first, *c = A.vertical.data() + first;
+                    const real *lid = A.lid.data() + first, *sink = A.sink.data() + first;
+                    const real *w0 = A.beside[0].data() + first, *w1 = A.beside[1].data() + first;
+                    real* sum = y.data() + first;
+#pragma omp simd
+                    for (int i = 0; i < count; ++i) {
+                        const real vertical = c[i] * (v[i] - v[i + row]) + c[i - row] * (v[i] - v[i - row]);
+                        const real along_x = w0[i] * (v[i] - v[i + to.x_lower]) + w0[i + to.x_upper] * (v[i] - v[i + to.x_upper]);
+                        const real along_z = w1[i] * (v[i] - v[i + to.z_lower]) + w1[i + to.z_upper] * (v[i] - v[i + to.z_upper]);
+                        sum[i] = (vertical + (lid[i] + sink[i]) * v[i]) + (along_x + along_z);
+                    }
+                    if (!A.tall[at(k)]) continue;
+                    const real* next = A.sink_next.data() + first;
+#pragma omp simd
+                    for (int i = 0; i < count; ++i) sum[i] += next[i] * v[i + row] + next[i - row] * v[i - row];
+                    for (const std::size_t h : {at(0), at(1)}) {
+                        const real* w = A.beside_next[h].data() + first;
+                        const std::ptrdiff_t lower = h == 0 ? to.x_lower : to.z_lower, upper = h == 0 ? to.x_upper : to.z_upper;
+#pragma omp simd
+                        for (int i = 0; i < count; ++i) {
+                            const real above = w[i] * (v[i + row] - v[i + lower + row]) + w[i + upper] * (v[i + row] - v[i + upper + row]);
+                            const real below =
+                                w[i - row] * (v[i - row] - v[i + lower - row]) + w[i + upper - row] * (v[i - row] - v[i + upper - row]);
+                            sum[i] += above + below;
+                        }
+                    }
+                }
+                gather(A, z, parity, begin, begin + count, y.data());
+                for (int k = 0; k < A.rows; ++k) {
+                    const std::size_t first = A.first(z, k, parity) + at(begin);
+                    const real *v = x.data() + first, *sum = y.data() + first;
+#pragma omp simd reduction(+ : dot)
+                    for (int i = 0; i < count; ++i) dot += v[i] * sum[i];
+                }
+            }
+        return dot;
     });
-}
-
-/// f(child) for the columns that become one, in order.
-template <class F>
-void for_each_child(const ColumnMatrix& A, const ColumnMatrix& to, int parent, F&& f) {
-    const int px = parent % to.n[0], pz = parent / to.n[0];
-    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
-    for (int z = sz * pz; z < std::min(sz * pz + sz, A.n[1]); ++z)
-        for (int x = sx * px; x < std::min(sx * px + sx, A.n[0]); ++x) f(x + z * A.n[0]);
-}
-
-int parent_of(const ColumnMatrix& A, const ColumnMatrix& to, int child) {
-    const int x = child % A.n[0], z = child / A.n[0];
-    return (A.n[0] > 1 ? x / 2 : x) + (A.n[1] > 1 ? z / 2 : z) * to.n[0];
 }
 
 }  // namespace
 
-int ColumnMatrix::neighbour(int column, int f) const {
-    const auto h = at(f / 2);
-    const int m = n[h], stride = h == 0 ? 1 : n[0], i = h == 0 ? column % n[0] : column / n[0], by = f % 2 == 0 ? -1 : 1;
-    if (m == 1) return -1;
-    if (i + by >= 0 && i + by < m) return column + by * stride;
-    return periodic[h] ? column - by * (m - 1) * stride : -1;
-}
-
-void ColumnMatrix::resize() {
-    const auto count = at(knots.count());
-    for (auto* list : {&vertical, &vertical_next, &horizontal, &horizontal_next}) refill_scratch(*list, count, 0.0);
-    refill_scratch(begin, count * at(faces()) + 1, 0);
-}
-
-void ColumnMatrix::place_entries(const std::vector<int>& from) {
-    for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-    resize_scratch(beside, at(begin.back()));
-    refill_scratch(entry, beside.size(), 0.0);
-    for_each_knot(knots, [&](std::size_t i) {
-        for (std::size_t row = i * at(faces()); row < (i + 1) * at(faces()); ++row)
-            for (int e = begin[row]; e < begin[row + 1]; ++e) beside[at(e)] = from[row] + e - begin[row];
-    });
-}
-
-std::size_t ColumnMatrix::bytes() const {
-    return knots.bytes() + (begin.capacity() + beside.capacity() + lowest.capacity() + highest.capacity()) * sizeof(int) +
-           (vertical.capacity() + vertical_next.capacity() + horizontal.capacity() + horizontal_next.capacity() + entry.capacity()) *
-               sizeof(real);
-}
-
 std::size_t ColumnMultigrid::bytes() const {
-    std::size_t total = (r_.capacity() + p_.capacity() + Ap_.capacity() + z_.capacity()) * sizeof(real);
+    std::size_t total = (x_.capacity() + b_.capacity() + r_.capacity() + p_.capacity() + Ap_.capacity()) * sizeof(real);
     for (const Level& level : levels_) {
-        total += level.coarse.bytes() + level.parent.capacity() * sizeof(int);
-        total += level.share.capacity() * sizeof(real) + level.first.capacity() * sizeof(int);
-        for (const auto* list : {&level.entry, &level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
+        total += level.coarse.bytes();
+        for (const auto* list : {&level.beside[0], &level.beside[1], &level.beside_next[0], &level.beside_next[1], &level.diagonal,
+                                 &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
             total += list->capacity() * sizeof(float);
-        for (const auto& list : level.colours) total += list.capacity() * sizeof(int);
     }
     return total;
 }
@@ -100,323 +205,419 @@ void ColumnMultigrid::setup(const ColumnMatrix& finest) {
     const ColumnMatrix* A = &finest;
     for (std::size_t l = 0;; ++l) {
         if (l == levels_.size()) levels_.emplace_back();
-        if (levels_[l].colours.empty()) colour(l == 0 ? finest : levels_[l].coarse, levels_[l]);
         A = l == 0 ? &finest : &levels_[l].coarse;
         factorise(*A, levels_[l]);
         if (A->n[0] == 1 && A->n[1] == 1) break;
         if (l + 1 == levels_.size()) levels_.emplace_back();
         A = l == 0 ? &finest : &levels_[l].coarse;
-        coarsen(*A, levels_[l], levels_[l + 1].coarse);
+        coarsen(*A, levels_[l + 1].coarse);
     }
+    for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_scratch(*list, finest.size(), 0.0);
 }
 
-/// A checkerboard; columns at the joint of a periodic axis with an odd number of them have colours of their own.
-void ColumnMultigrid::colour(const ColumnMatrix& A, Level& level) {
-    const auto joint = [&](std::size_t h, int i) { return A.periodic[h] && A.n[h] % 2 == 1 && A.n[h] > 1 && i == A.n[h] - 1 ? 2 : 0; };
-    level.colours.assign(8, {});
-    for (int z = 0; z < A.n[1]; ++z)
-        for (int x = 0; x < A.n[0]; ++x) level.colours[at((x + z) % 2 + joint(0, x) + 2 * joint(1, z))].push_back(x + z * A.n[0]);
-    std::erase_if(level.colours, [](const auto& list) { return list.empty(); });
+/// Children (sx X + dx, sz Z + dz) of parent (X, Z). Faces between children of one parent vanish; of the others half counts.
+void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
+    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
+    to.n = {(A.n[0] + 1) / 2, (A.n[1] + 1) / 2};
+    to.periodic = A.periodic;
+    to.row = A.row;
+    to.resize();
+    parallel_for(0, to.n[1], [&](int Z) {
+        for (int k = 0; k < A.rows; ++k)
+            for (int dz = 0; dz < sz && sz * Z + dz < A.n[1]; ++dz)
+                for (int dx = 0; dx < sx; ++dx)
+                    for (int X = 0; X < to.n[0] && sx * X + dx < A.n[0]; ++X) {
+                        const std::size_t child = A.at(sx * X + dx, sz * Z + dz, k), parent = to.at(X, Z, k);
+                        to.state[parent] |= A.state[child];
+                        to.vertical[parent] += A.vertical[child];
+                        to.lid[parent] += A.lid[child];
+                        to.sink[parent] += 0.5 * A.sink[child];
+                        to.sink_next[parent] += 0.5 * A.sink_next[child];
+                        if (dx == 0 && to.n[0] > 1) {
+                            to.beside[0][parent] += 0.5 * A.beside[0][child];
+                            to.beside_next[0][parent] += 0.5 * A.beside_next[0][child];
+                        }
+                        if (dz == 0 && to.n[1] > 1) {
+                            to.beside[1][parent] += 0.5 * A.beside[1][child];
+                            to.beside_next[1][parent] += 0.5 * A.beside_next[1][child];
+                        }
+                    }
+    });
+    to.finish();
 }
+
+namespace {
+
+/// L D Lᵀ of columns side by side, upwards: what is known of the knot whose pivot is not yet complete.
+struct Elimination {
+    Lanes<real> diagonal{}, whole{};  // of it, and without what has been taken from it
+    Lanes<real> coupling{}, above{};  // with the next knot, and what the element between gives to that
+    Lanes<std::size_t> place{};       // of it
+
+    /// The pivot's inverse and the ratio to the next entry. A column that touches neither air nor another is singular: its last pivot is
+    /// round-off, and counts as none.
+    static std::array<real, 2> divide(real diagonal, real whole, real coupling) {
+        const bool sound = diagonal > 64 * std::numeric_limits<real>::epsilon() * whole;
+        const real inverse = sound ? 1 / (sound ? diagonal : 1) : 0;
+        return {inverse, coupling * inverse};
+    }
+};
+
+}  // namespace
 
 void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
-    const auto count = at(A.knots.count());
+    const std::size_t size = A.size();
     for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
-        resize_scratch(*list, count);
-    resize_scratch(level.entry, A.entry.size());
-    resize_scratch(level.first, count + 1);
-    level.first[count] = static_cast<int>(A.entry.size());
-    parallel_for(0, A.knots.columns(), [&](int c) {
-        real next = 0, before = 0;  // entry and pivot of the knot below
-        for (int k = A.knots.start[at(c)]; k < A.knots.start[at(c) + 1]; ++k) {
-            const auto i = at(k);
-            const real diagonal = A.vertical[i] + A.horizontal[i], pivot = diagonal - (before > 0 ? next * next / before : 0);
-            // A column that touches neither air nor another column is singular: its last pivot is round-off.
-            const bool sound = pivot > 64 * std::numeric_limits<real>::epsilon() * diagonal;
-            before = sound ? pivot : 0;
-            next = A.vertical_next[i] + A.horizontal_next[i];
-            level.inverse[i] = static_cast<float>(sound ? 1 / pivot : 0);
-            level.ratio[i] = static_cast<float>(sound ? next / pivot : 0);
-            level.diagonal[i] = static_cast<float>(diagonal);
-            level.next[i] = static_cast<float>(next);
-            level.first[i] = A.begin[at(A.faces() * k)];
-            for (int e = level.first[i]; e < A.begin[at(A.faces() * (k + 1))]; ++e) level.entry[at(e)] = static_cast<float>(A.entry[at(e)]);
-        }
-    });
-}
-
-void ColumnMultigrid::coarsen(const ColumnMatrix& A, Level& level, ColumnMatrix& to) {
-    to.axes = A.axes;
-    to.periodic = A.periodic;
-    for (std::size_t h = 0; h < 2; ++h) to.n[h] = (A.n[h] + 1) / 2;
-    merge_knots(A, to);
-    map_knots(A, to, level);
-    count_entries(A, level, to);
-    add_entries(A, level, to);
-}
-
-/// Goes up the children of one parent together; add(row, length) for each of its knots.
-template <class Add>
-static void walk_children(const ColumnMatrix& A, const ColumnMatrix& to, int parent, Add&& add) {
-    const auto row = [&](int i) { return A.knots.row[at(i)]; };
-    std::array<int, 4> begin{}, k{}, end{};
-    std::size_t count = 0;
-    for_each_child(A, to, parent, [&](int child) {
-        begin[count] = k[count] = A.knots.start[at(child)];
-        end[count++] = A.knots.start[at(child) + 1];
-    });
-    constexpr int none = std::numeric_limits<int>::max();
-    int last = none;  // row of the parent's last knot
-    bool open = false;
-    for (;;) {
-        int y = none;
-        for (std::size_t c = 0; c < count; ++c)
-            if (k[c] < end[c]) y = std::min(y, row(k[c]));
-        if (y == none) break;
-        bool knot = true, goes_on = false;
-        for (std::size_t c = 0; c < count; ++c) {
-            if (k[c] < end[c] && row(k[c]) == y)
-                goes_on = A.knots.length[at(k[c]++)] > 0 || goes_on;
-            else if (k[c] > begin[c] && row(k[c] - 1) + A.knots.length[at(k[c] - 1)] > y)
-                knot = false;  // this child covers the row between two knots of its own
-        }
-        if (!knot) continue;
-        if (last != none) add(last, open ? y - last : 0);
-        last = y, open = goes_on;
+        refill_scratch(*list, size, 0.0f);
+    for (const std::size_t h : {at(0), at(1)}) {
+        resize_scratch(level.beside[h], size);
+        resize_scratch(level.beside_next[h], size);
     }
-    if (last != none) add(last, 0);
+    const std::ptrdiff_t row = A.row_stride();
+    parallel_for(0, A.n[1] + 1, [&](int z) {
+        const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
+        for (const std::size_t h : {at(0), at(1)})
+            for (std::size_t i = from; i < to; ++i) {
+                level.beside[h][i] = static_cast<float>(A.beside[h][i]);
+                level.beside_next[h][i] = static_cast<float>(A.beside_next[h][i]);
+            }
+        if (z == A.n[1]) return;
+        for (const int parity : {0, 1})
+            for (int begin = 0; begin < A.of_parity(parity); begin += lanes) {
+                const int count = std::min(lanes, A.of_parity(parity) - begin);
+                const Beside to_side(A, z, parity);
+                Elimination e;
+                Lanes<real> D{}, O{}, O_below{};
+                for (int k = 0; k < A.rows; ++k) {
+                    const std::size_t first = A.first(z, k, parity) + at(begin);
+                    const real *c = A.vertical.data() + first, *lid = A.lid.data() + first, *sink = A.sink.data() + first;
+                    const real *w0 = A.beside[0].data() + first, *w1 = A.beside[1].data() + first;
+                    const real *n0 = A.beside_next[0].data() + first, *n1 = A.beside_next[1].data() + first;
+                    const real* sink_next = A.sink_next.data() + first;
+                    float *diagonal = level.diagonal.data() + first, *next = level.next.data() + first;
+#pragma omp simd
+                    for (int i = 0; i < count; ++i) {
+                        O_below[at(i)] = O[at(i)];
+                        D[at(i)] = (c[i] + c[i - row]) + (lid[i] + sink[i]) +
+                                   ((w0[i] + w0[i + to_side.x_upper]) + (w1[i] + w1[i + to_side.z_upper]));
+                        O[at(i)] = sink_next[i] - c[i] + ((n0[i] + n0[i + to_side.x_upper]) + (n1[i] + n1[i + to_side.z_upper]));
+                        diagonal[i] = static_cast<float>(D[at(i)]);
+                        next[i] = static_cast<float>(O[at(i)]);
+                    }
+                    if (k == 0 || k < A.mixed_end) {  // knots stand in different rows: one column after the other
+                        const real *share = A.share.data() + first, *share_below = share - row;
+                        for (int i = 0; i < count; ++i) {
+                            const std::size_t l = at(i);
+                            const bool knot = share[i] == 0;
+                            const real s = knot ? 1 : share[i], t = k > 0 ? share_below[i] : 0;
+                            const real to_lower = (1 - s) * (1 - t) * 2 * O_below[l] + (knot ? 0 : (1 - s) * (1 - s) * D[l]);
+                            e.diagonal[l] += to_lower, e.whole[l] += to_lower;
+                            e.coupling[l] += O_below[l] * ((1 - t) * s + t * (1 - s)) + (knot ? 0 : s * (1 - s) * D[l]);
+                            e.above[l] += 2 * O_below[l] * t * s + (knot ? 0 : s * s * D[l]);
+                            if (!knot) continue;
+                            const auto [inverse, ratio] = Elimination::divide(e.diagonal[l], e.whole[l], e.coupling[l]);
+                            if (k > 0) {
+                                level.inverse[e.place[l]] = static_cast<float>(inverse);
+                                level.ratio[e.place[l]] = static_cast<float>(ratio);
+                            }
+                            e.whole[l] = D[l] + e.above[l];
+                            e.diagonal[l] = e.whole[l] - (k > 0 ? e.coupling[l] * ratio : 0);
+                            e.coupling[l] = e.above[l] = 0;
+                            e.place[l] = first + l;
+                        }
+                        continue;
+                    }
+                    float *inverse_below = level.inverse.data() + first - row, *ratio_below = level.ratio.data() + first - row;
+#pragma omp simd
+                    for (int i = 0; i < count; ++i) {
+                        const auto [inverse, ratio] = Elimination::divide(e.diagonal[at(i)], e.whole[at(i)], O_below[at(i)]);
+                        inverse_below[i] = static_cast<float>(inverse);
+                        ratio_below[i] = static_cast<float>(ratio);
+                        e.whole[at(i)] = D[at(i)];
+                        e.diagonal[at(i)] = D[at(i)] - O_below[at(i)] * ratio;
+                    }
+                }
+                const std::size_t top = A.first(z, A.rows - 1, parity) + at(begin);
+                for (int i = 0; i < count; ++i)
+                    level.inverse[top + at(i)] = static_cast<float>(Elimination::divide(e.diagonal[at(i)], e.whole[at(i)], 0)[0]);
+            }
+    });
 }
 
-void ColumnMultigrid::merge_knots(const ColumnMatrix& A, ColumnMatrix& to) {
-    const int columns = to.n[0] * to.n[1];
-    Knots& knots = to.knots;
-    knots.start.resize(at(columns) + 1);
-    parallel_for(0, columns, [&](int c) {
-        int count = 0;
-        walk_children(A, to, c, [&](int, int) { ++count; });
-        knots.start[at(c) + 1] = count;
-    });
-    knots.start[0] = 0;
-    for (int c = 0; c < columns; ++c) knots.start[at(c) + 1] += knots.start[at(c)];
-    resize_scratch(knots.row, at(knots.start.back()));
-    resize_scratch(knots.length, knots.row.size());
-    parallel_for(0, columns, [&](int c) {
-        int k = knots.start[at(c)];
-        walk_children(A, to, c, [&](int row, int length) {
-            knots.row[at(k)] = row;
-            knots.length[at(k++)] = length;
-        });
-    });
-}
-
-/// Where each knot lies between two of its parent's.
-void ColumnMultigrid::map_knots(const ColumnMatrix& A, const ColumnMatrix& to, Level& level) {
-    resize_scratch(level.parent, at(A.knots.count()));
-    resize_scratch(level.share, level.parent.size());
-    parallel_for(0, A.knots.columns(), [&](int c) {
-        Cursor cursor(to.knots, parent_of(A, to, c));
-        for (int i = A.knots.start[at(c)]; i < A.knots.start[at(c) + 1]; ++i) {
-            cursor.move_to(A.knots.row[at(i)]);
-            level.parent[at(i)] = cursor.knot();
-            level.share[at(i)] = cursor.share(A.knots.row[at(i)]);
+/// x of columns side by side from b and from the columns beside them: L D Lᵀ, upwards and down again. `alone`: those beside are zero. Only
+/// columns of the other colour, and the line's ends, are read; x of these holds what is between.
+void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, int parity, int begin, int end, bool alone) {
+    const int count = end - begin, mixed_end = A.mixed_end;
+    const std::ptrdiff_t row = A.row_stride();
+    const Beside to(A, z, parity);
+    const auto right_hand_side = [&](int k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        const float* b = level.b.data() + first;
+        float* x = level.x.data() + first;
+        Lanes<float> sum;
+        for (int i = 0; i < count; ++i) sum[at(i)] = b[i];
+        if (!alone) {
+            if (A.tall[at(k)])
+                add_beside<float, true>(level.beside, level.beside_next, level.x.data(), first, to, row, count, sum.data());
+            else
+                add_beside<float, false>(level.beside, level.beside_next, level.x.data(), first, to, row, count, sum.data());
         }
-    });
-}
-
-/// f(knot, weight) for the one or two knots of the parent that knot i is interpolated from.
-template <class L, class F>
-static void for_each_parent(const L& level, int i, F&& f) {
-    const int K = level.parent[at(i)];
-    const real share = level.share[at(i)];
-    f(K, 1 - share);
-    if (share > 0) f(K + 1, share);
-}
-
-/// How many knots stand beside each of the coarse level, and which is the lowest.
-void ColumnMultigrid::count_entries(const ColumnMatrix& A, const Level& level, ColumnMatrix& to) {
-    to.resize();
-    const int faces = A.faces();
-    auto &lowest = to.lowest, &highest = to.highest;
-    refill_scratch(lowest, at(to.knots.count() * faces), std::numeric_limits<int>::max());
-    refill_scratch(highest, lowest.size(), -1);
-    parallel_for(0, to.knots.columns(), [&](int C) {
-        for_each_child(A, to, C, [&](int c) {
-            for (int f = 0; f < faces; ++f) {
-                const int beside = A.neighbour(c, f);
-                if (beside < 0 || parent_of(A, to, beside) == C) continue;
-                for (int i = A.knots.start[at(c)]; i < A.knots.start[at(c) + 1]; ++i)
-                    for (int e = A.begin[at(faces * i + f)]; e < A.begin[at(faces * i + f) + 1]; ++e) {
-                        const int j = A.beside[at(e)], first = level.parent[at(j)], last = first + (level.share[at(j)] > 0 ? 1 : 0);
-                        for_each_parent(level, i, [&](int K, real) {
-                            auto &low = lowest[at(faces * K + f)], &high = highest[at(faces * K + f)];
-                            low = std::min(low, first), high = std::max(high, last);
-                        });
-                    }
-            }
-        });
-        for (int row = faces * to.knots.start[at(C)]; row < faces * to.knots.start[at(C) + 1]; ++row)
-            to.begin[at(row) + 1] = std::max(0, highest[at(row)] - lowest[at(row)] + 1);
-    });
-    to.place_entries(lowest);
-}
-
-/// Pᵀ A_v P + ½ Pᵀ A_h P. Faces between two children of one parent join its own block.
-void ColumnMultigrid::add_entries(const ColumnMatrix& A, const Level& level, ColumnMatrix& to) {
-    const int faces = A.faces();
-    parallel_for(0, to.knots.columns(), [&](int C) {
-        const auto add = [&](std::vector<real>& diagonal, std::vector<real>& next, int i, int j, real value) {
-            for_each_parent(level, i, [&](int K, real w) {
-                for_each_parent(level, j, [&](int L, real v) {
-                    if (K == L) diagonal[at(K)] += w * v * value;
-                    if (L == K + 1) next[at(K)] += w * v * value;  // the other one is its mirror image
-                });
-            });
-        };
-        for_each_child(A, to, C, [&](int c) {
-            for (int i = A.knots.start[at(c)]; i < A.knots.start[at(c) + 1]; ++i) {
-                add(to.vertical, to.vertical_next, i, i, A.vertical[at(i)]);
-                add(to.horizontal, to.horizontal_next, i, i, 0.5 * A.horizontal[at(i)]);
-                if (A.vertical_next[at(i)] != 0) {
-                    add(to.vertical, to.vertical_next, i, i + 1, A.vertical_next[at(i)]);
-                    add(to.vertical, to.vertical_next, i + 1, i, A.vertical_next[at(i)]);
-                }
-                if (A.horizontal_next[at(i)] != 0) {
-                    add(to.horizontal, to.horizontal_next, i, i + 1, 0.5 * A.horizontal_next[at(i)]);
-                    add(to.horizontal, to.horizontal_next, i + 1, i, 0.5 * A.horizontal_next[at(i)]);
-                }
-            }
-            for (int f = 0; f < faces; ++f) {
-                const int beside = A.neighbour(c, f);
-                if (beside < 0) continue;
-                const bool inside = parent_of(A, to, beside) == C;
-                for (int i = A.knots.start[at(c)]; i < A.knots.start[at(c) + 1]; ++i)
-                    for (int e = A.begin[at(faces * i + f)]; e < A.begin[at(faces * i + f) + 1]; ++e) {
-                        const int j = A.beside[at(e)];
-                        const real value = 0.5 * A.entry[at(e)];
-                        if (inside)
-                            add(to.horizontal, to.horizontal_next, i, j, value);
-                        else
-                            for_each_parent(level, i, [&](int K, real w) {
-                                for_each_parent(level, j, [&](int L, real v) { to.add_beside(K, f, L, w * v * value); });
-                            });
-                    }
-            }
-        });
-    });
-}
-
-/// x of a column from b and the columns beside it: L D Lᵀ, upwards and down again. `alone`: those beside are zero.
-void ColumnMultigrid::solve_column(const ColumnMatrix& A, Level& level, int column, bool alone) {
-    const int first = A.knots.start[at(column)], last = A.knots.start[at(column) + 1];
-    float *x = level.x.data(), below = 0;
-    const float *b = level.b.data(), *ratio = level.ratio.data(), *inverse = level.inverse.data(), *entry = level.entry.data();
-    const int *begin = level.first.data(), *beside = A.beside.data();
-    for (int i = first; i < last; ++i) {
-        float sum = b[i];
-        if (!alone)
-            for (int e = begin[i]; e < begin[i + 1]; ++e) sum -= entry[e] * x[beside[e]];
-        if (i > first) sum -= ratio[i - 1] * below;
-        x[i] = below = sum;
+        for (int i = 0; i < count; ++i) x[i] = sum[at(i)];
+    };
+    Lanes<float> carried{};
+    for (int k = mixed_end - 1; k >= 0; --k) {
+        right_hand_side(k);
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        gather_down(A.share.data() + first, level.x.data() + first, carried.data(), count);
     }
-    float above = 0;
-    for (int i = last - 1; i >= first; --i) x[i] = above = x[i] * inverse[i] - ratio[i] * above;
-}
-
-/// r = b − A x
-void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
-    const float *x = level.x.data(), *b = level.b.data(), *entry = level.entry.data(), *next = level.next.data();
-    const int *begin = level.first.data(), *beside = A.beside.data();
-    parallel_for(0, A.knots.columns(), [&](int c) {
-        const int first = A.knots.start[at(c)], last = A.knots.start[at(c) + 1];
-        for (int i = first; i < last; ++i) {
-            float sum = b[i] - level.diagonal[at(i)] * x[i];
-            if (i > first) sum -= next[i - 1] * x[i - 1];
-            if (i + 1 < last) sum -= next[i] * x[i + 1];
-            for (int e = begin[i]; e < begin[i + 1]; ++e) sum -= entry[e] * x[beside[e]];
-            level.r[at(i)] = sum;
+    carried.fill(0);
+    Lanes<float> below{};
+    for (int k = 0; k < A.rows; ++k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        const float* ratio = level.ratio.data() + first;
+        float* x = level.x.data() + first;
+        if (k < mixed_end) {
+            const real* share = A.share.data() + first;
+            gather_up(share, x, carried.data(), count);
+            for (int i = 0; i < count; ++i) {
+                const bool knot = share[i] == 0;
+                const float y = x[i] - below[at(i)];
+                x[i] = knot ? y : 0;
+                below[at(i)] = knot ? ratio[i] * y : below[at(i)];
+            }
+            continue;
         }
-    });
+        right_hand_side(k);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const float y = x[i] - below[at(i)];
+            x[i] = y;
+            below[at(i)] = ratio[i] * y;
+        }
+    }
+    Lanes<float> above{};
+    for (int k = A.rows - 1; k >= 0; --k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        const float *ratio = level.ratio.data() + first, *inverse = level.inverse.data() + first;
+        float* x = level.x.data() + first;
+        if (k < mixed_end) {
+            const real* share = A.share.data() + first;
+            for (int i = 0; i < count; ++i) {
+                const float solved = x[i] * inverse[i] - ratio[i] * above[at(i)];
+                above[at(i)] = share[i] == 0 ? solved : above[at(i)];
+                x[i] = above[at(i)];
+            }
+            continue;
+        }
+#pragma omp simd
+        for (int i = 0; i < count; ++i) x[i] = above[at(i)] = x[i] * inverse[i] - ratio[i] * above[at(i)];
+    }
+    for (int k = 0; k < mixed_end; ++k) {
+        const std::size_t first = A.first(z, k, parity) + at(begin);
+        const real* share = A.share.data() + first;
+        float* x = level.x.data() + first;
+        for (int i = 0; i < count; ++i) {
+            above[at(i)] = share[i] == 0 ? x[i] : above[at(i)];
+            x[i] = above[at(i)] + static_cast<float>(share[i]) * (x[i] - above[at(i)]);
+        }
+    }
 }
 
+/// All columns, one colour of the checkerboard after the other. Around a periodic axis with an odd number of columns the last line comes by
+/// itself; along a line the neighbour beyond the end is what it was before.
 void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero) {
-    const std::size_t count = level.colours.size();
-    for (std::size_t c = 0; c < count; ++c) {
-        const auto& columns = level.colours[upwards ? c : count - 1 - c];
-        parallel_for(0, static_cast<int>(columns.size()), [&](int i) { solve_column(A, level, columns[at(i)], from_zero && c == 0); });
+    const int last = A.n[1] - 1, lines = A.joint(1) && last > 0 ? last : A.n[1], phases = lines < A.n[1] ? 4 : 2;
+    for (int i = 0; i < phases; ++i) {
+        const int phase = upwards ? i : phases - 1 - i, colour = phase % 2;
+        const bool alone = from_zero && i == 0;
+        const int z_begin = phase < 2 ? 0 : last, z_end = phase < 2 ? lines : A.n[1];
+        if (A.periodic[0] && A.n[0] > 1 && !alone) parallel_for(z_begin, z_end, [&](int z) { wrap_line(A, z, level.x.data()); });
+        const auto parity = [&](int z) { return (colour + z) % 2; };
+        for_each_block(A, z_begin, z_end, parity,
+                       [&](int z, int begin, int end) { solve_columns(A, level, z, parity(z), begin, end, alone); });
     }
+}
+
+/// Whether columns of the first colour alone may have a residual after sweeps that end with the second, and need a correction before
+/// sweeps that begin with it.
+static bool one_colour(const ColumnMatrix& A) { return !A.joint(0) && !A.joint(1); }
+
+/// r = b − A x on shared rows.
+void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
+    const std::ptrdiff_t row = A.row_stride();
+    if (A.periodic[0] && A.n[0] > 1) parallel_for(0, A.n[1], [&](int z) { wrap_line(A, z, level.x.data()); });
+    for (int colour = 0; colour < (one_colour(A) ? 1 : 2); ++colour) {
+        const auto parity = [&](int z) { return (colour + z) % 2; };
+        for_each_block(A, 0, A.n[1], parity, [&](int z, int begin, int end) {
+            const Beside to(A, z, parity(z));
+            const int count = end - begin;
+            for (int k = 0; k < A.rows; ++k) {
+                const std::size_t first = A.first(z, k, parity(z)) + at(begin);
+                const float *x = level.x.data() + first, *b = level.b.data() + first;
+                const float *diagonal = level.diagonal.data() + first, *next = level.next.data() + first;
+                float* r = level.r.data() + first;
+#pragma omp simd
+                for (int i = 0; i < count; ++i) r[i] = b[i] - diagonal[i] * x[i] - (next[i] * x[i + row] + next[i - row] * x[i - row]);
+                if (A.tall[at(k)])
+                    add_beside<float, true>(level.beside, level.beside_next, level.x.data(), first, to, row, count, r);
+                else
+                    add_beside<float, false>(level.beside, level.beside_next, level.x.data(), first, to, row, count, r);
+            }
+        });
+    }
+}
+
+/// b of the parents: Pᵀ r.
+void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& level, const ColumnMatrix& coarse, Level& next) {
+    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
+    const bool all = !one_colour(A);
+    parallel_for(0, coarse.n[1], [&](int Z) {
+        for (int k = 0; k < A.rows; ++k)
+            for (const int parity : {0, 1}) {
+                float* b = next.b.data() + coarse.first(Z, k, parity);
+                std::fill(b, b + coarse.of_parity(parity), 0.0f);
+                for (int dz = 0; dz < sz && sz * Z + dz < A.n[1]; ++dz)
+                    for (int dx = 0; dx < sx; ++dx) {
+                        if (!all && (dx + dz) % 2 != 0) continue;
+                        const float* r = level.r.data() + A.first(sz * Z + dz, k, dx);
+                        const int children = A.of_parity(dx);
+                        for (int i = 0; i < coarse.of_parity(parity) && 2 * i + parity < children; ++i) b[i] += r[2 * i + parity];
+                    }
+            }
+        for (const int parity : {0, 1})
+            for (int begin = 0; begin < coarse.of_parity(parity); begin += lanes)
+                gather(coarse, Z, parity, begin, std::min(begin + lanes, coarse.of_parity(parity)), next.b.data());
+    });
+}
+
+/// x += P x of the parents.
+void ColumnMultigrid::add_correction(const ColumnMatrix& A, Level& level, const ColumnMatrix& coarse, const Level& next) {
+    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
+    const bool all = !one_colour(A);
+    parallel_for(0, A.n[1], [&](int z) {
+        for (int k = 0; k < A.rows; ++k)
+            for (int dx = 0; dx < sx; ++dx) {
+                if (!all && (dx + z) % 2 != 0) continue;
+                float* x = level.x.data() + A.first(z, k, dx);
+                const int children = A.of_parity(dx);
+                for (const int parity : {0, 1}) {
+                    const float* X = next.x.data() + coarse.first(z / sz, k, parity);
+                    for (int i = 0; 2 * i + parity < children; ++i) x[2 * i + parity] += X[i];
+                }
+            }
+    });
 }
 
 void ColumnMultigrid::cycle(std::size_t l, const ColumnMatrix& A) {
     Level& level = levels_[l];
     if (l + 1 == levels_.size()) {
-        solve_column(A, level, 0, true);
+        solve_columns(A, level, 0, 0, 0, 1, true);
         return;
     }
-    std::fill(level.x.begin(), level.x.end(), 0.0f);
     for (int s = 0; s < sweeps_; ++s) sweep(A, level, true, s == 0);
     residual(A, level);
-    Level& next = levels_[l + 1];
-    const ColumnMatrix& coarse = next.coarse;
-    parallel_for(0, coarse.knots.columns(), [&](int C) {
-        for (int K = coarse.knots.start[at(C)]; K < coarse.knots.start[at(C) + 1]; ++K) next.b[at(K)] = 0;
-        for_each_child(A, coarse, C, [&](int c) {
-            for (int i = A.knots.start[at(c)]; i < A.knots.start[at(c) + 1]; ++i)
-                for_each_parent(level, i, [&](int K, real w) { next.b[at(K)] += static_cast<float>(w) * level.r[at(i)]; });
-        });
-    });
-    cycle(l + 1, coarse);
-    for_each_knot(A.knots, [&](std::size_t i) {
-        const auto K = at(level.parent[i]);
-        const float share = static_cast<float>(level.share[i]);
-        level.x[i] += (1 - share) * next.x[K] + (share > 0 ? share * next.x[K + 1] : 0);
-    });
+    restrict_residual(A, level, levels_[l + 1].coarse, levels_[l + 1]);
+    cycle(l + 1, levels_[l + 1].coarse);
+    add_correction(A, level, levels_[l + 1].coarse, levels_[l + 1]);
     for (int s = 0; s < sweeps_; ++s) sweep(A, level, false, false);
 }
 
-void ColumnMultigrid::multiply(const ColumnMatrix& A, const std::vector<real>& x, std::vector<real>& y) {
-    parallel_for(0, A.knots.columns(), [&](int c) {
-        const int first = A.knots.start[at(c)], last = A.knots.start[at(c) + 1], faces = A.faces();
-        for (int k = first; k < last; ++k) {
-            const auto i = at(k);
-            real sum = (A.vertical[i] + A.horizontal[i]) * x[i];
-            if (k > first) sum += (A.vertical_next[i - 1] + A.horizontal_next[i - 1]) * x[i - 1];
-            if (k + 1 < last) sum += (A.vertical_next[i] + A.horizontal_next[i]) * x[i + 1];
-            for (int e = A.begin[at(faces * k)]; e < A.begin[at(faces * (k + 1))]; ++e) sum += A.entry[at(e)] * x[at(A.beside[at(e)])];
-            y[i] = sum;
+/// x of the finest level times scale_ = M⁻¹ r_.
+void ColumnMultigrid::precondition(const ColumnMatrix& A, real largest) {
+    Level& level = levels_[0];
+    scale_ = largest > 0 ? largest : 1;  // single precision has no room for what is very small
+    parallel_for(0, A.n[1], [&](int z) {
+        const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
+        for (std::size_t i = from; i < to; ++i) level.b[i] = static_cast<float>(r_[i] / scale_);
+    });
+    cycle(0, A);
+}
+
+/// From values by knots to the shared rows, those inside elements zero.
+void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const {
+    const std::size_t stride = at(A.row_stride());
+    parallel_for(0, A.n[1], [&](int z) {
+        for (int x = 0; x < A.n[0]; ++x) {
+            const int c = x + z * A.n[0];
+            const std::size_t foot = A.at(x, z, 0);
+            int i = knots.start[at(c)];
+            const int last = knots.start[at(c) + 1];
+            for (int k = 0; k < A.rows; ++k) {
+                const bool knot = i < last && knots.row[at(i)] == A.row[at(k)];
+                to[foot + at(k) * stride] = knot ? from[at(i++)] : 0;
+            }
         }
     });
 }
 
-void ColumnMultigrid::precondition(const ColumnMatrix& A, const std::vector<real>& r, std::vector<real>& z) {
-    Level& level = levels_[0];
-    real largest = 0;  // single precision has no room for what is very small
-    for (std::size_t i = 0; i < r.size(); ++i) largest = std::max(largest, std::abs(r[i]));
-    const real scale = largest > 0 ? largest : 1;
-    for_each_knot(A.knots, [&](std::size_t i) { level.b[i] = static_cast<float>(r[i] / scale); });
-    cycle(0, A);
-    for_each_knot(A.knots, [&](std::size_t i) { z[i] = scale * static_cast<real>(level.x[i]); });
+void ColumnMultigrid::fetch(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const {
+    const std::size_t stride = at(A.row_stride());
+    parallel_for(0, A.n[1], [&](int z) {
+        for (int x = 0; x < A.n[0]; ++x) {
+            const int c = x + z * A.n[0];
+            const std::size_t foot = A.at(x, z, 0);
+            int k = 0;
+            for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
+                while (A.row[at(k)] < knots.row[at(i)]) ++k;
+                to[at(i)] = from[foot + at(k) * stride];
+            }
+        }
+    });
 }
 
-const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const std::vector<real>& b, std::vector<real>& x) {
-    const auto count = at(A.knots.count());
-    for (auto* list : {&r_, &p_, &Ap_, &z_}) resize_scratch(*list, count);
-    report_ = {};
-    const auto norm_of = [&](const std::vector<real>& v) { return std::sqrt(dot(A.knots, v, v)); };
-    const auto residual = [&] {
-        multiply(A, x, r_);
-        for_each_knot(A.knots, [&](std::size_t i) { r_[i] = b[i] - r_[i]; });
-        return norm_of(r_);
+void ColumnMultigrid::multiply(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& x, std::vector<real>& y) {
+    place(A, knots, x, x_);
+    interpolate(A, x_);
+    multiply_and_dot(A, x_, Ap_);
+    fetch(A, knots, Ap_, y);
+}
+
+void ColumnMultigrid::precondition(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& r, std::vector<real>& z) {
+    real largest = 0;
+    for (const real value : r) largest = std::max(largest, std::abs(value));
+    place(A, knots, r, r_);
+    precondition(A, largest);
+    std::copy(levels_[0].x.begin(), levels_[0].x.end(), p_.begin());
+    fetch(A, knots, p_, z);
+    for (real& value : z) value *= scale_;
+}
+
+const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& b, std::vector<real>& x) {
+    const std::size_t count = A.size();
+    report_.history.clear();
+    report_.iterations = 0, report_.residual_max = 0;
+    const auto squares = [&](const std::vector<real>& v) { return sum_over_entries(count, [&](std::size_t i) { return v[i] * v[i]; }); };
+    const auto largest_residual = [&] {
+        constexpr std::size_t block = 8192;
+        return ordered_max(static_cast<int>((count + block - 1) / block), [&](int part) {
+            real most = 0;
+            const std::size_t begin = at(part) * block, end = std::min(count, begin + block);
+#pragma omp simd reduction(max : most)
+            for (std::size_t i = begin; i < end; ++i) most = std::max(most, std::abs(r_[i]));
+            return most;
+        });
     };
-    const real scale = norm_of(b);
+    place(A, knots, b, b_);
+    place(A, knots, x, x_);
+    interpolate(A, x_);
+    const auto residual = [&] {
+        multiply_and_dot(A, x_, Ap_);
+        return std::sqrt(sum_over_entries(count, [&](std::size_t i) {
+            const real r = b_[i] - Ap_[i];
+            r_[i] = r;
+            return r * r;
+        }));
+    };
+    const real scale = std::sqrt(squares(b_));
     if (!std::isfinite(scale)) throw NumericalFailure("pressure", "the right-hand side is not finite");
     real size = residual();
     if (!(size < scale)) {
-        std::fill(x.begin(), x.end(), 0.0);
-        std::copy(b.begin(), b.end(), r_.begin());
+        std::fill(x_.begin(), x_.end(), 0.0);
+        std::copy(b_.begin(), b_.end(), r_.begin());
         size = scale;
     }
     report_.residual_before = scale > 0 ? size / scale : 0;
-    std::vector<real>& z = z_;
+    const std::vector<float>& z = levels_[0].x;
     real rz = 0, alpha = 0;
     while (size > options_.tolerance * scale) {
         if (report_.iterations == options_.max_iterations) {
@@ -424,26 +625,33 @@ const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const std::
             throw NumericalFailure("pressure", "the residual is still " + std::to_string(size / scale) + " of the right-hand side after " +
                                                    std::to_string(report_.iterations) + " iterations");
         }
-        precondition(A, r_, z);
+        precondition(A, largest_residual());
         // Polak and Ribière's form, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p: single precision leaves the preconditioner not quite the same.
-        const real beta = report_.iterations == 0 ? 0 : -alpha * dot(A.knots, z, Ap_) / rz;
-        rz = dot(A.knots, r_, z);
-        for_each_knot(A.knots, [&](std::size_t i) { p_[i] = z[i] + (beta == 0 ? 0 : beta * p_[i]); });
-        multiply(A, p_, Ap_);
-        alpha = rz / dot(A.knots, p_, Ap_);
+        const bool first = report_.iterations == 0;
+        const real beta =
+            first ? 0 : -alpha * scale_ * sum_over_entries(count, [&](std::size_t i) { return static_cast<real>(z[i]) * Ap_[i]; }) / rz;
+        rz = scale_ * sum_over_entries(count, [&](std::size_t i) {
+                 const real direction = scale_ * static_cast<real>(z[i]);
+                 p_[i] = first ? direction : direction + beta * p_[i];
+                 return static_cast<real>(z[i]) * r_[i];
+             });
+        interpolate(A, p_);  // single precision has it nearly so
+        alpha = rz / multiply_and_dot(A, p_, Ap_);
         if (!std::isfinite(alpha)) throw NumericalFailure("pressure", "conjugate gradients broke down");
-        for_each_knot(A.knots, [&](std::size_t i) {
-            x[i] += alpha * p_[i];
-            r_[i] -= alpha * Ap_[i];
-        });
-        size = norm_of(r_);
+        size = std::sqrt(sum_over_entries(count, [&](std::size_t i) {
+            x_[i] += alpha * p_[i];
+            const real r = r_[i] - alpha * Ap_[i];
+            r_[i] = r;
+            return r * r;
+        }));
         ++report_.iterations;
         if (options_.record_history) report_.history.push_back(size / scale);
     }
     size = residual();
     report_.converged = size <= 2 * options_.tolerance * scale;
     report_.residual_after = scale > 0 ? size / scale : 0;
-    for (std::size_t i = 0; i < count; ++i) report_.residual_max = std::max(report_.residual_max, std::abs(r_[i]));
+    report_.residual_max = largest_residual();
+    fetch(A, knots, x_, x);
     return report_;
 }
 

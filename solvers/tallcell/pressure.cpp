@@ -17,7 +17,6 @@ TallPressure<D>::TallPressure(const Frame<D>& frame, int up, const poisson::Opti
     layout_ = Layout<D>(frame.cells, up, periodic);
     A_.n = layout_.n;
     A_.periodic = layout_.periodic;
-    A_.axes = D - 1;
     nothing_to_do_.converged = true;
 }
 
@@ -52,9 +51,10 @@ void TallPressure<D>::find_liquid(const Grid<real, D>& phi, const Grid<std::uint
 template <int D>
 void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>& state) {
     find_runs(state);
+    fastest_run_ = 0, fastest_run_below_ = 0;
     assemble(phi, state);
-    if (A_.knots.count() > 0) solver_.setup(A_);
-    for (auto* list : {&b_, &q_, &mean_}) resize_scratch(*list, at(A_.knots.count()));
+    if (knots_.count() > 0) solver_.setup(A_);
+    for (auto* list : {&b_, &q_, &mean_}) resize_scratch(*list, at(knots_.count()));
 }
 
 template <int D>
@@ -65,7 +65,7 @@ void TallPressure<D>::visit(const MacState<D>& state, int h, int column, Single&
     const Line face = line(state.u[axis], column);
     const real* open = state.solid.any() ? state.solid.open[at(axis)].data() : nullptr;
     visit_faces(
-        A_.knots, lower, column, [&](int row) { return !open || open[face(row)] == 1; },
+        knots_, lower, column, [&](int row) { return !open || open[face(row)] == 1; },
         [&](int row, const Row& l, const Row& r) { single(face(row), row, l, r); }, run);
 }
 
@@ -90,147 +90,154 @@ void TallPressure<D>::find_runs(const MacState<D>& state) {
             visit(state, h, c, nothing, [&](const Run& run) { runs_[at(h)][at(i++)] = run; });
         });
     }
+    floor_ = -static_cast<int>(ordered_max(columns, [&](int c) { return static_cast<real>(-covered_from_below(c)); }));
 }
 
-/// 1/θ between a liquid cell and one of air.
+/// Up to which row, from the bottom, a column's faces on its lower sides, and its own, are in runs. Walls have a velocity of their own.
 template <int D>
-real TallPressure<D>::cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const {
-    return std::min(1 - phi[air] / phi[liquid], largest_cut_);
-}
-
-template <int D>
-void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& state) {
-    count_beside(state);
-    parallel_for(0, layout_.columns(), [&](int c) {
-        add_vertical(phi, state, c);
-        for (int f = 0; f < A_.faces(); ++f) add_horizontal(phi, state, c, f);
-    });
-}
-
-template <int D>
-void TallPressure<D>::count_beside(const MacState<D>& state) {
-    A_.resize();
-    const int faces = A_.faces();
-    auto &lowest = A_.lowest, &highest = A_.highest;
-    refill_scratch(lowest, at(A_.knots.count() * faces), std::numeric_limits<int>::max());
-    refill_scratch(highest, lowest.size(), -1);
-    parallel_for(0, layout_.columns(), [&](int c) {
-        for (int f = 0; f < faces; ++f) {
-            const bool own_is_lower = f % 2 == 1;
-            const int owner = own_is_lower ? layout_.upper(c, f / 2) : c;
-            if (owner < 0) continue;
-            const auto beside = [&](int i, int first, int last) {
-                auto &low = lowest[at(faces * i + f)], &high = highest[at(faces * i + f)];
-                low = std::min(low, first), high = std::max(high, last);
-            };
-            visit(
-                state, f / 2, owner,
-                [&](std::size_t, int, const Row& l, const Row& r) {
-                    if (!l.wet || !r.wet) return;
-                    const Row &own = own_is_lower ? l : r, &other = own_is_lower ? r : l;
-                    for (int i = own.knot; i <= own.knot + (own.share > 0); ++i) beside(i, other.knot, other.knot + (other.share > 0));
-                },
-                [&](const Run& run) {
-                    const int own = own_is_lower ? run.lower : run.upper, other = own_is_lower ? run.upper : run.lower;
-                    for (int i = own; i <= own + 1; ++i) beside(i, other, other + 1);
-                });
-        }
-        for (int row = faces * A_.knots.start[at(c)]; row < faces * A_.knots.start[at(c) + 1]; ++row)
-            A_.begin[at(row) + 1] = std::max(0, highest[at(row)] - lowest[at(row)] + 1);
-    });
-    A_.place_entries(lowest);
-}
-
-/// Vertical faces of a column: (q₁ − q₀)²/(H − 1) in an element, 1/θ towards air, nothing towards a wall or a solid.
-template <int D>
-void TallPressure<D>::add_vertical(const Grid<real, D>& phi, const MacState<D>& state, int column) {
-    const Knots& knots = A_.knots;
-    const real k = 1 / (frame_.h[layout_.up] * frame_.h[layout_.up]);
-    const Line cell = line(state.cells, column), face = line(state.u[layout_.up], column);
-    for (int i = knots.start[at(column)]; i < knots.start[at(column) + 1]; ++i) {
-        const int row = knots.row[at(i)], length = knots.length[at(i)];
-        const auto towards = [&](int other, int crossed) {
-            if (state.cells[cell(other)] != Cell::air) return;
-            A_.vertical[at(i)] += k * open(state, layout_.up, face(crossed)) * cut(phi, cell(row), cell(other));
-        };
-        if (row > 0 && (i == knots.start[at(column)] || knots.length[at(i) - 1] == 0)) towards(row - 1, row);
-        if (length > 0) {
-            const real w = k * (length == 1 ? open(state, layout_.up, face(row + 1)) : 1.0) / length;
-            A_.vertical[at(i)] += w;
-            A_.vertical[at(i) + 1] += w;
-            A_.vertical_next[at(i)] -= w;
-        } else if (row + 1 < layout_.rows) {
-            towards(row + 1, row + 1);
-        } else if (state.sides.open(layout_.up, 1)) {
-            A_.vertical[at(i)] += 2 * k;  // p = 0 on the side itself, half a cell away
-        }
+int TallPressure<D>::covered_from_below(int column) const {
+    int covered = layout_.rows;
+    for (int h = 0; h < D - 1; ++h) {
+        if (layout_.lower(column, h) < 0) continue;
+        int row = 0;
+        for (int i = run_start_[at(h)][at(column)]; i < run_start_[at(h)][at(column) + 1] && runs_[at(h)][at(i)].row == row; ++i)
+            row += runs_[at(h)][at(i)].count;
+        covered = std::min(covered, row);
     }
+    int row = 0;  // the face on the floor is one of its own
+    for (int i = knots_.start[at(column)]; i < knots_.start[at(column) + 1] && knots_.row[at(i)] == row && knots_.length[at(i)] > 1; ++i)
+        row += knots_.length[at(i)];
+    return std::min(covered, row);
 }
 
-/// Horizontal faces on side f of a column.
+/// max f(block) over all columns; those of a block are beside one another along x, if that is no vertical axis.
 template <int D>
-void TallPressure<D>::add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int column, int f) {
-    const bool own_is_lower = f % 2 == 1;
-    const int h = f / 2, axis = layout_.axes[at(h)], owner = own_is_lower ? layout_.upper(column, h) : column;
-    if (owner < 0) return;
-    const real k = 1 / (frame_.h[axis] * frame_.h[axis]);
-    const int lower = layout_.lower(owner, h);
-    const Line cell_lower = line(state.cells, lower < 0 ? owner : lower), cell_upper = line(state.cells, owner);
-    const auto add_own = [&](const Row& own, real w) {
-        A_.horizontal[at(own.knot)] += w * (1 - own.share) * (1 - own.share);
-        if (own.share == 0) return;
-        A_.horizontal[at(own.knot) + 1] += w * own.share * own.share;
-        A_.horizontal_next[at(own.knot)] += w * own.share * (1 - own.share);
+template <class F>
+real TallPressure<D>::largest_of_blocks(F&& f) const {
+    const int n = layout_.n[0], size = layout_.axes[0] == 0 ? block_columns : 1, a_line = (n + size - 1) / size;
+    return ordered_max(a_line * layout_.n[1], [&](int i) {
+        const int x = i % a_line * size;
+        return f(Block{i / a_line * n + x, std::min(size, n - x)});
+    });
+}
+
+/// Upwards through the runs along horizontal axis h of a block's columns: together(first, run, places) as long as all of its columns from
+/// the first that has a face have the same, places[i] being that of column i; then one(column, place) for the others.
+template <int D>
+template <class Together, class One>
+void TallPressure<D>::for_each_run(int h, const Block& block, Together&& together, One&& one) const {
+    const auto& runs = runs_[at(h)];
+    std::array<int, block_columns> place{}, end{};
+    for (int i = 0; i < block.count; ++i)
+        place[at(i)] = run_start_[at(h)][at(block.column + i)], end[at(i)] = run_start_[at(h)][at(block.column + i) + 1];
+    const int first = layout_.lower(block.column, h) < 0 ? 1 : 0;
+    const auto alike = [&] {
+        for (int i = first; i < block.count; ++i)
+            if (place[at(i)] == end[at(i)] || runs[at(place[at(i)])].row != runs[at(place[at(first)])].row ||
+                runs[at(place[at(i)])].count != runs[at(place[at(first)])].count)
+                return false;
+        return first < block.count;
     };
-    const auto add_pair = [&](const Row& own, const Row& other, real w) {
-        add_own(own, w);
-        for (int i = 0; i <= (own.share > 0); ++i)
-            for (int j = 0; j <= (other.share > 0); ++j)
-                A_.add_beside(own.knot + i, f, other.knot + j, -w * (i ? own.share : 1 - own.share) * (j ? other.share : 1 - other.share));
+    while (alike()) {
+        together(first, runs[at(place[at(first)])], place);
+        for (int i = first; i < block.count; ++i) ++place[at(i)];
+    }
+    for (int i = 0; i < block.count; ++i)
+        for (; place[at(i)] < end[at(i)]; ++place[at(i)]) one(block.column + i, place[at(i)]);
+}
+
+/// The same of elements longer than one: together(row, length, places), one(column, knot).
+template <int D>
+template <class Together, class One>
+void TallPressure<D>::for_each_element(const Block& block, Together&& together, One&& one) const {
+    std::array<int, block_columns> knot{}, end{};
+    for (int i = 0; i < block.count; ++i)
+        knot[at(i)] = knots_.start[at(block.column + i)], end[at(i)] = knots_.start[at(block.column + i) + 1];
+    const auto alike = [&] {
+        for (int i = 0; i < block.count; ++i)
+            if (knot[at(i)] == end[at(i)] || knots_.length[at(knot[at(i)])] < 2 || knots_.row[at(knot[at(i)])] != knots_.row[at(knot[0])] ||
+                knots_.length[at(knot[at(i)])] != knots_.length[at(knot[0])])
+                return false;
+        return true;
     };
-    visit(
-        state, h, owner,
-        [&](std::size_t face, int row, const Row& l, const Row& r) {
-            const Row &own = own_is_lower ? l : r, &other = own_is_lower ? r : l;
-            if (!own.wet) return;
-            const real w = k * open(state, axis, face);
-            if (other.wet) return add_pair(own, other, w);
-            const std::size_t here = (own_is_lower ? cell_lower : cell_upper)(row), there = (own_is_lower ? cell_upper : cell_lower)(row);
-            if (state.cells[there] == Cell::air) add_own(own, w * cut(phi, here, there));
-        },
-        [&](const Run& run) {
-            const auto share = [&](int knot, real y) { return (y - A_.knots.row[at(knot)]) / A_.knots.length[at(knot)]; };
-            const int own = own_is_lower ? run.lower : run.upper, other = own_is_lower ? run.upper : run.lower;
-            for (const real y : {run.middle() - run.spread(), run.middle() + run.spread()})
-                add_pair({true, own, share(own, y)}, {true, other, share(other, y)}, 0.5 * k * run.count);
-        });
+    while (alike()) {
+        together(knots_.row[at(knot[0])], knots_.length[at(knot[0])], knot);
+        for (int i = 0; i < block.count; ++i) ++knot[at(i)];
+    }
+    for (int i = 0; i < block.count; ++i)
+        for (; knot[at(i)] < end[at(i)]; ++knot[at(i)])
+            if (knots_.length[at(knot[at(i)])] > 1) one(block.column + i, knot[at(i)]);
 }
 
 template <int D>
 void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
-    parallel_for(0, layout_.columns(), [&](int c) {
+    using Sums = std::array<real, at(block_columns)>;
+    std::fill(mean_.begin(), mean_.end(), 0.0);
+    largest_of_blocks([&](const Block& block) {
         for (int h = 0; h < D - 1; ++h) {
             const auto& u = state.u[layout_.axes[at(h)]];
-            const Line face = line(u, c);
-            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
+            const auto together = [&](int first, const Run& run, const auto& place) {
+                const Line face = line(u, block.column);
+                Sums sum{}, lever{};
+                const real c = 0.5 * (run.count - 1), spread = run.count > 1 ? run.spread() : 1;
+                for (int j = 0; j < run.count; ++j) {
+                    const real* values = u.data() + face(run.row + j);
+#pragma omp simd
+                    for (int i = first; i < block.count; ++i) {
+                        sum[at(i)] += values[i];
+                        lever[at(i)] += (j - c) * values[i];
+                    }
+                }
+                for (int i = first; i < block.count; ++i) {
+                    const real mean = sum[at(i)] / run.count, slope = lever[at(i)] / (run.count * spread);
+                    w_[at(h)][at(place[at(i)])] = {mean - slope, mean + slope};
+                }
+            };
+            for_each_run(h, block, together, [&](int column, int i) {
+                const Line face = line(u, column);
                 const Run& run = runs_[at(h)][at(i)];
                 w_[at(h)][at(i)] = moments(run.row, run.count, [&](int row) { return u[face(row)]; });
-            }
+            });
         }
         const auto& v = state.u[layout_.up];
-        const Line face = line(v, c);
-        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) {
-            const int length = A_.knots.length[at(i)], row = A_.knots.row[at(i)];
+        const auto together = [&](int row, int length, const auto& knot) {
+            const Line face = line(v, block.column);
+            Sums sum{};
+            for (int j = 1; j <= length; ++j) {
+                const real* values = v.data() + face(row + j);
+#pragma omp simd
+                for (int i = 0; i < block.count; ++i) sum[at(i)] += values[i];
+            }
+            for (int i = 0; i < block.count; ++i) mean_[at(knot[at(i)])] = sum[at(i)] / length;
+        };
+        for_each_element(block, together, [&](int column, int i) {
+            const Line face = line(v, column);
             real sum = 0;
-            for (int j = 1; length > 1 && j <= length; ++j) sum += v[face(row + j)];
-            mean_[at(i)] = length > 1 ? sum / length : 0;
+            for (int j = 1; j <= knots_.length[at(i)]; ++j) sum += v[face(knots_.row[at(i)] + j)];
+            mean_[at(i)] = sum / knots_.length[at(i)];
+        });
+        return 0.0;
+    });
+}
+
+template <int D>
+void TallPressure<D>::change_runs(const RunChanges<D>& by) {
+    parallel_for(0, layout_.columns(), [&](int c) {
+        for (int h = 0; h < D - 1; ++h)
+            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
+                const Pair& change = by[at(layout_.axes[at(h)])][at(i)];
+                w_[at(h)][at(i)].minus += change.minus, w_[at(h)][at(i)].plus += change.plus;
+            }
+        for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) {
+            const Pair& change = by[at(layout_.up)][at(i)];
+            if (knots_.length[at(i)] > 1) mean_[at(i)] += 0.5 * (change.minus + change.plus);
         }
     });
 }
 
 template <int D>
 void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real>& b) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     parallel_for(0, layout_.columns(), [&](int c) {
         const Line vertical = line(state.u[layout_.up], c);
         const real inv_h = frame_.inv_h[layout_.up];
@@ -241,7 +248,7 @@ void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real
             const real above = length > 1 ? mean_[at(i)] : flux(state, layout_.up, vertical(row + 1));
             b[at(i)] = (below - above) * inv_h;
         }
-        for (int f = 0; f < A_.faces(); ++f) {
+        for (int f = 0; f < faces(); ++f) {
             const bool own_is_lower = f % 2 == 1;
             const int h = f / 2, axis = layout_.axes[at(h)], owner = own_is_lower ? layout_.upper(c, h) : c;
             if (owner < 0) continue;
@@ -273,14 +280,14 @@ void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real
 
 template <int D>
 const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacState<D>& state, real dt) {
-    if (A_.knots.count() == 0) return nothing_to_do_;
+    if (knots_.count() == 0) return nothing_to_do_;
     weak_divergence(state, b_);
     const real scale = dt / state.rho;
     parallel_for(0, layout_.columns(), [&](int c) {  // the last pressure is the first guess
         const Line cell = line(state.p, c);
-        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(A_.knots.row[at(i)])];
+        for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(knots_.row[at(i)])];
     });
-    const poisson::Report& report = solver_.solve(A_, b_, q_);
+    const poisson::Report& report = solver_.solve(A_, knots_, b_, q_);
     project_faces(phi, state);
     project_vertical(phi, state);
     return report;
@@ -322,7 +329,7 @@ void TallPressure<D>::project_faces(const Grid<real, D>& phi, MacState<D>& state
 
 template <int D>
 void TallPressure<D>::project_vertical(const Grid<real, D>& phi, MacState<D>& state) {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     const int up = layout_.up;
     auto& v = state.u[up];
     parallel_for(0, layout_.columns(), [&](int c) {
@@ -348,68 +355,161 @@ void TallPressure<D>::project_vertical(const Grid<real, D>& phi, MacState<D>& st
 }
 
 template <int D>
-void TallPressure<D>::spread(MacState<D>& state, real dt) const {
-    for (int h = 0; h < D - 1; ++h) {
-        auto& u = state.u[layout_.axes[at(h)]];
-        parallel_for(0, layout_.columns(), [&](int c) {
-            const Line face = line(u, c);
-            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
-                const Run& run = runs_[at(h)][at(i)];
-                spread_rows(run.row, run.count, w_[at(h)][at(i)], [&](int row, real value) { u[face(row)] = value; });
-            }
-        });
-    }
-    rebuild(state);
+void TallPressure<D>::spread(MacState<D>& state, real dt) {
+    fastest_run_ = 0;
+    for (int h = 0; h < D - 1; ++h)
+        fastest_run_ = std::max(fastest_run_, largest_of_blocks([&](const Block& block) { return spread_runs(state, h, block); }));
+    const real vertical = largest_of_blocks([&](const Block& block) { return rebuild(state, block); });
+    fastest_run_ = std::isnan(vertical) ? vertical : std::max(fastest_run_, vertical);
+    fastest_run_below_ = floor_;
     const real scale = state.rho / dt;
-    parallel_for(0, layout_.columns(), [&](int c) {
-        const Line cell = line(state.p, c);
-        int row = 0;
-        for (int i = A_.knots.start[at(c)]; i < A_.knots.start[at(c) + 1]; ++i) {
-            for (; row < A_.knots.row[at(i)]; ++row) state.p[cell(row)] = 0;
-            const int length = std::max(1, A_.knots.length[at(i)]);
-            const real here = scale * q_[at(i)], change = length > 1 ? (scale * q_[at(i) + 1] - here) / length : 0;
-            for (int j = 0; j < length; ++j) state.p[cell(row++)] = here + j * change;
-        }
-        for (; row < layout_.rows; ++row) state.p[cell(row)] = 0;
+    largest_of_blocks([&](const Block& block) {
+        spread_pressure(state, block, scale);
+        return 0.0;
     });
 }
 
-/// v_{j+1} = v_j − what leaves cell j through its sides, from the bottom of each element to its top. The two weak equations of the element
-/// say that its top cell then has what flows through its own top face, and that the mean of v is the stored one.
+/// Answers the largest |u|/h in them.
 template <int D>
-void TallPressure<D>::rebuild(MacState<D>& state) const {
-    const Knots& knots = A_.knots;
+real TallPressure<D>::spread_runs(MacState<D>& state, int h, const Block& block) const {
+    auto& u = state.u[layout_.axes[at(h)]];
+    std::array<real, at(block_columns)> mean{}, slope{};
+    real fastest = 0;
+    const auto reaches = [&](const Run& run, real m, real by) {  // a linear function is largest at an end
+        fastest = std::max(fastest, std::abs(m) + std::abs(by) * 0.5 * (run.count - 1));
+    };
+    const auto together = [&](int first, const Run& run, const auto& place) {
+        const Line face = line(u, block.column);
+        const real spread = run.count > 1 ? run.spread() : 1, c = 0.5 * (run.count - 1);
+        for (int i = first; i < block.count; ++i) {
+            const Pair& w = w_[at(h)][at(place[at(i)])];
+            mean[at(i)] = 0.5 * (w.minus + w.plus), slope[at(i)] = 0.5 * (w.plus - w.minus) / spread;
+            reaches(run, mean[at(i)], slope[at(i)]);
+        }
+        for (int j = 0; j < run.count; ++j) {
+            real* values = u.data() + face(run.row + j);
+#pragma omp simd
+            for (int i = first; i < block.count; ++i) values[i] = mean[at(i)] + slope[at(i)] * (j - c);
+        }
+    };
+    for_each_run(h, block, together, [&](int column, int i) {
+        const Line face = line(u, column);
+        const Run& run = runs_[at(h)][at(i)];
+        const Pair& w = w_[at(h)][at(i)];
+        reaches(run, 0.5 * (w.minus + w.plus), run.count > 1 ? 0.5 * (w.plus - w.minus) / run.spread() : 0);
+        spread_rows(run.row, run.count, w, [&](int row, real value) { u[face(row)] = value; });
+    });
+    return fastest * frame_.inv_h[layout_.axes[at(h)]];
+}
+
+/// v_{j+1} = v_j − what leaves cell j through its sides, from the bottom of each element to its top. The two weak equations of the element
+/// say that its top cell then has what flows through its own top face, and that the mean of v is the stored one. Answers the largest |v|/h.
+template <int D>
+real TallPressure<D>::rebuild(MacState<D>& state, const Block& block) const {
     const int up = layout_.up;
     auto& v = state.u[up];
-    parallel_for(0, layout_.columns(), [&](int c) {
-        const Line face = line(v, c);
-        std::array<Line, 4> side{};
-        std::array<real, 4> factor{};
-        std::array<int, 4> axis{};
-        std::size_t sides = 0;
-        for (int f = 0; f < A_.faces(); ++f) {
-            const int owner = f % 2 == 1 ? layout_.upper(c, f / 2) : c;
+    struct Side {
+        Line line;
+        const real* values;
+        real factor;
+        int axis;
+    };
+    std::array<Side, 4> sides{};
+    const auto find_sides = [&](int column) {
+        std::size_t count = 0;
+        for (int f = 0; f < faces(); ++f) {
+            const int owner = f % 2 == 1 ? layout_.upper(column, f / 2) : column, axis = layout_.axes[at(f / 2)];
             if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
-            axis[sides] = layout_.axes[at(f / 2)];
-            side[sides] = line(state.u[axis[sides]], owner);
-            factor[sides] = (f % 2 == 1 ? -1 : 1) * frame_.h[up] * frame_.inv_h[axis[sides]];
-            ++sides;
+            sides[count++] = {line(state.u[axis], owner), state.u[axis].data(), (f % 2 == 1 ? -1 : 1) * frame_.h[up] * frame_.inv_h[axis],
+                              axis};
         }
-        for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
-            const int length = knots.length[at(i)], first = knots.row[at(i)];
-            if (length < 2) continue;
-            real above = flux(state, up, face(first));
-            for (int row = first; row < first + length; ++row) {
-                for (std::size_t s = 0; s < sides; ++s) above += factor[s] * flux(state, axis[s], side[s](row));
-                v[face(row + 1)] = above;
+        return count;
+    };
+    std::array<real, at(block_columns)> above{};
+    real fastest = 0;
+    // Sides of the domain, and columns around a periodic axis, are not where the others' are.
+    const int x = block.column % layout_.n[0];
+    const bool inner = x > 0 && x + block.count < layout_.n[0] && !state.solid.any();
+    const std::size_t block_sides = inner ? find_sides(block.column) : 0;
+    const auto together = [&](int row, int length, const auto&) {
+        const Line face = line(v, block.column);
+        for (int i = 0; i < block.count; ++i) above[at(i)] = v[face(row) + at(i)];
+        for (int j = row; j < row + length; ++j) {
+            for (std::size_t s = 0; s < block_sides; ++s) {
+                const real *values = sides[s].values + sides[s].line(j), factor = sides[s].factor;
+#pragma omp simd
+                for (int i = 0; i < block.count; ++i) above[at(i)] += factor * values[i];
+            }
+            real* to = v.data() + face(j + 1);
+#pragma omp simd reduction(max : fastest)
+            for (int i = 0; i < block.count; ++i) {
+                to[i] = above[at(i)];
+                fastest = std::max(fastest, std::abs(above[at(i)]));
             }
         }
-    });
+        for (int i = 0; i < block.count; ++i)
+            if (std::isnan(above[at(i)])) fastest = above[at(i)];
+    };
+    const auto one = [&](int column, int i) {
+        const Line face = line(v, column);
+        const std::size_t count = find_sides(column);
+        const int first = knots_.row[at(i)];
+        real here = flux(state, up, face(first));
+        for (int row = first; row < first + knots_.length[at(i)]; ++row) {
+            for (std::size_t s = 0; s < count; ++s) here += sides[s].factor * flux(state, sides[s].axis, sides[s].line(row));
+            v[face(row + 1)] = here;
+            if (!(std::abs(here) <= fastest)) fastest = std::abs(here);
+        }
+    };
+    if (inner)
+        for_each_element(block, together, one);
+    else
+        for (int c = block.column; c < block.column + block.count; ++c)
+            for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i)
+                if (knots_.length[at(i)] > 1) one(c, i);
+    return fastest * frame_.inv_h[up];
+}
+
+/// Interpolated in elements, 0 outside the liquid.
+template <int D>
+void TallPressure<D>::spread_pressure(MacState<D>& state, const Block& block, real scale) const {
+    std::array<int, block_columns> row{};  // up to which each column is done
+    const auto fill = [&](int column, int i) {
+        const Line cell = line(state.p, column);
+        int& done = row[at(column - block.column)];
+        for (; done < knots_.row[at(i)]; ++done) state.p[cell(done)] = 0;
+        const int length = std::max(1, knots_.length[at(i)]);
+        const real here = scale * q_[at(i)], change = length > 1 ? (scale * q_[at(i) + 1] - here) / length : 0;
+        for (int j = 0; j < length; ++j) state.p[cell(done++)] = here + j * change;
+    };
+    std::array<real, at(block_columns)> here{}, change{};
+    std::array<int, block_columns> next{};
+    for (int i = 0; i < block.count; ++i) next[at(i)] = knots_.start[at(block.column + i)];
+    const auto together = [&](int first, int length, const auto& knot) {
+        for (int i = 0; i < block.count; ++i) {
+            while (next[at(i)] < knot[at(i)]) fill(block.column + i, next[at(i)]++);
+            for (const Line cell = line(state.p, block.column + i); row[at(i)] < first; ++row[at(i)]) state.p[cell(row[at(i)])] = 0;
+            here[at(i)] = scale * q_[at(knot[at(i)])], change[at(i)] = (scale * q_[at(knot[at(i)]) + 1] - here[at(i)]) / length;
+            row[at(i)] = first + length, ++next[at(i)];
+        }
+        const Line cell = line(state.p, block.column);
+        for (int j = 0; j < length; ++j) {
+            real* values = state.p.data() + cell(first + j);
+#pragma omp simd
+            for (int i = 0; i < block.count; ++i) values[i] = here[at(i)] + j * change[at(i)];
+        }
+    };
+    for_each_element(block, together, [](int, int) {});
+    for (int i = 0; i < block.count; ++i) {
+        const int column = block.column + i;
+        while (next[at(i)] < knots_.start[at(column) + 1]) fill(column, next[at(i)]++);
+        for (const Line cell = line(state.p, column); row[at(i)] < layout_.rows; ++row[at(i)]) state.p[cell(row[at(i)])] = 0;
+    }
 }
 
 template <int D>
 real TallPressure<D>::max_divergence(const MacState<D>& state) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     const int up = layout_.up;
     return ordered_max(layout_.columns(), [&](int c) {
         const Line vertical = line(state.u[up], c);
@@ -417,7 +517,7 @@ real TallPressure<D>::max_divergence(const MacState<D>& state) const {
         for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
             const int row = knots.row[at(i)];
             real sum = (flux(state, up, vertical(row + 1)) - flux(state, up, vertical(row))) * frame_.inv_h[up];
-            for (int f = 0; f < A_.faces(); ++f) {
+            for (int f = 0; f < faces(); ++f) {
                 const int owner = f % 2 == 1 ? layout_.upper(c, f / 2) : c;
                 if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
                 const int axis = layout_.axes[at(f / 2)];
@@ -432,7 +532,7 @@ real TallPressure<D>::max_divergence(const MacState<D>& state) const {
 
 template <int D>
 real TallPressure<D>::energy(const Grid<real, D>& phi, const MacState<D>& state) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     return ordered_sum(layout_.columns(), [&](int c) {
         real sum = 0;
         for (int h = 0; h < D - 1; ++h) {
@@ -477,8 +577,8 @@ template <int D>
 typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) const {
     RunsUp runs;
     if (a == layout_.up) {
-        runs.knots_ = &A_.knots;
-        runs.k_ = A_.knots.start[at(column)] - 1, runs.end_ = A_.knots.start[at(column) + 1];
+        runs.knots_ = &knots_;
+        runs.k_ = knots_.start[at(column)] - 1, runs.end_ = knots_.start[at(column) + 1];
         runs.advance();
         return runs;
     }
@@ -491,7 +591,7 @@ typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) con
 
 template <int D>
 void TallPressure<D>::show_heights(Grid<real, D>& to) const {
-    const Knots& knots = A_.knots;
+    const Knots& knots = knots_;
     parallel_for(0, layout_.columns(), [&](int c) {
         const Line cell = line(to, c);
         int row = 0;
@@ -511,7 +611,8 @@ std::size_t TallPressure<D>::samples() const {
 
 template <int D>
 std::size_t TallPressure<D>::bytes() const {
-    std::size_t total = A_.bytes() + solver_.bytes() + (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
+    std::size_t total = knots_.bytes() + A_.bytes() + row_index_.capacity() * sizeof(int) + solver_.bytes() +
+                        (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
     for (std::size_t h = 0; h < 2; ++h)
         total += run_start_[h].capacity() * sizeof(int) + runs_[h].capacity() * sizeof(Run) + w_[h].capacity() * sizeof(Pair);
     return total;

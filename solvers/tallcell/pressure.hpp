@@ -17,6 +17,12 @@ using namespace surface;  // the words of the grid and of its free surface are t
 /// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, as on the uniform grid.
 inline constexpr real thinnest = 0.02;
 
+/// What transport changes the samples of runs by: by axis, in the order of the runs; of the vertical axis by knots.
+template <int D>
+using RunChanges = std::array<std::vector<Pair>, D>;
+
+struct FaceOfColumns;
+
 struct Shape {
     Division division = Division::stacked;
     int depth = 8;  // rows that stay regular below the surface, at least
@@ -33,17 +39,25 @@ public:
     template <class Place>
     void set_surface(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state, Place&& place) {
         find_liquid(phi, closed, state);
-        place(layout_, state.cells, A_.knots);
+        place(layout_, state.cells, knots_);
         finish_surface(phi, state);
     }
 
     /// Takes from the lattice what the unknowns can carry: moments over rows. Orthogonal, so it adds no energy; where the lattice's
     /// velocity is free of divergence the unknowns' is too, whatever knots it was made on.
     void restrict_velocity(const MacState<D>& state);
+    void change_runs(const RunChanges<D>& by);
+    /// Below this row all faces of the lattice are in runs.
+    int floor_of_singles() const { return floor_; }
+    /// How many runs there are along an axis; of the vertical one, knots.
+    std::size_t run_count(int a) const { return a == layout_.up ? at(knots_.count()) : runs_[layout_.axes[0] == a ? 0 : 1].size(); }
     /// Solves for the pressure and makes the unknowns free of divergence.
     const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt);
     /// Back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
-    void spread(MacState<D>& state, real dt) const;
+    void spread(MacState<D>& state, real dt);
+    /// max |u|/h over the rows of runs, as the last spread() made them [1/s]; rows below that of fastest_run_below() are all among them.
+    real fastest_run() const { return fastest_run_; }
+    int fastest_run_below() const { return fastest_run_below_; }
     /// Largest |∇·u| over cells that are knots [1/s]; inside elements it is zero as spread() makes it.
     real max_divergence(const MacState<D>& state) const;
     /// −Cᵀw: minus the divergence that the unknowns have, tested with each knot's hat.
@@ -52,10 +66,12 @@ public:
     real energy(const Grid<real, D>& phi, const MacState<D>& state) const;
 
     const Layout<D>& layout() const { return layout_; }
-    const Knots& knots() const { return A_.knots; }
+    const Knots& knots() const { return knots_; }
     const ColumnMatrix& matrix() const { return A_; }
     const std::vector<real>& potential() const { return q_; }
     ColumnMultigrid& solver() { return solver_; }
+    /// y = A x, by knots.
+    void multiply(const std::vector<real>& x, std::vector<real>& y) { solver_.multiply(A_, knots_, x, y); }
     /// Of every cell: how high the element is in which it lies [m]; 0 outside the liquid.
     void show_heights(Grid<real, D>& to) const;
     /// The runs of faces along axis a above one another, on the lower side of a column (its own vertical faces where a is up), bottom up.
@@ -66,6 +82,8 @@ public:
             while (k_ < end_ && run().row + run().count <= row) advance();
             return k_ < end_ && run().row <= row;
         }
+        /// Its place among all of its axis.
+        std::size_t index() const { return at(k_); }
         /// Whether any is left.
         bool ahead() const { return k_ < end_; }
         Run run() const { return knots_ ? Run{knots_->row[at(k_)] + 1, knots_->length[at(k_)], k_, k_} : (*runs_)[at(k_)]; }
@@ -88,25 +106,44 @@ public:
     std::size_t bytes() const;
 
 private:
-    static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
     void find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const;
     void finish_surface(const Grid<real, D>& phi, const MacState<D>& state);
     void find_runs(const MacState<D>& state);
+    int covered_from_below(int column) const;
     void assemble(const Grid<real, D>& phi, const MacState<D>& state);
-    void count_beside(const MacState<D>& state);
+    void find_shared_rows();
+    void place_column(int column);
     void add_vertical(const Grid<real, D>& phi, const MacState<D>& state, int column);
-    void add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int column, int f);
-    real cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const;
+    void add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int z, int f);
+    void add_inner_rows(const Grid<real, D>& phi, const MacState<D>& state, const FaceOfColumns& face, int k);
+    real cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const {
+        return std::min(1 - phi[air] / phi[liquid], largest_cut_);  // 1/θ between a liquid cell and one of air
+    }
+    static constexpr int faces() { return 2 * (D - 1); }
     void project_faces(const Grid<real, D>& phi, MacState<D>& state);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
-    void rebuild(MacState<D>& state) const;
+    /// Columns beside one another in a line, of which `count` stand side by side in memory.
+    struct Block {
+        int column, count;
+    };
+    static constexpr int block_columns = 16;
+    template <class F>
+    real largest_of_blocks(F&& f) const;
+    template <class Together, class One>
+    void for_each_run(int h, const Block& block, Together&& together, One&& one) const;
+    template <class Together, class One>
+    void for_each_element(const Block& block, Together&& together, One&& one) const;
+    real spread_runs(MacState<D>& state, int h, const Block& block) const;
+    real rebuild(MacState<D>& state, const Block& block) const;
+    void spread_pressure(MacState<D>& state, const Block& block, real scale) const;
     real pressure_at(const Row& row) const {
         if (!row.wet) return 0;
         return row.share > 0 ? (1 - row.share) * q_[at(row.knot)] + row.share * q_[at(row.knot) + 1] : q_[at(row.knot)];
     }
     /// At a row of the element above a knot.
     real pressure_at(int knot, real row) const {
-        const real share = (row - A_.knots.row[at(knot)]) / A_.knots.length[at(knot)];
+        const real share = (row - knots_.row[at(knot)]) / knots_.length[at(knot)];
         return (1 - share) * q_[at(knot)] + share * q_[at(knot) + 1];
     }
     /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
@@ -134,13 +171,17 @@ private:
     Frame<D> frame_;
     Layout<D> layout_;
     poisson::Options options_;
+    Knots knots_;
+    std::vector<int> row_index_;  // of the lattice's rows among those that columns share, −1 for others
     ColumnMatrix A_;
     ColumnMultigrid solver_;
     std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
     std::array<std::vector<Run>, 2> runs_;
     std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]
-    std::vector<real> mean_;              // of the vertical velocity in the element above each knot [m/s]
-    std::vector<real> b_, q_;             // q = dt p/ρ [m²/s]
+    int floor_ = 0, fastest_run_below_ = 0;
+    real fastest_run_ = 0;
+    std::vector<real> mean_;   // of the vertical velocity in the element above each knot [m/s]
+    std::vector<real> b_, q_;  // q = dt p/ρ [m²/s]
     real largest_cut_ = 0;
     poisson::Report nothing_to_do_;
 };

@@ -21,21 +21,7 @@ FieldSet TallCells<D>::fields() const {
 
 template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
-    const std::string volume_unit = D == 2 ? "m^2" : "m^3", per_depth = D == 2 ? "/m" : "";
-    const Measure<D> measure(frame_, surface_, closed_);
-    const Vec<D> p = measure.momentum(state_.u, state_.rho);
-    std::vector<Integral> list = {
-        {"volume", volume_unit, surface_.volume()},
-        {"volume_target", volume_unit, volume_target_},
-        {"kinetic_energy", "J" + per_depth, measure.kinetic_energy(state_.u, state_.rho)},
-        {"potential_energy", "J" + per_depth, measure.potential_energy(gravity_, state_.rho)},
-        {"momentum_x", "kg m/s" + per_depth, p[0]},
-        {"momentum_y", "kg m/s" + per_depth, p[1]},
-    };
-    if constexpr (D == 3) list.push_back({"momentum_z", "kg m/s", p[2]});
-    list.push_back({"front_x", "m", measure.furthest(0)});
-    list.push_back({"top", "m", measure.furthest(up_)});
-    list.push_back({"height_at_x_min", "m", measure.height_at_lower_end(up_)});
+    std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.knots().count())});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     return list;

@@ -46,16 +46,11 @@ void TallCells<D>::move_surface(real dt) {
     surface_.redistance();
 }
 
-/// φ moves by the missing volume over the surface's area, at most 0.02 h a step, less than motion itself moves it by.
 template <int D>
 void TallCells<D>::control_volume() {
     if (!options_.volume_control) return;
     const auto timed = passes_.time("effect volume_control");
-    const real area = surface_.area();
-    if (area == 0) return;
-    const real most = 0.02 * frame_.h_min(), shift = std::clamp((volume_target_ - surface_.volume()) / area, -most, most);
-    surface_.dilate(shift);
-    volume_shift_ += std::abs(shift);
+    volume_shift_ += std::abs(surface_.regain(volume_target_ - surface_.volume()));
 }
 
 template <int D>
@@ -67,7 +62,7 @@ void TallCells<D>::remesh() {
 template <int D>
 void TallCells<D>::advect(real dt) {
     const auto timed = passes_.time("advect");
-    transport_(pressure_, surface_.phi, state_.sides, dt, state_.u);
+    transport_(pressure_, surface_.phi, state_.sides, dt, rate_, state_.u);
 }
 
 template <int D>
@@ -81,6 +76,7 @@ template <int D>
 poisson::Report TallCells<D>::project(real dt) {
     const auto timed = passes_.time("project");
     pressure_.restrict_velocity(state_);
+    pressure_.change_runs(transport_.changes());
     const poisson::Report report = pressure_.project(surface_.phi, state_, dt);
     pressure_.spread(state_, dt);
     sync_periodic(state_.u, state_.sides);
@@ -125,21 +121,31 @@ void TallCells<D>::set_fixed_faces() {
     solids_.set_faces(state_);
 }
 
+/// Of rows that are all in runs the pressure tells.
 template <int D>
 real TallCells<D>::max_speed_rate() const {
-    real rate = 0;
+    real rate = pressure_.fastest_run();
     for (int a = 0; a < D; ++a) {
         const auto& known = known_[static_cast<std::size_t>(a)];
         const auto& u = state_.u[a];
-        const std::size_t planes = static_cast<std::size_t>(u.extent()[D - 1]), plane = u.size() / planes;
-        const real largest = ordered_max(static_cast<int>(planes), [&](int k) {
+        Index<D> lo{}, hi = u.extent();
+        lo[up_] = pressure_.fastest_run_below();
+        const std::size_t x = static_cast<std::size_t>(lo[0]), count = static_cast<std::size_t>(hi[0]) - x;
+        const int lines = hi[D - 1], rows = D == 3 ? hi[1] - lo[1] : 1, first_line = lo[D - 1];
+        const real largest = ordered_max(lines - first_line, [&](int k) {
             real most = 0, poison = 0;  // x − x is 0, or NaN where x is not finite
-            const std::size_t first = static_cast<std::size_t>(k) * plane;
+            for (int j = 0; j < rows; ++j) {
+                Index<D> I = lo;
+                I[1] = lo[1] + j, I[D - 1] = first_line + k;
+                const std::size_t first = u.linear(I);
+                const real* v = u.data() + first;
+                const std::uint8_t* mark = known.data() + first;
 #pragma omp simd reduction(max : most) reduction(+ : poison)
-            for (std::size_t i = first; i < first + plane; ++i) {
-                const real speed = known[i] == 1 ? std::abs(u[i]) : 0;
-                most = std::max(most, speed);
-                poison += speed - speed;
+                for (std::size_t i = 0; i < count; ++i) {
+                    const real speed = mark[i] == 1 ? std::abs(v[i]) : 0;
+                    most = std::max(most, speed);
+                    poison += speed - speed;
+                }
             }
             return std::isnan(poison) ? poison : most;
         });

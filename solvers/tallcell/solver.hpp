@@ -9,15 +9,13 @@
 #include "staggered/solid_faces.hpp"
 #include "surface/extrapolate.hpp"
 #include "surface/solid_faces.hpp"
+#include "surface/start.hpp"
 #include "tallcell/transport.hpp"
 
 namespace weir::tallcell {
 
 /// The registered solver "tallcell".
 scene::SolverKind kind();
-
-/// Longest over shortest edge of a cell up to which a free surface keeps its energy, as on the uniform grid.
-inline constexpr real flattest_cell = 4;
 
 struct TallOptions {
     Shape shape;

@@ -8,30 +8,6 @@
 
 namespace weir::tallcell {
 
-namespace {
-
-template <int D>
-geometry::Solids<D> solids_of(const scene::Scene& scene) {
-    return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
-}
-
-template <int D>
-Vec<D> gravity_of(const scene::Scene& scene) {
-    const auto* gravity = scene.effect("gravity");
-    return gravity ? gravity->template vec<D>("g") : Vec<D>{};
-}
-
-/// The axis that gravity is most along: cells are tall along it.
-template <int D>
-int up_axis(const Vec<D>& g) {
-    int up = 1;
-    for (int a = 0; a < D; ++a)
-        if (std::abs(g[a]) > std::abs(g[up])) up = a;
-    return up;
-}
-
-}  // namespace
-
 template <int D>
 TallCells<D>::TallCells(const scene::Scene& scene)
     : options_(scene),
@@ -62,11 +38,14 @@ TallCells<D>::TallCells(const scene::Scene& scene)
 
 template <int D>
 void TallCells<D>::refuse_what_it_cannot(const scene::Scene& scene) const {
-    const real ratio = frame_.h_max() / frame_.h_min();
-    if (ratio > flattest_cell * (1 + 1e-9))
-        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " times as long as thin; water stays stable up to " +
-                                       scene::number_text(flattest_cell) + " times");
+    refuse_flat_cells(scene, frame_);
     const char* axis_name[] = {"x", "y", "z"};
+    constexpr real nothing = 1e-9;  // [m/s²]: moves nothing in any run
+    if (gravity_[up_] > nothing)
+        scene.refuse("effects.gravity.g",
+                     std::string("gravity pulls most towards ") + axis_name[up_] + "_max: tall cells stand on the floor at " +
+                         axis_name[up_] + "_min, under the regular ones",
+                     "gravity that points against the axis that it is most along, as g = [0, -9.81], or solver \"mac_water\"");
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1}) {
             const auto kind = state_.sides.side(a, end).kind;
@@ -90,11 +69,7 @@ void TallCells<D>::fill_with_liquid(const scene::Scene& scene) {
     const auto liquid = geometry::unite<D>(shapes);
     start_level_set<D>(*liquid, solids_.solids(), frame_, surface_);
     volume_target_ = surface_.volume();
-    if (volume_target_ == 0) {
-        const real inside = sum_over(frame_.cells, [&](const Index<D>& I) { return liquid->contains(frame_.centre(I)) ? 1.0 : 0.0; });
-        if (inside > 0) scene.refuse("liquid", "all liquid lies inside solids");
-        scene.refuse("liquid", "no liquid lies in the domain, or all of it is thinner than a cell");
-    }
+    if (volume_target_ == 0) refuse_no_volume<D>(scene, *liquid, frame_);
     remesh();
     passes_.reset();
 }

@@ -1,5 +1,7 @@
 #include "tallcell/transport.hpp"
 
+#include "core/scratch.hpp"
+
 #include <algorithm>
 #include <limits>
 
@@ -12,17 +14,44 @@ Transport<D>::Transport(const Frame<D>& frame, const MacVelocity<D>& u, bool mac
 }
 
 template <int D>
-void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt,
+std::size_t Transport<D>::bytes() const {
+    std::size_t total = before_.bytes() + predicted_.bytes();
+    for (const auto& list : changes_) total += list.capacity() * sizeof(Pair);
+    return total;
+}
+
+template <int D>
+void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real fastest,
                               MacVelocity<D>& u) {
     up_ = mesh.layout().up, open_above_ = sides.open(up_, 1);
-    for (int a = 0; a < D; ++a) before_[a].swap(u[a]);  // every face of u is written below
+    source_ = &u;
+    move_runs(mesh, dt);
+    // A point travels no farther than this, by a midpoint that may be faster than where it starts, and then looks at two samples.
+    kept_from_ = std::max(0, mesh.floor_of_singles() - static_cast<int>(std::min(1e6, 1.5 * fastest * dt)) - 3);
+    keep(u);
+    source_ = &before_;
     const real h = frame_.h_max();
-    if (!maccormack_) {
-        pass<false>(mesh, phi, sides, dt, 2 * h, u, nullptr);
-        return;
-    }
-    pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_, &u);
-    pass<true>(mesh, phi, sides, dt, 2 * h, u, nullptr);
+    if (!maccormack_) return pass<false>(mesh, phi, sides, dt, 2 * h, u);
+    pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_);
+    pass<true>(mesh, phi, sides, dt, 2 * h, u);
+}
+
+/// f(first, count) for the faces of u along a from kept_from_ upwards, in pieces that lie together in memory.
+template <int D, class F>
+static void for_each_kept(const Grid<real, D>& u, int up, int from, F&& f) {
+    Index<D> lo{}, hi = u.extent();
+    lo[up] = from;
+    const int x = lo[0], count = hi[0] - x;
+    hi[0] = x + 1;
+    for_each_in(lo, hi, [&](const Index<D>& I) { f(u.linear(I), static_cast<std::size_t>(count)); });
+}
+
+template <int D>
+void Transport<D>::keep(const MacVelocity<D>& u) {
+    for (int a = 0; a < D; ++a)
+        for_each_kept(u[a], up_, kept_from_, [&](std::size_t first, std::size_t count) {
+            std::copy(u[a].data() + first, u[a].data() + first + count, before_[a].data() + first);
+        });
 }
 
 namespace {
@@ -96,10 +125,10 @@ Vec<D> Transport<D>::moved(const Vec<D>& s, const Vec<D>& here, real dt) const {
     const Inside<D> inside(frame_, middle);
     Vec<D> k;
     if (inside.all) {
-        for (int b = 0; b < D; ++b) k[b] = inside.value(before_[b], b) * frame_.inv_h[b];
+        for (int b = 0; b < D; ++b) k[b] = inside.value((*source_)[b], b) * frame_.inv_h[b];
     } else {
         const Stencil<D> around = stencil(middle);
-        for (int b = 0; b < D; ++b) k[b] = sample(before_[b], b, around) * frame_.inv_h[b];
+        for (int b = 0; b < D; ++b) k[b] = sample((*source_)[b], b, around) * frame_.inv_h[b];
     }
     return s + dt * k;
 }
@@ -107,14 +136,14 @@ Vec<D> Transport<D>::moved(const Vec<D>& s, const Vec<D>& here, real dt) const {
 template <int D>
 Vec<D> Transport<D>::speed(const Vec<D>& s) const {
     Vec<D> k;
-    for (int b = 0; b < D; ++b) k[b] = at_point(before_[b], b, s) * frame_.inv_h[b];
+    for (int b = 0; b < D; ++b) k[b] = at_point((*source_)[b], b, s) * frame_.inv_h[b];
     return k;
 }
 
 /// The value from which s is reached in dt.
 template <int D>
 real Transport<D>::departed(int a, const Vec<D>& s, real dt) const {
-    return at_point(before_[a], a, moved(s, speed(s), -dt));
+    return at_point((*source_)[a], a, moved(s, speed(s), -dt));
 }
 
 /// û + (u − ũ)/2, û the prediction and ũ what it gives when it is carried back; no more and no less than the values around the point of
@@ -150,72 +179,98 @@ Vec<D> face_place(int a, const Index<D>& I) {
 
 }  // namespace
 
-/// Rows of a tall cell all change as their run's Gauss points do, linearly between.
+/// What all runs of tall cells change by at their Gauss points. Eight columns beside one another along x are looked at together.
 template <int D>
-void Transport<D>::move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const {
-    I[up] = run.row;
+void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
+    const Layout<D>& layout = mesh.layout();
+    const int blocks = (layout.columns() + row_lanes - 1) / row_lanes;
+    for (int a = 0; a < D; ++a) {
+        auto& changes = changes_[static_cast<std::size_t>(a)];
+        resize_scratch(changes, mesh.run_count(a));
+        parallel_for(0, blocks, [&](int block) {
+            const int c0 = block * row_lanes, count = std::min(layout.columns() - c0, row_lanes);
+            std::array<typename TallPressure<D>::RunsUp, row_lanes> runs;
+            std::array<Index<D>, row_lanes> foot;
+            for (int i = 0; i < count; ++i) {
+                const auto l = static_cast<std::size_t>(i);
+                runs[l] = mesh.runs_up(a, c0 + i), foot[l] = layout.foot(c0 + i);
+            }
+            const auto one = [&](std::size_t i) { changes[runs[i].index()] = move_run(a, foot[i], runs[i].run(), dt); };
+            bool together = layout.axes[0] == 0 && count == row_lanes && foot[0][0] + row_lanes <= frame_.cells[0];
+            while (together) {
+                bool alike = true;
+                const auto ahead = [&](std::size_t i) { return runs[i].ahead() && runs[i].any_faces(); };
+                std::size_t last = row_lanes - 1;  // one that is no wall tells which run it is
+                if (!ahead(last)) break;
+                const Run run = runs[last].run();
+                for (std::size_t i = 0; i < row_lanes; ++i)
+                    alike =
+                        alike && (!runs[i].any_faces() || (ahead(i) && runs[i].run().row == run.row && runs[i].run().count == run.count));
+                if (!alike) break;
+                std::array<Eight, 2> change;
+                const bool moved = move_run_of_eight(a, foot[0], run, dt, change);
+                for (std::size_t i = 0; i < row_lanes; ++i) {
+                    if (!runs[i].any_faces()) continue;
+                    if (moved && inner(foot[i], 0))
+                        changes[runs[i].index()] = {change[0][i], change[1][i]};
+                    else
+                        one(i);
+                    runs[i].reaches(run.row + run.count);
+                }
+            }
+            for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+                for (; runs[i].any_faces() && runs[i].ahead(); runs[i].reaches(runs[i].run().row + runs[i].run().count)) one(i);
+        });
+    }
+}
+
+/// Euler's trace from both Gauss points: deep below the surface paths are straight for as long as a step takes.
+template <int D>
+Pair Transport<D>::move_run(int a, Index<D> I, const Run& run, real dt) const {
+    I[up_] = run.row;
     Vec<D> s = face_place(a, I);
-    const real bottom = s[up];
-    // Euler's trace: deep below the surface paths are straight for as long as a step takes.
+    const real bottom = s[up_];
     const auto change = [&](real row) {
-        s[up] = bottom + (row - run.row);
+        s[up_] = bottom + (row - run.row);
         const Vec<D> k = speed(s);
-        return at_point(before_[a], a, s - dt * k) - k[a] * frame_.h[a];
+        return at_point((*source_)[a], a, s - dt * k) - k[a] * frame_.h[a];
     };
-    const Pair both{change(run.middle() - run.spread()), change(run.middle() + run.spread())};
-    const std::size_t first = to.linear(I), stride = static_cast<std::size_t>(to.stride(up));
-    spread_rows(0, run.count, both, [&](int row, real by) {
-        const std::size_t face = first + static_cast<std::size_t>(row) * stride;
-        to[face] = before_[a][face] + by;
-        if (also) (*also)[face] = to[face];
-    });
+    return {change(run.middle() - run.spread()), change(run.middle() + run.spread())};
 }
 
 /// The same of eight columns beside one another along x that have the same run. False, and nothing done, where a point comes too near to a
 /// side or moves too far.
 template <int D>
-bool Transport<D>::move_run_of_eight(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const {
+bool Transport<D>::move_run_of_eight(int a, Index<D> I, const Run& run, real dt, std::array<Eight, 2>& change) const {
     for (int d = 1; d < D; ++d)
-        if (d != up && (I[d] < 2 || I[d] + 2 >= frame_.cells[d])) return false;
+        if (d != up_ && !inner(I, d)) return false;
     const auto at = [](int i) { return static_cast<std::size_t>(i); };
-    std::array<Eight, 2> change;
     for (const int point : {0, 1}) {
         const real y = run.middle() + (point == 0 ? -run.spread() : run.spread());
-        I[up] = static_cast<int>(std::lround(y));
-        if (I[up] < 2 || I[up] + 2 >= frame_.cells[up]) return false;
+        I[up_] = static_cast<int>(std::lround(y));
+        if (!inner(I, up_)) return false;
         Moved<D> d{};
-        d[at(up)].fill(y - I[up]);
+        d[at(up_)].fill(y - I[up_]);
         Moved<D> from = d;
         Eight here{}, k{};
         for (int b = 0; b < D; ++b) {
-            const auto& u = before_[b];
+            const auto& u = (*source_)[b];
             sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(d, a, b), k);
             if (b == a) here = k;
             for (std::size_t i = 0; i < row_lanes; ++i) {
-                from[at(b)][i] -= dt * frame_.inv_h[b] * k[i];
+                const bool counts = I[0] + static_cast<int>(i) >= 1 && I[0] + static_cast<int>(i) + 1 < frame_.cells[0];
+                from[at(b)][i] -= counts ? dt * frame_.inv_h[b] * k[i] : 0;
                 if (!(std::abs(from[at(b)][i]) <= 1)) return false;
             }
         }
-        const auto& u = before_[a];
+        const auto& u = (*source_)[a];
         sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(from, a, a), change[at(point)]);
         for (std::size_t i = 0; i < row_lanes; ++i) change[at(point)][i] -= here[i];
-    }
-    I[up] = run.row;
-    const std::size_t first = to.linear(I), stride = static_cast<std::size_t>(to.stride(up));
-    const real c = 0.5 * (run.count - 1), sigma = run.count > 1 ? run.spread() : 1;
-    for (int row = 0; row < run.count; ++row) {
-        const std::size_t face = first + at(row) * stride;
-        const real xi = (row - c) / sigma;
-        for (std::size_t i = 0; i < row_lanes; ++i) {
-            const real by = 0.5 * ((change[0][i] + change[1][i]) + xi * (change[1][i] - change[0][i]));
-            to[face + i] = before_[a][face + i] + by;
-            if (also) (*also)[face + i] = to[face + i];
-        }
     }
     return true;
 }
 
-/// Eight faces beside one another along x, all at least two cells from the ends of the other axes. False, and nothing done, where a point
+/// Eight faces beside one another along x, all at least a cell from the ends of the other axes. False, and nothing done, where a point
 /// moves farther than a cell.
 template <int D>
 template <bool Correct>
@@ -224,7 +279,7 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
     Moved<D> k, half, from;
     real farthest = 0;
     for (int b = 0; b < D; ++b) {
-        const auto& u = before_[b];
+        const auto& u = (*source_)[b];
         const real* q = u.data() + u.linear(I);
         const std::ptrdiff_t below = u.stride(a), above = u.stride(b);
         const real scale = frame_.inv_h[b] * dt;
@@ -243,7 +298,7 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
             for (std::size_t i = 0; i < row_lanes; ++i) half[b][i] = 0.5 * sign * k[b][i];
         real far = 0;
         for (int b = 0; b < D; ++b) {
-            const auto& u = before_[b];
+            const auto& u = (*source_)[b];
             Eight v;
             sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(half, a, b), v);
             for (std::size_t i = 0; i < row_lanes; ++i) {
@@ -254,17 +309,19 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
         return far <= 1;
     };
     if (!trace(-1)) return false;
-    const auto& u = before_[a];
+    const auto& u = (*source_)[a];
     const std::size_t first = u.linear(I);
     const std::ptrdiff_t sy = u.stride(1), sz = D == 3 ? u.stride(D - 1) : 0;
     const auto departure = hats_of<D>(from, a, a);
-    sample_near<D>(u.data() + first, sy, sz, departure, to);
+    if constexpr (!Correct) sample_near<D>(u.data() + first, sy, sz, departure, to);
     if constexpr (Correct) {
         Eight low, high, back;
+        const real* predicted = predicted_[a].data() + first;  // that very sample, of the first pass
         bounds_near<D>(u.data() + first, sy, sz, departure, low, high);
         if (!trace(1)) return false;
         sample_near<D>(predicted_[a].data() + first, sy, sz, hats_of<D>(from, a, a), back);
-        for (std::size_t i = 0; i < row_lanes; ++i) to[i] = std::min(std::max(to[i] + 0.5 * (u[first + i] - back[i]), low[i]), high[i]);
+        for (std::size_t i = 0; i < row_lanes; ++i)
+            to[i] = std::min(std::max(predicted[i] + 0.5 * (u[first + i] - back[i]), low[i]), high[i]);
     }
     return true;
 }
@@ -284,18 +341,19 @@ struct ColumnUp {
 
 }  // namespace
 
-/// One pass over all faces. Those with φ < near beside them move; the others stay as they are. Runs of tall cells are advected once, in the
-/// first pass (`runs_too`: where they are to stand as well). Eight columns go up together, since what stands beside one another stands
-/// together in memory.
+/// One pass over all faces from kept_from_ upwards. Those with φ < near beside them move; the others stay as they are. Rows in runs of
+/// tall cells take part only in what is predicted, from which others come. Eight columns go up together, since what stands beside one
+/// another stands together in memory.
 template <int D>
 template <bool Correct>
 void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
-                        MacVelocity<D>& to, MacVelocity<D>* runs_too) const {
+                        MacVelocity<D>& to) const {
     const Layout<D>& layout = mesh.layout();
+    const bool all_faces = &to == &predicted_;  // else those that stay have their values
     const int up = layout.up, blocks = (layout.columns() + row_lanes - 1) / row_lanes;
     constexpr int never = std::numeric_limits<int>::max();
     for (int a = 0; a < D; ++a) {
-        const int first = a == up ? 1 : 0, last = a == up && sides.open(up, 1) ? layout.rows + 1 : layout.rows;
+        const int first = std::max(a == up ? 1 : 0, kept_from_), last = a == up && sides.open(up, 1) ? layout.rows + 1 : layout.rows;
         const auto face_stride = static_cast<std::size_t>(to[a].stride(up)), cell_stride = static_cast<std::size_t>(phi.stride(up));
         parallel_for(0, blocks, [&](int block) {
             const int c0 = block * row_lanes, count = std::min(layout.columns() - c0, row_lanes);
@@ -311,7 +369,7 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                                              static_cast<std::ptrdiff_t>(column.cell);
                 if (column.runs.any_faces()) continue;
                 column.end = never;  // a wall: as if all of it lay in one run, which others move
-                for (int row = 0; row < layout.rows; ++row) {
+                for (int row = first; all_faces && row < layout.rows; ++row) {
                     const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
                     to[a][face] = before_[a][face];
                 }
@@ -322,32 +380,20 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                 column.end = more ? column.begin + column.runs.run().count : never;
                 return more;
             };
-            const auto move_one = [&](const ColumnUp<D>& column) {
-                move_run(a, column.foot, up, column.runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
-            };
-            /// All eight columns come to their next run; where it has the same rows in all, it moves in all at once.
-            const auto next_runs = [&](int row) {
-                bool alike = true;
-                for (auto& column : columns) {
-                    next_run(column, row);
-                    alike = alike && column.begin == columns[0].begin && column.end == columns[0].end;
-                }
-                if (Correct) return;
-                alike = alike && columns[0].begin != never &&
-                        move_run_of_eight(a, columns[0].foot, up, columns[0].runs.run(), dt, to[a], runs_too ? &(*runs_too)[a] : nullptr);
-                for (auto& column : columns) {
-                    const bool at_side = column.foot[0] < 2 || column.foot[0] + 2 >= frame_.cells[0];
-                    if (column.begin != never && (!alike || at_side)) move_one(column);
-                }
+            const auto predict_run = [&](const ColumnUp<D>& column) {
+                const Run run = column.runs.run();
+                spread_rows(run.row, run.count, changes_[static_cast<std::size_t>(a)][column.runs.index()], [&](int row, real by) {
+                    if (row < kept_from_) return;
+                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
+                    to[a][face] = before_[a][face] + by;
+                });
             };
             const bool beside = layout.axes[0] == 0 && count == row_lanes && columns[0].foot[0] + row_lanes <= frame_.cells[0];
             for (int row = first; row < last;) {
                 int until = last, moving = 0;
-                if (beside && std::all_of(columns.begin(), columns.end(), [&](const auto& column) { return row >= column.end; }))
-                    next_runs(row);
                 for (int i = 0; i < count; ++i) {
                     ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
-                    if (row >= column.end && next_run(column, row) && !Correct) move_one(column);
+                    if (row >= column.end && next_run(column, row) && all_faces) predict_run(column);
                     column.moves = row < column.begin;
                     if (!column.moves) {
                         until = std::min(until, column.end);
@@ -360,13 +406,13 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                     column.moves = std::min(phi[cell], phi[below]) < near;
                     moving += column.moves;
                     const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
-                    if (!column.moves) to[a][face] = before_[a][face];
+                    if (!column.moves && all_faces) to[a][face] = before_[a][face];
                 }
                 if (moving > 0) {
                     Index<D> I = columns[0].foot;
                     I[up] = row;
                     bool inner = beside;
-                    for (int d = 1; d < D; ++d) inner = inner && I[d] >= 2 && I[d] + 2 < frame_.cells[d];
+                    for (int d = 1; d < D; ++d) inner = inner && this->inner(I, d);
                     Eight value;
                     const bool together = inner && move_eight<Correct>(a, I, dt, value);
                     for (int i = 0; i < count; ++i) {
@@ -375,7 +421,7 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                         I = column.foot;
                         I[up] = row;
                         real& u = to[a][column.face + static_cast<std::size_t>(row) * face_stride];
-                        if (together && I[0] >= 2 && I[0] + 2 < frame_.cells[0])
+                        if (together && this->inner(I, 0))
                             u = value[static_cast<std::size_t>(i)];
                         else if constexpr (Correct)
                             u = corrected(a, face_place(a, I), before_[a](I), dt);
@@ -387,7 +433,7 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
             }
         });
     }
-    keep_sides(to);
+    if (all_faces) keep_sides(to);
     sync_periodic(to, sides);
 }
 
@@ -396,6 +442,7 @@ template <int D>
 void Transport<D>::keep_sides(MacVelocity<D>& to) const {
     for (int a = 0; a < D; ++a) {
         Index<D> lo{}, hi = to[a].extent();
+        if (a != up_) lo[up_] = kept_from_;
         hi[a] = 1;
         for_each_in(lo, hi, [&](Index<D> I) {
             if (I[a] == 0 && a == up_) to[a](I) = before_[a](I);

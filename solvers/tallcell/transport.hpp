@@ -1,6 +1,6 @@
 // Du/Dt = 0 on tall cells, by semi-Lagrangian advection (Stam 1999) or MacCormack's correction of it (Selle, Fedkiw, Kim, Liu & Rossignac
 // 2008) on the lattice's velocity. Regular faces move as on the uniform grid. Rows inside tall cells change as the two Gauss points of
-// their run do, linearly between: what rows the mesh restricts to its samples is that of the lattice plus the samples' own change.
+// their run do, linearly between: those points' changes are all that is told of them.
 #pragma once
 #include "surface/marker_motion.hpp"
 #include "tallcell/near_rows.hpp"
@@ -13,17 +13,24 @@ class Transport {
 public:
     Transport() = default;
     Transport(const Frame<D>& frame, const MacVelocity<D>& u, bool maccormack, int reach);
-    /// u of all faces near the liquid, dt later. u must be known throughout the level set's band.
-    void operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, MacVelocity<D>& u);
-    std::size_t bytes() const { return before_.bytes() + predicted_.bytes(); }
+    /// u of all faces near the liquid, dt later, where nothing moves by more than `fastest` cells a second; but for those in runs of tall
+    /// cells: what these change by is changes(). u must be known throughout the level set's band.
+    void operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real fastest,
+                    MacVelocity<D>& u);
+    /// By axis, in the order of the mesh's runs; of the vertical axis by knots.
+    const RunChanges<D>& changes() const { return changes_; }
+    std::size_t bytes() const;
 
 private:
+    void move_runs(const TallPressure<D>& mesh, real dt);
+    Pair move_run(int a, Index<D> I, const Run& run, real dt) const;
+    bool move_run_of_eight(int a, Index<D> I, const Run& run, real dt, std::array<Eight, 2>& change) const;
+    void keep(const MacVelocity<D>& u);
     template <bool Correct>
     void pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
-              MacVelocity<D>& to, MacVelocity<D>* runs_too) const;
+              MacVelocity<D>& to) const;
     void keep_sides(MacVelocity<D>& to) const;
-    void move_run(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const;
-    bool move_run_of_eight(int a, Index<D> I, int up, const Run& run, real dt, Grid<real, D>& to, Grid<real, D>* also) const;
+    bool inner(const Index<D>& I, int axis) const { return I[axis] >= 1 && I[axis] + 1 < frame_.cells[axis]; }
     template <bool Correct>
     bool move_eight(int a, const Index<D>& I, real dt, Eight& to) const;
     real at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const;
@@ -36,8 +43,11 @@ private:
     Frame<D> frame_;
     bool maccormack_ = true, open_above_ = false;
     int up_ = 1;
-    int reach_ = 1;  // cells that a point may travel in one step
-    MacVelocity<D> before_, predicted_;
+    int reach_ = 1;                           // cells that a point may travel in one step
+    int kept_from_ = 0;                       // below this row all faces are in runs, and so are those that any other may come from
+    MacVelocity<D> before_, predicted_;       // from that row upwards
+    const MacVelocity<D>* source_ = nullptr;  // what is carried
+    RunChanges<D> changes_;
 };
 
 }  // namespace weir::tallcell

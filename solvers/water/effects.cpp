@@ -1,5 +1,7 @@
 #include "water/effects.hpp"
 
+#include "surface/start.hpp"
+
 namespace weir::water {
 
 using scene::Type;
@@ -24,10 +26,7 @@ std::vector<scene::Variant> effect_schemas() {
            .fallback = std::string("crank-nicolson"),
            .choices = {"crank-nicolson", "implicit"}}},
          {"fluid.viscosity"}},
-        {"volume_control",
-         "Moves the surface, at most a fiftieth of a cell a step, so that the volume stays what was poured in; the integral "
-         "\"volume_shift\" tells how far.",
-         {}}};
+        surface::volume_control()};
     list.insert(list.end(), own.begin(), own.end());
     return list;
 }

@@ -193,11 +193,7 @@ void Water<D>::control_volume() {
     if (!options_.volume_control) return;
     const auto timed = passes_.time("effect volume_control");
     const real missing = volume_target_ - surface_.volume() - markers_.volume * static_cast<real>(surface_.count_airborne(markers_));
-    const real area = surface_.area();
-    if (area == 0) return;
-    const real most = 0.02 * frame_.h_min(), shift = std::clamp(missing / area, -most, most);
-    surface_.dilate(shift);
-    volume_shift_ += std::abs(shift);
+    volume_shift_ += std::abs(surface_.regain(missing));
 }
 
 /// κ = ∇·(∇φ/|∇φ|) [1/m], central differences of the face normals' components.

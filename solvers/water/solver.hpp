@@ -35,9 +35,6 @@ scene::SolverKind kind();
 /// How momentum travels: on the grid by semi-Lagrangian advection, or on the markers.
 enum class Transfer { grid, pic, flip, apic };
 
-/// Longest over shortest edge of a cell up to which a free surface keeps its energy.
-inline constexpr real flattest_cell = 4;
-
 struct WaterOptions {
     Transfer transfer = Transfer::flip;
     real flip_blend = 0.97;  // β: 1 pure FLIP, 0 pure PIC (Zhu & Bridson 2005)

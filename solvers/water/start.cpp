@@ -9,21 +9,6 @@ namespace weir::water {
 namespace {
 
 template <int D>
-geometry::Solids<D> solids_of(const scene::Scene& scene) {
-    return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
-}
-
-/// Beyond flattest_cell a splash has been seen to gain more than a fifth of its energy (cases/hard_water): a surface that falls by several
-/// cells from one column to the next is not resolved across them.
-template <int D>
-void refuse_flat_cells(const scene::Scene& scene, const Frame<D>& frame) {
-    const real ratio = frame.h_max() / frame.h_min();
-    if (ratio > flattest_cell * (1 + 1e-9))
-        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " times as long as thin; water stays stable up to " +
-                                       scene::number_text(flattest_cell) + " times");
-}
-
-template <int D>
 bool all_stick(const geometry::Solids<D>& solids) {
     for (std::size_t i = 0; i < solids.count(); ++i)
         if (!solids[i].no_slip) return false;
@@ -38,11 +23,10 @@ Water<D>::Water(const scene::Scene& scene)
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),
-      effects_(make_effects<D>(body_forces(), scene)) {
+      effects_(make_effects<D>(body_forces(), scene)),
+      gravity_(gravity_of<D>(scene)),
+      up_(up_axis<D>(gravity_)) {
     refuse_flat_cells(scene, frame_);
-    if (const auto* gravity = scene.effect("gravity")) gravity_ = gravity->template vec<D>("g");
-    for (int d = 0; d < D; ++d)
-        if (std::abs(gravity_[d]) > std::abs(gravity_[up_])) up_ = d;
     markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
     pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
@@ -130,12 +114,7 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
     }
     volume_target_ = surface_.volume();
-    if (!shapes.empty() && volume_target_ == 0) {
-        const auto liquid = geometry::unite<D>(shapes);
-        const real inside = sum_over(frame_.cells, [&](const Index<D>& I) { return liquid->contains(frame_.centre(I)) ? 1.0 : 0.0; });
-        if (inside > 0) scene.refuse("liquid", "all liquid lies inside solids");
-        scene.refuse("liquid", "no liquid lies in the domain, or all of it is thinner than a cell");
-    }
+    if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
     pressure_.set_surface(surface_, closed_, state_);
 }
 

@@ -1,4 +1,5 @@
 // What a scene may say to the solver "waves".
+#include "scene/gravity.hpp"
 #include "waves/solver.hpp"
 
 namespace weir::waves {
@@ -169,16 +170,7 @@ Key waves() {
 }
 
 std::vector<Variant> effects() {
-    return {{"gravity",
-             "What makes waves travel. It points down, against y.",
-             {{.name = "g",
-               .type = Type::numbers,
-               .doc = "Acceleration.",
-               .unit = "m/s^2",
-               .required = true,
-               .length = -1,
-               .example = "g = [0.0, -9.81]"}},
-             {"g"}},
+    return {scene::gravity_effect("What makes waves travel. It points down, against y."),
             {"surface_tension",
              "What makes ripples travel: omega^2 = (g k + sigma k^3/rho) tanh(k d).",
              {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0}},

@@ -18,6 +18,15 @@ Curve front(const RunRecord& run) {
 
 real exact_front(const Reference& ref, real t) { return ref.number("speed") * std::sqrt(t); }
 
+/// Of all moments of the second half of the run: the front of particles goes on by steps, of which the last moment catches one.
+real mean_front_error(const RunRecord& run, const Reference& ref) {
+    const Curve x = front(run);
+    real ours = 0, exact = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (x.x[i] > run.time / 2) ours += x.y[i], exact += exact_front(ref, x.x[i]);
+    return std::abs(ours / exact - 1);
+}
+
 Panel front_panel(const RunRecord& run, const Reference& ref) {
     Curve ours = front(run), exact{.label = ref.source, .points = true};
     ours.label = "weir";
@@ -77,6 +86,32 @@ real return_error(const RunRecord& run, const Reference&) {
     return worst;
 }
 
+/// Of a wave of one period along x, by projection.
+real amplitude(const FieldSet& fields) {
+    const FieldView& x = *fields.find("particles", "position");
+    const auto& T = fields.find("particles", "temperature")->data[0];
+    const real k = 2 * pi / (fields.grid.spacing[0] * fields.grid.cells[0]);
+    real sum = 0;
+    for (std::size_t i = 0; i < T.size(); ++i) sum += T[i] * std::sin(k * (x.data[0][i] - fields.grid.origin[0]));
+    return 2 * sum / static_cast<real>(T.size());
+}
+
+/// How far the rate at which it decays is from that of the heat equation, relative.
+real decay_error(const RunRecord& run, const Reference& ref) {
+    const Curve a = run.series("sine.decay_error");
+    return std::abs(std::log(a.y.front() / a.y.back()) / (ref.number("rate") * run.time) - 1);
+}
+
+/// Largest difference of any particle from the steady temperatures of a slab of ice and water, over that of its two sides.
+real slab_error(const RunRecord& run, const Reference& ref) {
+    const FieldView& x = *run.fields.find("particles", "position");
+    const auto& T = run.fields.find("particles", "temperature")->data[0];
+    const auto exact = ref.scalars.at("temperature");
+    real worst = 0;
+    for (std::size_t i = 0; i < T.size(); ++i) worst = std::max(worst, std::abs(T[i] - exact({x.data[0][i], 0, 0}, run.time)));
+    return worst / ref.number("difference");
+}
+
 }  // namespace
 
 std::vector<Metric> melting_metrics() {
@@ -86,6 +121,11 @@ std::vector<Metric> melting_metrics() {
          .doc = "How far the front is from the exact one at the end, relative.",
          .measure = [](const RunRecord& run,
                        const Reference& ref) { return std::abs(front(run).y.back() / exact_front(ref, run.time) - 1); },
+         .figure = front_panel},
+        {.name = "stefan.mean_front_error",
+         .unit = "",
+         .doc = "How far the front is from the exact one over the second half of the run in the mean, relative.",
+         .measure = mean_front_error,
          .figure = front_panel},
         {.name = "lever.temperature_error",
          .unit = "",
@@ -99,6 +139,15 @@ std::vector<Metric> melting_metrics() {
          .unit = "",
          .doc = "Largest difference between the heat in the box and what was there and was added, over the largest heat.",
          .measure = balance_error},
+        {.name = "sine.decay_error",
+         .unit = "",
+         .doc = "How far the rate at which a wave of temperature decays is from that of the heat equation, relative.",
+         .measure = decay_error,
+         .observe = [](const FieldSet& fields, const scene::Scene&, real) { return amplitude(fields); }},
+        {.name = "slab.temperature_error",
+         .unit = "",
+         .doc = "Largest difference from the steady temperature of a slab of two conductivities, over that of its two sides.",
+         .measure = slab_error},
         {.name = "heat.return_error",
          .unit = "",
          .doc = "Largest relative difference of the temperature at the end from the uniform one at the start.",

@@ -147,7 +147,7 @@ real bernoulli_residual(const RunRecord& run, const Reference& ref) {
     real least = infinity, most = -infinity;
     for (int i = 0; i < 256; ++i) {
         const real x = 2 * pi / k * i / 256;
-        const real y = ask<1>(solver, "height", {{x, 0, 0}})[0];
+        const real y = ask<1>(solver, "surface", {{x, 0, 0}})[0];
         const auto u = ask<2>(solver, "velocity", {{x, y, 0}});
         const real constant = 0.5 * ((u[0] - c) * (u[0] - c) + u[1] * u[1]) + ref.number("gravity") * y;
         least = std::min(least, constant), most = std::max(most, constant);
@@ -162,7 +162,7 @@ std::vector<Complex> harmonics(const RunRecord& run, const Reference& ref, const
     std::vector<Complex> sums(places.size());
     for (int turn = 0; turn < 32; ++turn) {
         for (std::size_t i = 0; i < places.size(); ++i)
-            sums[i] += (ask<1>(solver, "height", {{places[i], 0, z}})[0] - ref.number("level")) *
+            sums[i] += (ask<1>(solver, "surface", {{places[i], 0, z}})[0] - ref.number("level")) *
                        std::polar(1.0 / 16, omega * run.simulation->time());
         solver.step(2 * pi / omega / 32);
     }

@@ -66,10 +66,11 @@ real diffusivity_of(const scene::Scene& scene) {
 }  // namespace
 
 REFERENCE(heated_cavity) {
-    const scene::Table* buoyancy = scene.effect("buoyancy");
+    const real lift = scene.effect("buoyancy") ? scene.number("effects.buoyancy.beta")
+                                               : scene.number("heat.gravity") * scene.number("substance.liquid.expansion");
     const real hot = scene.number("sides.x_min.temperature"), cold = scene.number("sides.x_max.temperature");
     const real L = scene.vec<2>("grid.size")[0], alpha = diffusivity_of(scene);
-    const real Ra = buoyancy->number("beta") * (hot - cold) * L * L * L / (scene.number("fluid.viscosity") * alpha);
+    const real Ra = lift * (hot - cold) * L * L * L / (scene.number("fluid.viscosity") * alpha);
     const Table all = read_table(data / "heated_cavity_devahldavis1983.csv");
     Reference ref{.source = "de Vahl Davis 1983, and an own Newton solve with Richardson extrapolation"};
     for (std::size_t i = 0; i < all.rows.size(); ++i) {

@@ -1,6 +1,7 @@
 // Melting by conduction: Stefan's and Neumann's moving fronts, and what ice in water comes to in a box that no heat leaves. The substance
 // is one of the scene's own, of one density, so that it melts at its triple point's temperature whatever the pressure.
 #include "validation/harness/reference.hpp"
+#include "validation/references/table.hpp"
 
 #include <cmath>
 
@@ -62,5 +63,43 @@ REFERENCE(ice_in_water) {
     Reference ref{.source = "the lever rule"};
     ref.numbers = {{"melts", w.T},         {"fusion", w.L},         {"cold", ball.number("value")}, {"warm", ball.number("outside")},
                    {"c_solid", w.c_solid}, {"c_liquid", w.c_liquid}};
+    return ref;
+}
+
+/// Gallium that melts from a side wall, as measured; and what conduction alone would melt.
+REFERENCE(melting_gallium) {
+    (void)scene;
+    Reference ref{.source = "Gau & Viskanta 1986 (digitised)"};
+    const Table fronts = read_table(data / "gau_viskanta1986_fronts.csv");
+    for (const char* station : {"top", "middle", "bottom"})
+        ref.curves[station] = fronts.curve("time_min", std::string(station) + "_mm", "");
+    const Table melted = read_table(data / "melted_fraction.csv");
+    ref.curves["share"] = melted.curve("time_min", "melted_fraction", ref.source);
+    ref.curves["share"].points = true;
+    ref.curves["conduction"] = melted.curve("time_min", "neumann_conduction_only", "conduction alone, no subcooling");
+    ref.curves["conduction"].dashed = true;
+    return ref;
+}
+
+/// A wave of temperature along x with one period in the domain decays as exp(−α k² t).
+REFERENCE(decaying_sine) {
+    const Wax w(scene);
+    const real k = 2 * pi / scene.root().numbers("grid.size").at(0);
+    Reference ref{.source = "Fourier 1822"};
+    ref.numbers = {{"rate", w.k_liquid / (w.rho * w.c_liquid) * k * k}};
+    return ref;
+}
+
+/// Ice and water at rest between two walls: each side is linear, what flows is the same, between them it is as warm as melting ice.
+REFERENCE(steady_slab) {
+    const Wax w(scene);
+    const real hot = scene.number("sides.x_min.temperature"), cold = scene.number("sides.x_max.temperature");
+    const real l = scene.root().numbers("grid.size").at(0);
+    const real q = (w.k_liquid * (hot - w.T) + w.k_solid * (w.T - cold)) / l, front = w.k_liquid * (hot - w.T) / q;
+    Reference ref{.source = "steady conduction: k dT/dx is constant"};
+    ref.numbers = {{"difference", hot - cold}, {"front", front}, {"flux", q}};
+    ref.scalars["temperature"] = [=](const Vec<3>& x, real) {
+        return x[0] < front ? w.T + q / w.k_liquid * (front - x[0]) : w.T - q / w.k_solid * (x[0] - front);
+    };
     return ref;
 }

@@ -44,3 +44,16 @@ typedef struct {
     SCALAR stick[6];   /* 2 nu where the fluid sticks to a wall (x lo, x hi, y lo, ...), else 0 [m^2/s] */
     SCALAR slide[18];  /* velocity of the walls, three numbers each [m/s] */
 } SphParams;
+
+typedef struct {
+    SCALAR h, h2, guard;
+    SCALAR conduct; /* -2 V / (moment rho0) times the factor of the gradient kernel, so that theta over it is a rate of h, positive */
+} HeatParams;
+
+/* Walls as heat meets them: planes at lo[a] and hi[a] (a side that is no wall stands at -+1e15). */
+typedef struct {
+    SCALAR lo[3], hi[3];             /* [m] */
+    SCALAR lo_theta[3], hi_theta[3]; /* where a wall is held at a temperature, that of the wall [W/m] */
+    SCALAR closest;                  /* half of where the particles of a lattice stand [m] */
+    int lo_held[3], hi_held[3];      /* 1: it is; 0: no heat passes */
+} HeatWalls;

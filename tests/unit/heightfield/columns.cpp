@@ -148,3 +148,47 @@ TEST("a column that runs dry ends the run with a reason") {
         EXPECT_NE(std::string(failure.what()).find("ran dry"), std::string::npos);
     }
 }
+
+TEST("far ahead of a wave the surface is level, and no number there is too small for a processor's fast ways") {
+    const Plane plane(columns(2, waves, 2000));
+    Sweep sweep(plane, false, false);
+    Stiffness k;
+    k.uniform = true, k.along_x = 1, k.along_z = 0;
+    Field s(plane.count(), 0.0), w(plane.count(), 0.0), s0, w0;
+    s[0] = 1;
+    s0 = s, w0 = w;
+    for (int n = 0; n < 900; ++n) {
+        sweep.step(s, w, k, 0.3);
+        reference_sweep(plane, false, false, s0, w0, k, 0.3);
+    }
+    int tiny = 0;
+    for (std::size_t c = 0; c < s.size(); ++c) {
+        tiny += std::fpclassify(s[c]) == FP_SUBNORMAL || std::fpclassify(w[c]) == FP_SUBNORMAL;
+        ASSERT_NEAR(s[c], s0[c], 1e-13);
+    }
+#ifdef __SSE__
+    EXPECT_EQ(tiny, 0);
+#endif
+    EXPECT_NE(s[300], 0) << "a wave is there";
+}
+
+TEST("an object that is dragged faster than waves passes a part of a column a step; its pressure is not water over its top") {
+    const auto dragged = [](const std::string& velocity, const std::string& more) {
+        return test::height_solver(columns(3,
+                                           "initial.surface = \"0\"\nfloats = [ { size = [0.1, 0.1, 0.2], at = [0.2, -0.02, 0.75], heave = "
+                                           "false, motion = { kind = \"constant\", velocity = " +
+                                               velocity + " } } ]\n" + more,
+                                           40));
+    };
+    const real still = dragged("[0, 0, 0]", "")->advised_dt();
+    const auto fast = dragged("[12, 0, 0]", "");  // sqrt(g d) is 3.1 m/s
+    EXPECT_LT(fast->advised_dt(), still);
+    EXPECT_NEAR(fast->advised_dt() * 12 * 40, 0.45, 1e-12);
+    for (int i = 0; i < 40; ++i) {
+        fast->step(fast->advised_dt());
+        EXPECT_EQ(fast->concern(), "");
+    }
+    const auto under = dragged("[0, -0.5, 0]", "");
+    for (int i = 0; i < 60 && under->concern().empty(); ++i) under->step(under->advised_dt());
+    EXPECT_NE(under->concern().find("above the top of a float"), std::string::npos);
+}

@@ -41,8 +41,8 @@ TEST_IN_2D_AND_3D("the preconditioner is symmetric and positive") {
     tall.set_surface(basin.phi, basin.closed, basin.state, any_knots(basin, 6));
     std::vector<real> a(static_cast<std::size_t>(tall.knots().count())), b(a.size()), Ma(a.size()), Mb(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) a[i] = basin.uniform(-1, 1), b[i] = basin.uniform(-1, 1);
-    tall.solver().precondition(tall.matrix(), a, Ma);
-    tall.solver().precondition(tall.matrix(), b, Mb);
+    tall.solver().precondition(tall.matrix(), tall.knots(), a, Ma);
+    tall.solver().precondition(tall.matrix(), tall.knots(), b, Mb);
     real aMb = 0, bMa = 0, aMa = 0;
     for (std::size_t i = 0; i < a.size(); ++i) aMb += a[i] * Mb[i], bMa += b[i] * Ma[i], aMa += a[i] * Ma[i];
     EXPECT_GT(aMa, 0);

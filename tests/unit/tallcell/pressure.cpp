@@ -39,7 +39,7 @@ TEST_IN_2D_AND_3D("with a knot in every cell the matrix is the uniform grid's") 
     }
     std::vector<real> q(static_cast<std::size_t>(tall.knots().count())), Aq(q.size());
     for (real& x : q) x = basin.uniform(-1, 1);
-    ColumnMultigrid::multiply(tall.matrix(), q, Aq);
+    tall.multiply(q, Aq);
     const Grid<real, D> p = interpolated(tall.layout(), tall.knots(), q);
     Grid<real, D> zero(basin.frame.cells), r(basin.frame.cells);
     poisson::residual(A, p, zero, r);
@@ -57,11 +57,11 @@ TEST_IN_2D_AND_3D("the matrix of any knots is the uniform one between functions 
         ASSERT_LT(tall.knots().count(), uniform.knots().count());
         std::vector<real> q(static_cast<std::size_t>(tall.knots().count())), Aq(q.size());
         for (real& x : q) x = basin.uniform(-1, 1);
-        ColumnMultigrid::multiply(tall.matrix(), q, Aq);
+        tall.multiply(q, Aq);
         const Grid<real, D> p = interpolated(tall.layout(), tall.knots(), q);
         const std::vector<real> fine = tested(uniform.layout(), uniform.knots(), p);
         std::vector<real> r(fine.size());
-        ColumnMultigrid::multiply(uniform.matrix(), fine, r);
+        uniform.multiply(fine, r);
         const std::vector<real> restricted = tested(tall.layout(), tall.knots(), interpolated(uniform.layout(), uniform.knots(), r));
         for (std::size_t i = 0; i < q.size(); ++i) ASSERT_NEAR(Aq[i], restricted[i], 1e-13 * largest(Aq) * 30) << longest << ' ' << i;
     }

@@ -13,7 +13,7 @@ TEST("one mode of a basin swings as linear theory says, at every point of the gr
     solver.step(t);
     for (const real x : {0.0, 1.1, 4.0, 7.3}) {
         // the liquid's surface is found to 60 halvings of a cell, at the middles of cells: the wave is sampled exactly
-        EXPECT_NEAR(ask<1>(solver, "height", {{x, 0, 0}})[0], -3 + 0.05 * std::cos(k * x) * std::cos(omega * t), 1e-12);
+        EXPECT_NEAR(ask<1>(solver, "surface", {{x, 0, 0}})[0], -3 + 0.05 * std::cos(k * x) * std::cos(omega * t), 1e-12);
         const auto u = ask<2>(solver, "velocity", {{x, -4.0, 0}});
         const real rate = -0.05 * omega * std::sin(omega * t);
         EXPECT_NEAR(u[0], -rate * std::sin(k * x) * std::cosh(k * 1.0) / std::sinh(k * depth), 1e-12);
@@ -44,7 +44,7 @@ TEST("a basin begins as its liquid stands, keeps its water, and nothing passes i
                             "waves = \"basin\"\nliquid = [ { shape = \"box\", min = [-1.0, -6.0], max = [11.0, -2.0] }, { shape = "
                             "\"sphere\", centre = [3.0, -2.3], "
                             "radius = 1.5 } ]"));
-    const auto first = values_of(solver, "height");
+    const auto first = values_of(solver, "surface");
     EXPECT_NEAR(first[14], -2.3 + std::sqrt(1.5 * 1.5 - 0.1 * 0.1), 1e-9);  // x = 2.9
     EXPECT_NEAR(first[40], -2, 1e-9);
     const auto mean = [&] { return solver.integrals()[0].value; };

@@ -17,7 +17,7 @@ void compare_with_sums(const scene::Scene& scene) {
     Waves solver(scene);
     solver.step(3.7);
     const FieldSet fields = solver.fields();
-    const auto height = values_of(solver, "height");
+    const auto height = values_of(solver, "surface");
     const auto& position = fields.find("surface", "position")->data;
     const int nx = fields.grid.cells[0], nz = fields.grid.cells[2];
     for (const auto& [i, k] : {std::pair{0, 0}, {5, nz / 9}, {17, nz / 3}, {nx - 1, nz - 1}}) {
@@ -110,7 +110,7 @@ TEST("a finer grid has the same sea, and shorter waves beside; another seed has 
     const auto at = [](const std::string& cells, const std::string& more) {
         Waves solver(sea_scene(", shortest = 20.0" + more, cells));
         solver.step(5);
-        return ask<1>(solver, "height", {{33, 0, 71}})[0];
+        return ask<1>(solver, "surface", {{33, 0, 71}})[0];
     };
     const real height = at("[48, 1, 36]", "");
     EXPECT_GT(std::abs(height), 0.01);
@@ -131,7 +131,7 @@ TEST("random numbers are whole-number arithmetic: the same on any machine, as wo
 TEST("most waves of a sea with a narrow spread travel where the wind blows") {
     Waves solver(sea_scene(", spread = 40.0"));
     const auto mean_flux = [&](int a) {  // of energy: height times horizontal velocity
-        const auto y = values_of(solver, "height"), u = values_of(solver, "velocity", a);
+        const auto y = values_of(solver, "surface"), u = values_of(solver, "velocity", a);
         real sum = 0;
         for (std::size_t i = 0; i < y.size(); ++i) sum += y[i] * u[i];
         return sum;

@@ -25,7 +25,7 @@ TEST("probes ask the formula, not the grid") {
     Simulation simulation(sea_scene("", "[48, 1, 36]", probes));
     simulation.step();
     std::array<real, 1> height{};
-    ASSERT_TRUE(simulation.solver().answer("height", {{33.3, 0, 71.1}}, height));
+    ASSERT_TRUE(simulation.solver().answer("surface", {{33.3, 0, 71.1}}, height));
     EXPECT_EQ(simulation.probe_series("g").values.back()[0], height[0] + 5);  // over the domain's floor
     std::array<real, 3> velocity{};
     ASSERT_TRUE(simulation.solver().answer("velocity", {{33.3, -2, 71.1}}, velocity));

@@ -18,9 +18,9 @@ TEST("sines: velocities are derivatives in time at the mean level, and free of d
     const real h = 1e-4;
     const real now = ask<3>(solver, "velocity", {{3, 0, 7}})[1];
     solver.step(h);
-    const real after = ask<1>(solver, "height", {{3, 0, 7}})[0];
+    const real after = ask<1>(solver, "surface", {{3, 0, 7}})[0];
     solver.step(-2 * h);
-    const real before = ask<1>(solver, "height", {{3, 0, 7}})[0];
+    const real before = ask<1>(solver, "surface", {{3, 0, 7}})[0];
     solver.step(h);
     EXPECT_NEAR((after - before) / (2 * h), now, 1e-7);
     const auto u = [&](real x, real y, real z, std::size_t a) { return ask<3>(solver, "velocity", {{x, y, z}})[a]; };
@@ -35,7 +35,7 @@ TEST("trochoids: the height over a point is that of the particle that is there")
     solver.step(0.9);
     for (const auto& [x, z] : {std::pair{1.0, 2.0}, {7.7, 3.3}, {15.0, 19.0}}) {
         const Motion m = solver.model().motion(x, z);
-        EXPECT_NEAR(ask<1>(solver, "height", {{x + m.moved[0], 0, z + m.moved[2]}})[0], m.moved[1], 1e-12);
+        EXPECT_NEAR(ask<1>(solver, "surface", {{x + m.moved[0], 0, z + m.moved[2]}})[0], m.moved[1], 1e-12);
         EXPECT_NEAR(ask<3>(solver, "velocity", {{x + m.moved[0], m.moved[1], z + m.moved[2]}})[0], m.velocity[0], 1e-11);
     }
 }
@@ -69,8 +69,8 @@ TEST("wind makes the front of a wave steeper than its back, and does not change 
                                 "waves = { model = \"gerstner\", trains = [ { amplitude = 0.5, wavelength = 12.0 } ]" + more + " }"));
         real front = 0, back = 0, top = 0;  // it travels to the right: its front falls there
         for (int i = 0; i < 400; ++i) {
-            const real x = 0.03 * i, y = ask<1>(solver, "height", {{x, 0, 0}})[0],
-                       slope = (ask<1>(solver, "height", {{x + 0.01, 0, 0}})[0] - y) / 0.01;
+            const real x = 0.03 * i, y = ask<1>(solver, "surface", {{x, 0, 0}})[0],
+                       slope = (ask<1>(solver, "surface", {{x + 0.01, 0, 0}})[0] - y) / 0.01;
             front = std::max(front, -slope), back = std::max(back, slope), top = std::max(top, y);
         }
         return std::array<real, 3>{front, back, top};

@@ -1,0 +1,56 @@
+// Heat on a device: the passes of heat.cl over the state's enthalpies.
+#include "particles/device_fluid.hpp"
+
+namespace weir::particles {
+
+template <int D>
+std::string text_of(const std::vector<typename Heat<D>::Heater>& heaters) {
+    std::string text = "WEIR_FN int in_heater(int which, double4 x) {\n    switch (which) {\n";
+    for (std::size_t i = 0; i < heaters.size(); ++i)
+        text += "        case " + std::to_string(i) + ": return " + heaters[i].shape->code() + " < 0;\n";
+    return text + "    }\n    return 0;\n}\n";
+}
+
+template <int D>
+void DeviceFluid<D>::feed(Heat<D>& heat, real dt) {
+    int which = -1;
+    for (const auto& heater : heat.heaters()) {
+        ++which;
+        const real joules = heater.gives(host_.time - dt, dt);
+        if (joules == 0) continue;
+        const real inside = reduce("count_in_heater", {count(), stride_, which, x, parts_}).sum;
+        if (inside == 0) continue;
+        run("feed_heater", {count(), stride_, which, joules / (inside * host_.mass), x, enthalpy});
+        heat.add(joules);
+    }
+    for (const auto& wall : heat.fluxes()) {
+        const real each = dt * wall.flux / host_.rho0, plane = (wall.end ? host_.domain.hi : host_.domain.lo)[wall.axis];
+        const real sign = wall.end ? -1 : 1, spacing = host_.domain.spacing;
+        heat.add(host_.mass * each * reduce("count_at_wall", {count(), stride_, wall.axis, plane, sign, spacing, x, parts_}).sum);
+        run("feed_wall", {count(), stride_, wall.axis, plane, sign, spacing, each, x, enthalpy});
+    }
+}
+
+template <int D>
+void DeviceFluid<D>::conduct(Heat<D>& heat, real dt) {
+    if (count() == 0) return;
+    feed(heat, dt);
+    const int parts = heat.parts(dt);
+    const real part = dt / parts;
+    for (int p = 0; p < parts; ++p) {
+        run("load_theta", {count(), heat_states_, order, enthalpy, a});
+        run("conduct", {count(), stride_, heat_pairs_, heat_walls_, a, neighbours, list, warming_, by_walls_});
+        run("warm", {count(), part, order, warming_, enthalpy});
+        if (heat.held()) heat.add(host_.mass * part * reduce("sum_numbers", {count(), by_walls_, parts_}).sum);
+    }
+    heat.check(reduce("sum_numbers", {count(), enthalpy, parts_}).largest);
+}
+
+template std::string text_of<2>(const std::vector<Heat<2>::Heater>&);
+template std::string text_of<3>(const std::vector<Heat<3>::Heater>&);
+template void DeviceFluid<2>::feed(Heat<2>&, real);
+template void DeviceFluid<3>::feed(Heat<3>&, real);
+template void DeviceFluid<2>::conduct(Heat<2>&, real);
+template void DeviceFluid<3>::conduct(Heat<3>&, real);
+
+}  // namespace weir::particles

@@ -1,0 +1,119 @@
+// Heat that particles carry: specific enthalpy h is what is kept, as in the enthalpy method (Voller & Prakash 1987),
+//     dh_i/dt = (1/ρ0) Σ_j V 2 (Θ_j − Θ_i) (−W'/r) / M + q_i,   Θ = ∫ k dT,
+// conduction between pairs of Cleary & Monaghan 1999 with the exact mean of the conductivity (kernels/heat_pair.inl), over the moment
+// M = Σ_j V (−W'/r) x² of a lattice. Temperature and states follow from h; a scene that names no substance has nothing of this.
+#pragma once
+#include "core/checkpoint.hpp"
+#include "core/solver.hpp"
+#include "particles/fluid.hpp"
+#include "particles/passes.hpp"
+#include "particles/scheme.hpp"
+#include "thermo/heat_curve.hpp"
+
+#include <vector>
+
+namespace weir::particles {
+
+#define WEIR_FN inline
+#define WEIR_PARAM const
+#include "particles/kernels/heat_params.h"
+#include "particles/kernels/heat_state.inl"
+#undef WEIR_FN
+#undef WEIR_PARAM
+
+/// What the sum over a lattice's pairs is for the gradient kernel of a scheme.
+struct LatticeSums {
+    real moment = 1;    // Σ V (−W'/r) x²: 1 for a continuum
+    real diagonal = 0;  // Σ V 2 (−W'/r) / moment: what a particle's own temperature is multiplied by [1/m²]
+};
+template <int D>
+LatticeSums lattice_sums(const Scheme& scheme, real spacing);
+
+/// Solid, liquid and vapour of a curve that has a liquid; conductivities by thermo::State.
+HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>& conductivity);
+
+bool heat_is_named(const scene::Scene& scene);
+/// "substance", "heat", "heaters", and walls with a flux; and "initial.temperature".
+std::vector<scene::Key> heat_keys();
+scene::Key initial_temperature_key();
+/// Of what scene.emitters[i] lets in, of its temperature [J/kg].
+real emitted_enthalpy(const scene::Scene& scene, std::size_t i);
+
+template <int D>
+class Heat {
+public:
+    Heat(const scene::Scene& scene, const Domain<D>& domain);
+    /// Enthalpies from the temperatures at the start, which it refuses below 0 K and where the liquid boils.
+    void start(const scene::Scene& scene, Fluid<D>& fluid) const;
+
+    const single::HeatParams& single_pairs() const { return single_pairs_; }
+    const plain::HeatParams& plain_pairs() const { return plain_pairs_; }
+    const single::HeatWalls& single_walls() const { return single_walls_; }
+    const plain::HeatWalls& plain_walls() const { return plain_walls_; }
+    const HeatStates& states() const { return states_; }
+    /// Whether heat passes from walls that are held at a temperature.
+    bool held() const { return held_; }
+    /// Into how many equal parts a step is cut in each of which explicit conduction is stable; and remembers it.
+    int parts(real dt);
+    /// The largest step of explicit conduction [s].
+    real stable_dt() const { return stable_dt_; }
+
+    real theta(real h) const { return heat_theta(h, 0, &states_); }
+
+    /// A heater at work in (time, time + dt]: what it gives in that [J].
+    struct Heater {
+        geometry::ShapePtr<D> shape;
+        real start = 0, end = infinity, power = 0;  // [s], [s], [W]
+        real gives(real time, real dt) const { return power * std::max<real>(0, std::min(end, time + dt) - std::max(start, time)); }
+    };
+    const std::vector<Heater>& heaters() const { return heaters_; }
+    /// A wall through which so much heat comes [W/m²]; weight: how much of what comes through an area a particle at this height above it
+    /// takes, over the volume of the particle [1/m].
+    struct Flux {
+        int axis = 0, end = 0;
+        real flux = 0;
+    };
+    const std::vector<Flux>& fluxes() const { return fluxes_; }
+    real height(const Flux& wall, const Vec<D>& x) const {
+        return wall.end ? hi_[wall.axis] - x[wall.axis] : x[wall.axis] - lo_[wall.axis];
+    }
+    real weight(real height) const { return std::max<real>(0, 1 - height / (2 * spacing_)) / spacing_; }
+    /// What heaters and walls with a flux give in the step that ended at fluid.time.
+    void feed(Fluid<D>& fluid, real dt);
+    /// Heat that has come from walls or heaters [J].
+    void add(real joules) { added_ += joules; }
+
+    /// Throws NumericalFailure where an enthalpy is not finite, or a liquid boils that may not.
+    void check(const Fluid<D>& fluid) const;
+    void check(real most) const;
+
+    void show(const Fluid<D>& fluid, FieldSet& set) const;
+    void sum_up(const Fluid<D>& fluid, std::vector<Integral>& list) const;
+    void save(Checkpoint& to) const { to.put_value("particles.heat_added", added_); }
+    void restore(const Checkpoint& from) { added_ = from.get_value<real>("particles.heat_added"); }
+    std::size_t bytes() const { return (temperature_.capacity() + liquid_.capacity()) * sizeof(real); }
+
+private:
+    void refuse_boiling(const scene::Scene& scene, const std::string& path, real T) const;
+    void set_pairs(const Scheme& scheme);
+    void read_sides(const scene::Scene& scene, const Domain<D>& domain);
+    void read_heaters(const scene::Scene& scene, const Domain<D>& domain);
+
+    thermo::HeatCurve curve_;
+    HeatStates states_;
+    single::HeatParams single_pairs_;
+    plain::HeatParams plain_pairs_;
+    single::HeatWalls single_walls_;
+    plain::HeatWalls plain_walls_;
+    Vec<D> lo_, hi_;
+    real spacing_, rho0_;
+    bool held_ = false;
+    real stable_dt_ = infinity;
+    int parts_ = 0;  // of the last step
+    std::vector<Heater> heaters_;
+    std::vector<Flux> fluxes_;
+    real added_ = 0;                                  // [J]; in 2D a metre
+    mutable std::vector<real> temperature_, liquid_;  // of show()
+};
+
+}  // namespace weir::particles

@@ -1,0 +1,240 @@
+// What a scene says of heat to particles: the substance, what sides and heaters give, temperatures at the start.
+#include "core/error.hpp"
+#include "geometry/shape.hpp"
+#include "matter/heat.hpp"
+#include "matter/substance.hpp"
+#include "particles/heat.hpp"
+#include "scene/formula.hpp"
+#include "scene/names.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace weir::particles {
+
+namespace {
+
+using scene::Key;
+using scene::Type;
+using thermo::State;
+
+std::string side_path(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
+
+bool has_liquid(const thermo::HeatCurve& curve) {
+    for (int i = 0; i < curve.states(); ++i)
+        if (curve.state(i) == State::liquid) return true;
+    return false;
+}
+
+/// The particles' density, which is that of all states, is one of the liquid or of what it freezes to.
+void check_density(const scene::Scene& scene, const thermo::Substance& substance, const HeatStates& states) {
+    const real p = scene.number("heat.pressure"), rho = scene.number("fluid.density");
+    const bool melts = substance.has(thermo::Boundary::melting);
+    const real liquid =
+        melts ? substance.warmer_density(thermo::Boundary::melting, states.T) : substance.density(State::liquid, {states.T, p});
+    const real solid = melts ? substance.colder_density(thermo::Boundary::melting, states.T) : liquid;
+    if (rho >= 0.9 * std::min(liquid, solid) && rho <= 1.1 * std::max(liquid, solid)) return;
+    const auto text = [](real value) { return scene::number_text(std::round(value * 10) / 10); };
+    scene.refuse("fluid.density", "fluid.density is " + scene::number_text(rho) + " kg/m^3, which is no density of " + substance.name(),
+                 "solid " + text(solid) + ", liquid " + text(liquid) + " kg/m^3: this solver takes one for both");
+}
+
+thermo::HeatCurve liquid_curve(const scene::Scene& scene, const thermo::Substance& substance) {
+    const auto curve = matter::curve_of(scene, substance);
+    if (!has_liquid(curve))
+        scene.refuse("heat.pressure",
+                     "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance.name() + " is never a liquid",
+                     "particles are those of a liquid");
+    return curve;
+}
+
+/// initial.temperature as a function of place.
+template <int D>
+std::function<real(const Vec<D>&)> temperature_function(const scene::Scene& scene) {
+    const auto& table = scene.root().table("initial.temperature");
+    const std::string& name = table.text("name");
+    if (name == "constant") return [T = table.number("value")](const Vec<D>&) { return T; };
+    if (name == "linear")
+        return [T = table.number("value"), slope = table.vec<D>("gradient"), at = table.vec<D>("at")](const Vec<D>& x) {
+            return T + dot(slope, x - at);
+        };
+    if (name == "formula")
+        return [f = scene::formula_at(scene, "initial.temperature.value",
+                                      D == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"})](
+                   const Vec<D>& x) { return f(std::span<const real>(&x[0], D)); };
+    const auto centre = table.vec<D>("centre");
+    if (name == "gaussian")
+        return [centre, base = table.number("base"), height = table.number("amplitude"), w = table.number("width")](const Vec<D>& x) {
+            return base + height * std::exp(-dot(x - centre, x - centre) / (2 * w * w));
+        };
+    return [centre, r = table.number("radius"), in = table.number("value"), out = table.number("outside")](const Vec<D>& x) {
+        return norm(x - centre) < r ? in : out;
+    };
+}
+
+}  // namespace
+
+bool heat_is_named(const scene::Scene& scene) { return scene.has("substance"); }
+
+std::vector<Key> heat_keys() {
+    Key sides{.name = "sides", .type = Type::table};
+    for (const char* axis : {"x", "y", "z"})
+        for (const char* end : {"_min", "_max"})
+            sides.keys.push_back({.name = std::string(axis) + end, .type = Type::table, .variants = {matter::wall_with_heat_flux()}});
+    return {
+        matter::substance_key_of_heat(
+            "Naming it lets particles carry heat, melt and freeze, with `fluid.density` for solid and liquid alike."),
+        {.name = "heat",
+         .type = Type::table,
+         .doc = "How a substance takes up heat. Only where `substance` is named.",
+         .keys = {matter::pressure_key()}},
+        matter::heaters_key(
+            "Regions that give off heat, evenly over the particles inside; while there is none, nothing. Only where `substance` is named."),
+        sides};
+}
+
+Key initial_temperature_key() {
+    const auto number = [](const char* name, const char* doc, const char* unit) {
+        return Key{.name = name, .type = Type::number, .doc = doc, .unit = unit, .required = true};
+    };
+    Key key{
+        .name = "temperature", .type = Type::table, .doc = "Temperature at t = 0. Only where `substance` is named.", .selector = "name"};
+    key.variants = {{"ball",
+                     "One value in a ball, another outside.",
+                     {{.name = "centre", .type = Type::numbers, .doc = "Centre.", .unit = "m", .required = true, .length = -1},
+                      number("radius", "Radius.", "m"),
+                      number("value", "Inside.", "K"),
+                      number("outside", "Outside.", "K")}},
+                    {"formula",
+                     "A formula of x and y, and of z in 3D: numbers, pi, + - * / ^ ( ), functions such as sin, exp, max.",
+                     {{.name = "value", .type = Type::text, .doc = "The formula.", .unit = "K", .required = true}}}};
+    return key;
+}
+
+real emitted_enthalpy(const scene::Scene& scene, std::size_t i) {
+    const std::string path = "emitters[" + std::to_string(i) + "]";
+    const auto& table = scene.root().tables("emitters")[i];
+    if (!table.has("temperature")) scene.refuse(path, "an emitter of particles that carry heat needs a temperature");
+    const real T = table.number("temperature");
+    matter::check_temperature(scene, path + ".temperature", T);
+    const auto curve = liquid_curve(scene, *matter::substance_of(scene));
+    return curve.enthalpy(T);
+}
+
+template <int D>
+Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
+    : curve_(liquid_curve(scene, *matter::substance_of(scene))),
+      lo_(domain.lo),
+      hi_(domain.hi),
+      spacing_(domain.spacing),
+      rho0_(scene.number("fluid.density")) {
+    const auto substance = matter::substance_of(scene);
+    std::array<real, 3> k{};
+    for (int i = 0; i < curve_.states(); ++i)
+        if (curve_.state(i) != State::supercritical)
+            k[static_cast<std::size_t>(curve_.state(i))] = substance->conduction(curve_.state(i)).conductivity;
+    states_ = heat_states(curve_, k);
+    check_density(scene, *substance, states_);
+    Scheme scheme;
+    scheme.read(scene);
+    set_pairs(scheme);
+    read_sides(scene, domain);
+    read_heaters(scene, domain);
+}
+
+template <int D>
+void Heat<D>::refuse_boiling(const scene::Scene& scene, const std::string& path, real T) const {
+    if (curve_.enthalpy(T) > states_.liquid_end)
+        scene.refuse(path, "at " + scene::number_text(T) + " K the liquid boils", "solver \"" + scene.solver() + "\" has no vapour");
+}
+
+template <int D>
+void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
+    const auto fill = [&](auto& w) {
+        for (int a = 0; a < 3; ++a) w.lo[a] = -1e15F, w.hi[a] = 1e15F, w.lo_theta[a] = w.hi_theta[a] = 0, w.lo_held[a] = w.hi_held[a] = 0;
+        w.closest = static_cast<std::remove_reference_t<decltype(w.closest)>>(0.25 * spacing_);
+    };
+    fill(single_walls_), fill(plain_walls_);
+    for (int a = 0; a < D; ++a)
+        for (int end = 0; end < 2; ++end) {
+            const std::string path = side_path(a, end);
+            const auto T = scene.has(path + ".temperature") ? std::optional<real>(scene.number(path + ".temperature")) : std::nullopt;
+            if (!domain.walled(a, end)) {
+                if (T)
+                    scene.refuse(path + ".temperature", "nothing comes in through a side of particles",
+                                 "walls have a temperature; emitters let in");
+                continue;
+            }
+            const auto place = [&](auto& w) {
+                using Number = std::remove_reference_t<decltype(w.closest)>;
+                (end ? w.hi : w.lo)[a] = static_cast<Number>((end ? domain.hi : domain.lo)[a] - domain.centre()[a]);
+                (end ? w.hi_held : w.lo_held)[a] = T.has_value();
+                if (T) (end ? w.hi_theta : w.lo_theta)[a] = static_cast<Number>(theta(curve_.enthalpy(*T)));
+            };
+            if (T) {
+                matter::check_temperature(scene, path + ".temperature", *T);
+                refuse_boiling(scene, path + ".temperature", *T);
+                held_ = true;
+            }
+            place(single_walls_), place(plain_walls_);
+            if (!scene.has(path + ".heat_flux")) continue;
+            if (T) scene.refuse(path + ".heat_flux", "the wall has a temperature: how much heat passes follows from it");
+            fluxes_.push_back({a, end, scene.number(path + ".heat_flux")});
+        }
+}
+
+template <int D>
+void Heat<D>::read_heaters(const scene::Scene& scene, const Domain<D>& domain) {
+    const auto& tables = scene.root().tables("heaters");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        matter::check_heater(scene, i);
+        const std::string path = "heaters[" + std::to_string(i) + "]";
+        Heater heater{geometry::make_shape<D>(tables[i]), tables[i].number("start"), tables[i].number_or("end", infinity),
+                      tables[i].number("power")};
+        bool covers = false, free = false;
+        const Index<D> cells = scene.index<D>("grid.cells");
+        Index<D> at{};
+        for (std::size_t c = 0; c < product(cells); ++c) {
+            const Vec<D> x = domain.lo + domain.spacing * (to_vec(at) + Vec<D>::constant(0.5));
+            for (int a = 0; a < D && ++at[a] == cells[a]; ++a) at[a] = 0;
+            if (!heater.shape->contains(x)) continue;
+            covers = true;
+            free = free || domain.solids.empty() || domain.solids.distance(x) > 0;
+        }
+        if (!free)
+            scene.refuse(path, covers ? "the heater lies inside solids: no heat leaves it" : "the heater covers the centre of no cell");
+        heaters_.push_back(std::move(heater));
+    }
+}
+
+template <int D>
+void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
+    if (!scene.has("initial.temperature.name"))
+        scene.refuse("substance", "a substance needs a temperature at the start", "initial.temperature");
+    const auto value = temperature_function<D>(scene);
+    fluid.warm = true;
+    fluid.enthalpy.clear();
+    real coldest = infinity, hottest = 0;
+    for (int i = 0; i < fluid.count(); ++i) {
+        const real T = value(fluid.position(i));
+        if (!(T >= coldest)) coldest = T;
+        hottest = std::max(hottest, T);
+        fluid.enthalpy.push_back(curve_.enthalpy(T));
+    }
+    if (!(coldest > 0))
+        scene.refuse("initial.temperature", "somewhere it is " + scene::number_text(coldest) + " K at the start",
+                     "temperatures are above 0 K");
+    refuse_boiling(scene, "initial.temperature", hottest);
+}
+
+#define WEIR_INSTANTIATE(D)                                                                     \
+    template Heat<D>::Heat(const scene::Scene&, const Domain<D>&);                              \
+    template void Heat<D>::refuse_boiling(const scene::Scene&, const std::string&, real) const; \
+    template void Heat<D>::read_sides(const scene::Scene&, const Domain<D>&);                   \
+    template void Heat<D>::read_heaters(const scene::Scene&, const Domain<D>&);                 \
+    template void Heat<D>::start(const scene::Scene&, Fluid<D>&) const;
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::particles

@@ -1,0 +1,29 @@
+/* Temperature and the like from specific enthalpy h, in double precision on every backend. Plain C; WEIR_FN and WEIR_PARAM as in pair.inl.
+   shift: by how much more enthalpy the liquid boils than at the pressure of the curve [J/kg]. */
+
+WEIR_FN double heat_low(double a, double b) { return a < b ? a : b; }
+WEIR_FN double heat_high(double a, double b) { return a < b ? b : a; }
+
+/* What rises with h by a factor of its own in each state and stays where one turns into the next; 0 where the liquid begins. */
+WEIR_FN double heat_rise(double h, double shift, double solid, double liquid, double vapour, WEIR_PARAM HeatStates* s) {
+    double end = s->liquid_end + shift, begin = s->vapour_begin + shift;
+    return solid * (heat_low(h, s->solid_end) - s->solid_end) + liquid * (heat_low(heat_high(h, s->liquid_begin), end) - s->liquid_begin) +
+           vapour * (heat_high(h, begin) - begin);
+}
+
+/* [K] */
+WEIR_FN double heat_temperature(double h, double shift, WEIR_PARAM HeatStates* s) {
+    return s->T + heat_rise(h, shift, s->per_c[0], s->per_c[1], s->per_c[2], s);
+}
+
+/* The integral of the conductivity over the temperature, from where the liquid begins (Kirchhoff 1894) [W/m] */
+WEIR_FN double heat_theta(double h, double shift, WEIR_PARAM HeatStates* s) {
+    return heat_rise(h, shift, s->k_c[0], s->k_c[1], s->k_c[2], s);
+}
+
+/* How much of the mass is no longer solid, and how much has become vapour. */
+WEIR_FN double heat_share(double h, double begin, double end) { return h >= end ? 1 : h <= begin ? 0 : (h - begin) / (end - begin); }
+WEIR_FN double heat_melted(double h, WEIR_PARAM HeatStates* s) { return heat_share(h, s->solid_end, s->liquid_begin); }
+WEIR_FN double heat_vapour(double h, double shift, WEIR_PARAM HeatStates* s) {
+    return heat_share(h, s->liquid_end + shift, s->vapour_begin + shift);
+}

@@ -1,0 +1,66 @@
+// Conduction of heat between the cells of a grid by the enthalpy method: H += (dt/ρ) (∇·(k ∇T(H)) + q), with H the specific enthalpy and
+// T(H) constant where a cell is part solid, part liquid (Voller & Prakash 1987).
+//
+// A step of any length is taken in as many explicit stages as it needs, by Gegenbauer's polynomials C_s^(5/2): Runge-Kutta-Gegenbauer
+// schemes (Skaras, Saxton, Meyer & Aslam, JCP 425, 2021) after Runge-Kutta-Legendre ones (Meyer, Balsara & Aslam, JCP 257, 2014), with
+// which s stages reach s (s + 5)/6 times as far as Euler's explicit scheme. Explicit stages take the plateau as it comes: nothing is
+// linearised and nothing iterated (so did Alexiades, Amiez & Gremaud 1996 with Chebyshev's polynomials). With R = ∇·(k ∇T) + q,
+//     D_j = (2j + 3)/(j + 4) [D_{j−1} + w (dt/ρ) R(H + D_{j−1})] − (j − 1)/(j + 4) D_{j−2},   w = 6/(s (s + 5)),   D_0 = 0,   H ← H + D_s.
+// First order in dt, with a quarter of the error of Euler's implicit scheme: of e^z it knows 1 + z + 3/8 z² where many stages are taken.
+// Legendre's polynomials would need fewer stages, but a warm cell in three dimensions would be left colder than its neighbours: the waves
+// that these stages send out are a sum of positive parts up to five dimensions with 5/2, with 1/2 in no more than two.
+// The change of each cell is a sum of fluxes that its neighbours lose: no heat is lost.
+#pragma once
+#include "core/grid.hpp"
+#include "matter/melting.hpp"
+#include "poisson/poisson.hpp"
+#include "staggered/ghosts.hpp"
+
+namespace weir::staggered {
+
+template <int D>
+class Conduction {
+public:
+    Conduction() = default;
+    /// `temperature`: what the sides impose.
+    Conduction(const matter::Melting& melting, const Index<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
+    Boundary<D>& boundary() { return boundary_; }
+
+    /// What a step is told beside H.
+    struct Given {
+        const Grid<poisson::Cell, D>& cells;
+        bool cells_changed;                 // since the last call
+        const Grid<real, D>& source;        // q [W/m³], 0 outside the fluid; may be empty
+        const Padded<D>* before = nullptr;  // H before something else changed it in the same step: both then go on side by side, so that a
+                                            // steady state of the two does not depend on the step
+    };
+    /// H after dt in the cells of fluid; others are not touched and let nothing through. Answers how much heat sides and sources gave [J;
+    /// in 2D a metre of depth].
+    real step(Grid<real, D>& H, const Given& given, real dt);
+    /// The same in one stage: Euler's explicit scheme, unstable beyond longest_euler_step().
+    real euler_step(Grid<real, D>& H, const Given& given, real dt);
+    /// Euler's explicit scheme takes no more heat from a cell than makes it as cold as its neighbours, whatever the cells are.
+    real longest_euler_step() const;
+    std::size_t bytes() const;
+
+private:
+    void prepare(const Grid<real, D>& H, const Given& given);
+    void set_conductances(const Grid<real, D>& H, const Grid<poisson::Cell, D>& cells);
+    real stages(Grid<real, D>& H, const Given& given, real dt, int count);
+    void take_temperature(const Grid<real, D>& H, const Padded<D>* before);
+    int stages_for(real dt, const Grid<real, D>& source) const;
+    void flow(const Index<D>& first, int count, real* out) const;
+    real through_sides() const;
+
+    matter::Melting melting_;
+    Vec<D> h_{};
+    real rho_ = 1, cell_volume_ = 0;
+    Boundary<D> boundary_, no_flux_;
+    std::array<Grid<real, D>, D> conductance_;  // k/h² of faces [W/(m³ K)]
+    real most_conductance_ = 0;                 // of all faces of a cell
+    bool all_liquid_ = false, known_ = false;   // when they were set; whether they were
+    Grid<real, D> change_, older_;              // D_j, D_{j−1}
+    Padded<D> k_, T_;
+};
+
+}  // namespace weir::staggered

@@ -1,0 +1,85 @@
+// The matrix of pressures on columns of knots, on rows that all columns share: every row that is a knot of any column. Between two shared
+// rows next to one another a pressure is linear in every column, so with a value in each shared row all columns have the same elements, and
+// the matrix couples a row to the next above and below in its own column and in the four beside it. A column has no unknown in a row that
+// lies inside an element of its own; it takes there what is between its knots: x = R q. So the matrix of the knots is
+//   A = Rᵀ (Σ_columns T + Σ_faces W ⊗ [1 −1; −1 1]) R      T: vertical faces and faces of air; W: faces between two columns
+// with T and W tridiagonal, and nothing in it is searched for. Coarser columns keep the shared rows, so that theirs are plain sums.
+#pragma once
+#include "tallcell/columns.hpp"
+
+#include <cstddef>
+
+namespace weir::tallcell {
+
+/// Where the entries of columns lie in memory: line by line along the first horizontal axis, in a line row by row, and in a row the columns
+/// of even number before those of odd number. So columns of one colour of a checkerboard lie beside one another, and so do their
+/// neighbours along either axis. Lines begin and end with a row, and rows of either parity with an entry, that no column has.
+struct ColumnPlaces {
+    std::array<int, 2> n{1, 1};      // columns along the horizontal axes
+    std::array<bool, 2> periodic{};  // they
+    int rows = 0;                    // that columns share
+
+    int even() const { return (n[0] + 1) / 2; }
+    int of_parity(int parity) const { return parity == 0 ? even() : n[0] / 2; }
+    std::ptrdiff_t width() const { return even() + 2; }
+    std::ptrdiff_t row_stride() const { return 2 * width(); }
+    std::ptrdiff_t line_stride() const { return (rows + 2) * row_stride(); }
+    /// With a line of zeros at the end: the neighbour of those that have none.
+    std::size_t size() const { return static_cast<std::size_t>((n[1] + 1) * line_stride()); }
+    std::size_t first(int z, int k, int parity) const {
+        return static_cast<std::size_t>(z * line_stride() + (k + 1) * row_stride() + parity * width() + 1);
+    }
+    std::size_t at(int x, int z, int k) const { return first(z, k, x % 2) + static_cast<std::size_t>(x / 2); }
+    /// An axis along which the first and the last column have one colour and are neighbours.
+    bool joint(int axis) const { return periodic[static_cast<std::size_t>(axis)] && n[static_cast<std::size_t>(axis)] % 2 == 1; }
+};
+
+/// From the entry of a column to those of the columns beside it.
+struct Beside {
+    std::ptrdiff_t x_lower, x_upper, z_lower, z_upper;
+    Beside(const ColumnPlaces& places, int z, int parity)
+        : x_lower(parity == 0 ? places.width() - 1 : -places.width()), x_upper(x_lower + 1) {
+        const int last = places.n[1] - 1;
+        const bool around = places.periodic[1] && last > 0;
+        const int lower = z > 0 ? z - 1 : around ? last : last + 1, upper = z < last ? z + 1 : around ? 0 : last + 1;
+        z_lower = (lower - z) * places.line_stride(), z_upper = (upper - z) * places.line_stride();
+    }
+};
+
+struct ColumnMatrix : ColumnPlaces {
+    enum State : std::uint8_t { wet = 1, inside = 2, goes_on = 4 };  // inside: of an element, no knot; goes_on: up to the next shared row
+    std::vector<int> row;                                            // of the lattice
+    std::vector<std::uint8_t> state;                                 // of a column in a row
+    std::vector<real> share;                                         // inside: the weight of the knot above
+    std::vector<real> vertical;                                      // T: between a row and the next
+    std::vector<real> lid;                                           // faces of air above and below
+    std::vector<real> sink, sink_next;                     // faces of air beside: the diagonal, and the entry between a row and the next
+    std::array<std::vector<real>, 2> beside, beside_next;  // W of the face on the lower side along either axis
+    std::vector<std::uint8_t> mixed;                       // rows inside an element of any column
+    int mixed_end = 0;                                     // none at or above this row, nor in the one below
+    std::vector<std::uint8_t> tall;                        // rows at an end of an element longer than one
+
+    /// Room for `row`, filled with nothing.
+    void resize();
+    /// What lies beyond the ends of lines around a periodic axis; and which rows are mixed and tall.
+    void finish();
+    /// share of the rows inside elements, from their knots' rows.
+    void find_shares();
+    std::size_t bytes() const;
+
+private:
+    void find_shares(int x, int z);
+};
+
+/// Copies the columns at the ends of line z to beyond its other end, where the axis is periodic.
+template <class T>
+void wrap_line(const ColumnPlaces& places, int z, T* values) {
+    const int n = places.n[0];
+    if (!places.periodic[0] || n == 1) return;
+    for (int k = 0; k < places.rows; ++k) {
+        values[places.first(z, k, 1) - 1] = values[places.at(n - 1, z, k)];
+        values[places.first(z, k, n % 2) + static_cast<std::size_t>(places.of_parity(n % 2))] = values[places.at(0, z, k)];
+    }
+}
+
+}  // namespace weir::tallcell
