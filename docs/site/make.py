@@ -16,7 +16,7 @@ here = pathlib.Path(__file__).resolve().parent
 root = here.parents[1]
 katex = pathlib.Path("/usr/share/javascript/katex")
 link = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^()\s]+)\)")
-code = re.compile(r"^```.*?^```[ \t]*$|`[^`\n]*`", re.M | re.S)
+code = re.compile(r"^```.*?^```[ \t]*$|`(?:[^`\n]|\n(?!\n))*`", re.M | re.S)
 marked = re.compile(r"(<!-- from results: (\w+) -->\n).*?(<!-- end -->)", re.S)
 
 

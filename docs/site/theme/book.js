@@ -26,8 +26,11 @@
   let pages = null;
   window.weir_pages = (index) => {
     pages = index.docs.map((d) => ({ to: d.location, title: d.title, text: d.text.replace(/\s+/g, " "), low: `${d.title} ${d.text}`.toLowerCase() }));
+    const titles = new Map(pages.map((p) => [p.to, p.title]));
+    for (const p of pages) if (p.to.includes("#") && titles.get(page_of(p)) !== p.title) p.page = titles.get(page_of(p));
     show();
   };
+  const page_of = (p) => p.to.split("#")[0];
   const load = () => {
     if (pages || document.getElementById("index")) return;
     const script = document.createElement("script");
@@ -65,12 +68,14 @@
     found.hidden = words.length === 0;
     article.hidden = words.length > 0;
     if (words.length === 0 || !pages) return;
-    const hits = pages.filter((p) => words.every((w) => p.low.includes(w))).map((p) => [rank(p, words), p]).sort((a, b) => b[0] - a[0]).slice(0, 30);
+    const all = pages.filter((p) => words.every((w) => p.low.includes(w)));
+    const sections = new Set(all.filter((p) => p.to.includes("#")).map(page_of));  // a page is named by its sections, where those say it
+    const hits = all.filter((p) => p.to.includes("#") || !sections.has(p.to)).map((p) => [rank(p, words), p]).sort((a, b) => b[0] - a[0]).slice(0, 30);
     const ol = document.createElement("ol");
     for (const [, page] of hits) {
       const item = document.createElement("li"), a = document.createElement("a"), p = document.createElement("p");
       a.href = `${root}/${page.to}`;
-      a.append(marked(page.title, words));
+      a.append(marked(page.page ? `${page.page} · ${page.title}` : page.title, words));
       p.append(marked(around(page, words), words));
       item.append(a, p);
       ol.append(item);
