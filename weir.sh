@@ -13,6 +13,7 @@
 #   describe [WHAT]     what a scene may say
 #   test [...]          all tests; more words go to ctest
 #   python              the package of Python, in build/release/python
+#   docs                the book as a site, in build/docs/site
 #   install DIR         the program, its cases and the library
 # `./weir.sh COMMAND --help` tells more. Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
 # second call re-does only what changed. The executable is build/release/weir.
@@ -23,6 +24,7 @@ weir_needs=(g++ cmake ninja-build git libeigen3-dev libfmt-dev libtomlplusplus-d
             ocl-icd-opencl-dev libgsl-dev libmuparser-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev)
 figures_need=(gnuplot-nox)
 python_needs=(python3-dev pybind11-dev python3-numpy)
+docs_need=(mkdocs libjs-katex)
 tests_need=(ccache libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
             python3-pytest python3-matplotlib)
 
@@ -73,7 +75,7 @@ build_python() {
 
 # build_all: the tests and benchmarks too
 build_all() {
-    install_missing "${weir_needs[@]}" "${figures_need[@]}" "${python_needs[@]}" "${tests_need[@]}"
+    install_missing "${weir_needs[@]}" "${figures_need[@]}" "${python_needs[@]}" "${docs_need[@]}" "${tests_need[@]}"
     configure WEIR_TESTS WEIR_BENCHMARKS WEIR_PYTHON
     cmake --build "$here/build/release"
 }
@@ -102,6 +104,7 @@ case "${1:-}" in
         install_missing "${weir_needs[@]}" "${figures_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     view) install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec "$here/build/release/weir" "$@" ;;
     python) build_python ;;
+    docs) install_missing "${docs_need[@]}" && python3 "$here/docs/site/make.py" "$here/build/docs" ;;
     test) build_all && cd "$here/build/release" && run_tests "${@:2}" ;;
     install) [ $# -eq 2 ] || { usage >&2; exit 2; }; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
     help | --help | -h) usage ;;
