@@ -19,6 +19,7 @@ struct ColumnPlaces {
     std::array<bool, 2> periodic{};  // they
     int rows = 0;                    // that columns share
 
+    bool operator==(const ColumnPlaces&) const = default;
     int even() const { return (n[0] + 1) / 2; }
     int of_parity(int parity) const { return parity == 0 ? even() : n[0] / 2; }
     std::ptrdiff_t width() const { return even() + 2; }

@@ -212,6 +212,8 @@ void ColumnMultigrid::setup(const ColumnMatrix& finest) {
         A = l == 0 ? &finest : &levels_[l].coarse;
         coarsen(*A, levels_[l + 1].coarse);
     }
+    if (places_ == static_cast<const ColumnPlaces&>(finest)) return;  // what lies between lines and rows is zero
+    places_ = finest;
     for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_scratch(*list, finest.size(), 0.0);
 }
 
@@ -267,8 +269,10 @@ struct Elimination {
 
 void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
     const std::size_t size = A.size();
-    for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
-        refill_scratch(*list, size, 0.0f);
+    if (!(level.places == static_cast<const ColumnPlaces&>(A)))
+        for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
+            refill_scratch(*list, size, 0.0f);
+    level.places = A;
     for (const std::size_t h : {at(0), at(1)}) {
         resize_scratch(level.beside[h], size);
         resize_scratch(level.beside_next[h], size);
