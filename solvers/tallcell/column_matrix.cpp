@@ -42,6 +42,32 @@ void ColumnMatrix::finish() {
         wrap_line(*this, z, beside_next[0].data());
     });
     find_shares();
+    alike.resize(row.size());
+    parallel_for(0, rows, [&](int k) { alike[static_cast<std::size_t>(k)] = look_at_row(k); });
+}
+
+ColumnMatrix::Alike ColumnMatrix::look_at_row(int k) const {
+    Alike found{1, {}, {}};
+    for (const std::size_t h : {0, 1}) {
+        if (n[h] == 1) continue;
+        const std::size_t sample = h == 0 ? at(1, 0, k) : at(0, 1, k);
+        const real w = beside[h][sample], next = beside_next[h][sample];
+        found.beside[h] = w, found.beside_next[h] = next;
+        for (int z = 0; z < n[1]; ++z) {
+            const bool side = h == 1 && z == 0 && !periodic[1];
+            for (const int parity : {0, 1}) {
+                const std::size_t from = first(z, k, parity);
+                const int begin = h == 0 && parity == 0 && !periodic[0] ? 1 : 0;
+                bool same = true;
+                for (int i = begin; i < of_parity(parity); ++i) {
+                    const std::size_t place = from + static_cast<std::size_t>(i);
+                    same &= (side || (beside[h][place] == w && beside_next[h][place] == next));
+                }
+                if (!same) return {};
+            }
+        }
+    }
+    return found;
 }
 
 void ColumnMatrix::find_shares() {
@@ -67,7 +93,8 @@ void ColumnMatrix::find_shares(int x, int z) {
 std::size_t ColumnMatrix::bytes() const {
     std::size_t reals = share.capacity() + vertical.capacity() + lid.capacity() + sink.capacity() + sink_next.capacity();
     for (const std::size_t h : {0, 1}) reals += beside[h].capacity() + beside_next[h].capacity();
-    return reals * sizeof(real) + row.capacity() * sizeof(int) + state.capacity() + mixed.capacity() + tall.capacity();
+    return reals * sizeof(real) + row.capacity() * sizeof(int) + state.capacity() + mixed.capacity() + tall.capacity() +
+           alike.capacity() * sizeof(Alike);
 }
 
 }  // namespace weir::tallcell

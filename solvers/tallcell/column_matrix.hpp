@@ -19,6 +19,7 @@ struct ColumnPlaces {
     std::array<bool, 2> periodic{};  // they
     int rows = 0;                    // that columns share
 
+    bool operator==(const ColumnPlaces&) const = default;
     int even() const { return (n[0] + 1) / 2; }
     int of_parity(int parity) const { return parity == 0 ? even() : n[0] / 2; }
     std::ptrdiff_t width() const { return even() + 2; }
@@ -59,6 +60,13 @@ struct ColumnMatrix : ColumnPlaces {
     int mixed_end = 0;                                     // none at or above this row, nor in the one below
     std::vector<std::uint8_t> tall;                        // rows at an end of an element longer than one
 
+    /// A row in which W is the same for all faces along an axis, but for sides of the domain, where it is nothing.
+    struct Alike {
+        std::uint8_t yes = 0;
+        std::array<real, 2> beside{}, beside_next{};
+    };
+    std::vector<Alike> alike;
+
     /// Room for `row`, filled with nothing.
     void resize();
     /// What lies beyond the ends of lines around a periodic axis; and which rows are mixed and tall.
@@ -69,6 +77,7 @@ struct ColumnMatrix : ColumnPlaces {
 
 private:
     void find_shares(int x, int z);
+    Alike look_at_row(int k) const;
 };
 
 /// Copies the columns at the ends of line z to beyond its other end, where the axis is periodic.

@@ -49,6 +49,36 @@ inline void add_beside(const std::array<std::vector<T>, 2>& W, const std::array<
     }
 }
 
+/// The same where all columns have the row's faces in common. Beyond sides of the domain x is 0.
+template <bool Tall>
+inline void add_alike(const ColumnMatrix::Alike& W, const ColumnMatrix::Alike& below, const float* v, const Beside& to, std::ptrdiff_t row,
+                      int count, float* sum) {
+    const auto w0 = static_cast<float>(W.beside[0]), w1 = static_cast<float>(W.beside[1]);
+#pragma omp simd
+    for (int i = 0; i < count; ++i) sum[i] += w0 * (v[i + to.x_lower] + v[i + to.x_upper]) + w1 * (v[i + to.z_lower] + v[i + to.z_upper]);
+    if constexpr (Tall) {
+        const auto a0 = static_cast<float>(W.beside_next[0]), a1 = static_cast<float>(W.beside_next[1]);
+        const auto b0 = static_cast<float>(below.beside_next[0]), b1 = static_cast<float>(below.beside_next[1]);
+#pragma omp simd
+        for (int i = 0; i < count; ++i)
+            sum[i] +=
+                (a0 * (v[i + to.x_lower + row] + v[i + to.x_upper + row]) + b0 * (v[i + to.x_lower - row] + v[i + to.x_upper - row])) +
+                (a1 * (v[i + to.z_lower + row] + v[i + to.z_upper + row]) + b1 * (v[i + to.z_lower - row] + v[i + to.z_upper - row]));
+    }
+}
+
+/// sum += Σ W x of the columns beside, in row k, whichever kind it is.
+inline void add_row(const ColumnMatrix& A, const std::array<std::vector<float>, 2>& W, const std::array<std::vector<float>, 2>& W_next,
+                    const float* x, int k, std::size_t first, const Beside& to, int count, float* sum) {
+    const std::ptrdiff_t row = A.row_stride();
+    const bool tall = A.tall[at(k)] != 0;
+    const ColumnMatrix::Alike &here = A.alike[at(k)], &below = A.alike[at(std::max(k - 1, 0))];
+    if (here.yes && !tall) return add_alike<false>(here, below, x + first, to, row, count, sum);
+    if (here.yes && k > 0 && below.yes) return add_alike<true>(here, below, x + first, to, row, count, sum);
+    if (tall) return add_beside<float, true>(W, W_next, x, first, to, row, count, sum);
+    add_beside<float, false>(W, W_next, x, first, to, row, count, sum);
+}
+
 /// Rᵀ downwards: what rows inside elements say to the knot below. `above` is what has been gathered for it.
 template <class T>
 inline void gather_down(const real* share, T* y, T* above, int count) {
@@ -212,6 +242,8 @@ void ColumnMultigrid::setup(const ColumnMatrix& finest) {
         A = l == 0 ? &finest : &levels_[l].coarse;
         coarsen(*A, levels_[l + 1].coarse);
     }
+    if (places_ == static_cast<const ColumnPlaces&>(finest)) return;  // what lies between lines and rows is zero
+    places_ = finest;
     for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_scratch(*list, finest.size(), 0.0);
 }
 
@@ -267,8 +299,10 @@ struct Elimination {
 
 void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
     const std::size_t size = A.size();
-    for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
-        refill_scratch(*list, size, 0.0f);
+    if (!(level.places == static_cast<const ColumnPlaces&>(A)))
+        for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
+            refill_scratch(*list, size, 0.0f);
+    level.places = A;
     for (const std::size_t h : {at(0), at(1)}) {
         resize_scratch(level.beside[h], size);
         resize_scratch(level.beside_next[h], size);
@@ -348,7 +382,6 @@ void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
 /// columns of the other colour, and the line's ends, are read; x of these holds what is between.
 void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, int parity, int begin, int end, bool alone) {
     const int count = end - begin, mixed_end = A.mixed_end;
-    const std::ptrdiff_t row = A.row_stride();
     const Beside to(A, z, parity);
     const auto right_hand_side = [&](int k) {
         const std::size_t first = A.first(z, k, parity) + at(begin);
@@ -356,12 +389,7 @@ void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, 
         float* x = level.x.data() + first;
         Lanes<float> sum;
         for (int i = 0; i < count; ++i) sum[at(i)] = b[i];
-        if (!alone) {
-            if (A.tall[at(k)])
-                add_beside<float, true>(level.beside, level.beside_next, level.x.data(), first, to, row, count, sum.data());
-            else
-                add_beside<float, false>(level.beside, level.beside_next, level.x.data(), first, to, row, count, sum.data());
-        }
+        if (!alone) add_row(A, level.beside, level.beside_next, level.x.data(), k, first, to, count, sum.data());
         for (int i = 0; i < count; ++i) x[i] = sum[at(i)];
     };
     Lanes<float> carried{};
@@ -458,10 +486,7 @@ void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
                 float* r = level.r.data() + first;
 #pragma omp simd
                 for (int i = 0; i < count; ++i) r[i] = b[i] - diagonal[i] * x[i] - (next[i] * x[i + row] + next[i - row] * x[i - row]);
-                if (A.tall[at(k)])
-                    add_beside<float, true>(level.beside, level.beside_next, level.x.data(), first, to, row, count, r);
-                else
-                    add_beside<float, false>(level.beside, level.beside_next, level.x.data(), first, to, row, count, r);
+                add_row(A, level.beside, level.beside_next, level.x.data(), k, first, to, count, r);
             }
         });
     }

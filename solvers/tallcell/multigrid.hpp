@@ -36,6 +36,7 @@ private:
         std::vector<float> diagonal, next;                      // of T + Σ W on shared rows
         std::vector<float> inverse, ratio;                      // L D Lᵀ of Rᵀ (T + Σ W) R
         std::vector<float> x, b, r;
+        ColumnPlaces places;  // of all these
     };
     static void coarsen(const ColumnMatrix& A, ColumnMatrix& to);
     static void factorise(const ColumnMatrix& A, Level& level);
@@ -52,6 +53,7 @@ private:
     poisson::Options options_;
     int sweeps_;
     std::vector<Level> levels_;
+    ColumnPlaces places_;
     std::vector<real> x_, b_, r_, p_, Ap_;  // on shared rows
     real scale_ = 1;                        // of what the last cycle was given
     poisson::Report report_;

@@ -4,91 +4,100 @@
 #pragma once
 #include "staggered/velocity.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
 
 namespace weir::tallcell {
 
 inline constexpr int row_lanes = 8;
-using Eight = std::array<real, row_lanes>;
+using Eight = double __attribute__((vector_size(sizeof(double) * row_lanes)));
+using EightFlags = std::int64_t __attribute__((vector_size(sizeof(double) * row_lanes)));
+
+#define WEIR_EIGHT inline __attribute__((always_inline))
+
+WEIR_EIGHT Eight load_eight(const real* from) {
+    Eight v;
+    std::memcpy(&v, from, sizeof v);
+    return v;
+}
+WEIR_EIGHT Eight least(const Eight& a, const Eight& b) { return b < a ? b : a; }
+WEIR_EIGHT Eight most(const Eight& a, const Eight& b) { return a < b ? b : a; }
+WEIR_EIGHT Eight magnitude(const Eight& a) { return most(a, -a); }
+WEIR_EIGHT bool all_of_eight(const EightFlags& flags) {
+    std::int64_t all = -1;
+    for (int i = 0; i < row_lanes; ++i) all &= flags[i];
+    return all != 0;
+}
 
 /// Displacements [cells] of eight faces.
 template <int D>
 using Moved = std::array<Eight, D>;
 
 /// Weights of the nodes along one axis, and the offset of the first: of the node's own kind at −1, 0, 1; of the other at ± ½.
-struct Hats {
-    std::array<Eight, 3> weight;
-    int first, count;
-    Hats(const Eight& d, bool own, bool above) : first(own || !above ? -1 : 0), count(own ? 3 : 2) {
-        for (std::size_t i = 0; i < row_lanes; ++i) {
-            weight[0][i] = own ? std::max(0.0, -d[i]) : 0.5 - d[i];
-            weight[1][i] = own ? 1 - std::abs(d[i]) : 0.5 + d[i];
-            weight[2][i] = std::max(0.0, d[i]);
-        }
+template <bool Own>
+struct Hat {
+    static constexpr int count = Own ? 3 : 2;
+    std::array<Eight, count> weight;
+    int first;
+    WEIR_EIGHT Hat(const Eight& d, bool above) : first(Own || !above ? -1 : 0) {
+        const Eight none{};
+        if constexpr (Own)
+            weight = {most(none, -d), 1 - magnitude(d), most(none, d)};
+        else
+            weight = {0.5 - d, 0.5 + d};
     }
 };
 
-template <int D>
-std::array<Hats, D> hats_of(const Moved<D>& d, int home, int component) {
-    const auto hat = [&](int axis) {
-        const bool own = home == component || (axis != home && axis != component);
-        return Hats(d[static_cast<std::size_t>(axis)], own, axis == component);
-    };
-    if constexpr (D == 2)
-        return {hat(0), hat(1)};
-    else
-        return {hat(0), hat(1), hat(2)};
+/// Σ of weights along x, y and z times the samples from q on, which is that of the first face.
+template <int D, bool X, bool Y, bool Z>
+WEIR_EIGHT Eight sum_of_hats(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Hat<X>& x, const Hat<Y>& y, const Hat<Z>& z) {
+    Eight sum{};
+    for (int k = 0; k < (D == 3 ? Hat<Z>::count : 1); ++k) {
+        Eight plane{};
+        for (int j = 0; j < Hat<Y>::count; ++j) {
+            const real* row = q + (D == 3 ? (z.first + k) * sz : 0) + (y.first + j) * sy + x.first;
+            Eight line{};
+            for (int i = 0; i < Hat<X>::count; ++i) line += x.weight[static_cast<std::size_t>(i)] * load_eight(row + i);
+            plane += y.weight[static_cast<std::size_t>(j)] * line;
+        }
+        if constexpr (D == 2) return plane;
+        sum += z.weight[static_cast<std::size_t>(k)] * plane;
+    }
+    return sum;
 }
 
-/// Component `component` at the displaced points; q is that component's sample with the index of the first face. Points may lie at most
-/// half a cell away where the face is of another kind, one cell where it is its own.
+/// Component `component` at points displaced by d from eight faces along axis `home`; q is that component's sample with the index of the
+/// first face. Points may lie at most half a cell away where the face is of another kind, one cell where it is its own.
 template <int D>
-inline void sample_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const std::array<Hats, D>& hats, Eight& out) {
-    out.fill(0);
-    const int planes = D == 3 ? hats[D - 1].count : 1;
-    for (int k = 0; k < planes; ++k) {
-        Eight plane{};
-        const real* at_plane = D == 3 ? q + (hats[D - 1].first + k) * sz : q;
-        for (int j = 0; j < hats[1].count; ++j) {
-            const real* row = at_plane + (hats[1].first + j) * sy + hats[0].first;
-            const auto &x0 = hats[0].weight[0], &x1 = hats[0].weight[1], &x2 = hats[0].weight[2];
-            const auto& y = hats[1].weight[static_cast<std::size_t>(j)];
-            if (hats[0].count == 3) {
-#pragma omp simd
-                for (std::size_t i = 0; i < row_lanes; ++i) plane[i] += y[i] * (x0[i] * row[i] + x1[i] * row[i + 1] + x2[i] * row[i + 2]);
-            } else {
-#pragma omp simd
-                for (std::size_t i = 0; i < row_lanes; ++i) plane[i] += y[i] * (x0[i] * row[i] + x1[i] * row[i + 1]);
-            }
-        }
-        const auto& z = hats[D - 1].weight[static_cast<std::size_t>(k)];
-#pragma omp simd
-        for (std::size_t i = 0; i < row_lanes; ++i) out[i] = D == 3 ? out[i] + z[i] * plane[i] : plane[i];
-    }
+inline Eight sample_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Moved<D>& d, int home, int component) {
+    const auto sum = [&](auto x_own, auto y_own, auto z_own) {
+        return sum_of_hats<D>(q, sy, sz, Hat<decltype(x_own)::value>(d[0], component == 0),
+                              Hat<decltype(y_own)::value>(d[1], component == 1), Hat<decltype(z_own)::value>(d[D - 1], component == D - 1));
+    };
+    constexpr std::true_type own{};
+    constexpr std::false_type other{};
+    if (home == component) return sum(own, own, own);
+    if (D == 2 || home + component == 1) return sum(other, other, own);
+    return home + component == 2 ? sum(other, own, other) : sum(own, other, other);
 }
 
 /// The smallest and the largest of the own samples whose weight is not zero.
 template <int D>
-inline void bounds_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const std::array<Hats, D>& hats, Eight& low, Eight& high) {
-    low.fill(infinity), high.fill(-infinity);
-    for (int k = 0; k < (D == 3 ? 3 : 1); ++k)
-        for (int j = 0; j < 3; ++j) {
-            const real* row = q + (D == 3 ? (k - 1) * sz : 0) + (j - 1) * sy - 1;
-            const auto& y = hats[1].weight[static_cast<std::size_t>(j)];
-            const auto& z = hats[D - 1].weight[static_cast<std::size_t>(k)];
-            const auto &x0 = hats[0].weight[0], &x2 = hats[0].weight[2];
-#pragma omp simd
-            for (std::size_t i = 0; i < row_lanes; ++i) {
-                const bool counts = y[i] > 0 && (D == 2 || z[i] > 0);
-                const real middle = row[i + 1];
-                const real a = x0[i] > 0 ? row[i] : middle, b = x2[i] > 0 ? row[i + 2] : middle;
-                // Of a displacement by a whole cell the middle weighs nothing; it lies beside what does, and is let in.
-                const real least = std::min(middle, std::min(a, b)), most = std::max(middle, std::max(a, b));
-                low[i] = counts ? std::min(low[i], least) : low[i];
-                high[i] = counts ? std::max(high[i], most) : high[i];
-            }
+inline void bounds_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Moved<D>& d, Eight& low, Eight& high) {
+    const Hat<true> x(d[0], false), y(d[1], false), z(d[D - 1], false);
+    const Eight none{};
+    low = none + infinity, high = none - infinity;
+    for (std::size_t k = 0; k < (D == 3 ? 3 : 1); ++k)
+        for (std::size_t j = 0; j < 3; ++j) {
+            const real* row = q + (D == 3 ? (static_cast<std::ptrdiff_t>(k) - 1) * sz : 0) + (static_cast<std::ptrdiff_t>(j) - 1) * sy;
+            const EightFlags counts = D == 3 ? (y.weight[j] > none) & (z.weight[k] > none) : y.weight[j] > none;
+            // Of a displacement by a whole cell the middle weighs nothing; it lies beside what does, and is let in.
+            const Eight middle = load_eight(row);
+            const Eight a = x.weight[0] > none ? load_eight(row - 1) : middle, b = x.weight[2] > none ? load_eight(row + 1) : middle;
+            low = counts ? least(low, least(middle, least(a, b))) : low;
+            high = counts ? most(high, most(middle, most(a, b))) : high;
         }
 }
 

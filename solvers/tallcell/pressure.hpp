@@ -123,6 +123,11 @@ private:
     static constexpr int faces() { return 2 * (D - 1); }
     void project_faces(const Grid<real, D>& phi, MacState<D>& state);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
+    /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
+    struct Line {
+        std::size_t first, stride;
+        std::size_t operator()(int row) const { return first + static_cast<std::size_t>(row) * stride; }
+    };
     /// Columns beside one another in a line, of which `count` stand side by side in memory.
     struct Block {
         int column, count;
@@ -134,6 +139,21 @@ private:
     void for_each_run(int h, const Block& block, Together&& together, One&& one) const;
     template <class Together, class One>
     void for_each_element(const Block& block, Together&& together, One&& one) const;
+    /// The faces around a block's columns: where they begin in memory, and what a velocity into the column counts, over h [1/m].
+    struct Sides {
+        struct Side {
+            Line line;
+            const real* values;
+            real into;
+        };
+        std::array<Side, 4> side;
+        bool side_by_side;  // else it is not so, or solids cut them, and every column is looked at by itself
+    };
+    Sides sides_of(const MacState<D>& state, const Block& block) const;
+    template <class F>
+    void inflow_above_elements(const MacState<D>& state, const Block& block, const Sides& sides, F&& f) const;
+    void weak_divergence(const MacState<D>& state, int column, int end, std::vector<real>& b) const;
+    real largest_divergence(const MacState<D>& state, int column, int end) const;
     real spread_runs(MacState<D>& state, int h, const Block& block) const;
     real rebuild(MacState<D>& state, const Block& block) const;
     void spread_pressure(MacState<D>& state, const Block& block, real scale) const;
@@ -146,18 +166,18 @@ private:
         const real share = (row - knots_.row[at(knot)]) / knots_.length[at(knot)];
         return (1 - share) * q_[at(knot)] + share * q_[at(knot) + 1];
     }
-    /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
-    struct Line {
-        std::size_t first, stride;
-        std::size_t operator()(int row) const { return first + static_cast<std::size_t>(row) * stride; }
-    };
     template <class T>
     Line line(const Grid<T, D>& q, int column) const {
         return {q.linear(layout_.foot(column)), static_cast<std::size_t>(q.stride(layout_.up))};
     }
     /// visit_faces of horizontal axis h, on the lower side of `column`; single(face, ...) gets its place in memory first.
     template <class Single, class Tall>
-    void visit(const MacState<D>& state, int h, int column, Single&& single, Tall&& run) const;
+    void visit(const MacState<D>& state, int h, int column, Single&& single, Tall&& run) const {
+        visit(state, h, column, layout_.rows, single, run);
+    }
+    /// The same below row `end`, which lies inside no run.
+    template <class Single, class Tall>
+    void visit(const MacState<D>& state, int h, int column, int end, Single&& single, Tall&& run) const;
     /// The open fraction of a face, and what flows through it with the solid's part.
     static real open(const MacState<D>& state, int axis, std::size_t face) {
         return state.solid.any() ? state.solid.open[at(axis)][face] : 1;
@@ -178,6 +198,7 @@ private:
     std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
     std::array<std::vector<Run>, 2> runs_;
     std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]
+    int elements_end_ = 0;                // at and above this row there is no element longer than one
     int floor_ = 0, fastest_run_below_ = 0;
     real fastest_run_ = 0;
     std::vector<real> mean_;   // of the vertical velocity in the element above each knot [m/s]

@@ -57,13 +57,14 @@ struct Row {
 
 /// The faces between columns `lower` and `upper`, upwards: single(row, Row lower, Row upper) where at least one is liquid,
 /// run(Run) where both are tall. `open(row)` says whether a face is free of solids.
+/// Rows from `stop` on are left out; it lies inside no run.
 template <class Open, class Single, class Tall>
-void visit_faces(const Knots& knots, int lower, int upper, Open&& open, Single&& single, Tall&& run) {
+void visit_faces(const Knots& knots, int lower, int upper, int stop, Open&& open, Single&& single, Tall&& run) {
     Cursor L(knots, lower), R(knots, upper);
     if (L.empty() && R.empty()) return;
     const int first = L.empty() ? R.first_row() : R.empty() ? L.first_row() : std::min(L.first_row(), R.first_row());
     const int last = L.empty() ? R.last_row() : R.empty() ? L.last_row() : std::max(L.last_row(), R.last_row());
-    for (int row = first; row <= last; ++row) {
+    for (int row = first; row <= std::min(last, stop - 1); ++row) {
         const bool l = L.move_to(row), r = R.move_to(row);
         if (!l && !r) continue;
         if (l && r && L.length() > 1 && R.length() > 1 && open(row)) {

@@ -212,7 +212,7 @@ void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
                 for (std::size_t i = 0; i < row_lanes; ++i) {
                     if (!runs[i].any_faces()) continue;
                     if (moved && inner(foot[i], 0))
-                        changes[runs[i].index()] = {change[0][i], change[1][i]};
+                        changes[runs[i].index()] = {change[0][static_cast<int>(i)], change[1][static_cast<int>(i)]};
                     else
                         one(i);
                     runs[i].reaches(run.row + run.count);
@@ -250,22 +250,18 @@ bool Transport<D>::move_run_of_eight(int a, Index<D> I, const Run& run, real dt,
         I[up_] = static_cast<int>(std::lround(y));
         if (!inner(I, up_)) return false;
         Moved<D> d{};
-        d[at(up_)].fill(y - I[up_]);
+        d[at(up_)] += y - I[up_];
         Moved<D> from = d;
-        Eight here{}, k{};
+        Eight here{};
         for (int b = 0; b < D; ++b) {
             const auto& u = (*source_)[b];
-            sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(d, a, b), k);
+            const Eight k = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), d, a, b);
             if (b == a) here = k;
-            for (std::size_t i = 0; i < row_lanes; ++i) {
-                const bool counts = I[0] + static_cast<int>(i) >= 1 && I[0] + static_cast<int>(i) + 1 < frame_.cells[0];
-                from[at(b)][i] -= counts ? dt * frame_.inv_h[b] * k[i] : 0;
-                if (!(std::abs(from[at(b)][i]) <= 1)) return false;
-            }
+            from[at(b)] -= dt * frame_.inv_h[b] * k;
+            if (!all_of_eight(magnitude(from[at(b)]) <= 1)) return false;
         }
         const auto& u = (*source_)[a];
-        sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(from, a, a), change[at(point)]);
-        for (std::size_t i = 0; i < row_lanes; ++i) change[at(point)][i] -= here[i];
+        change[at(point)] = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), from, a, a) - here;
     }
     return true;
 }
@@ -277,51 +273,39 @@ template <bool Correct>
 bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) const {
     const auto component = [](int b) { return static_cast<std::size_t>(b); };
     Moved<D> k, half, from;
-    real farthest = 0;
+    EightFlags near = EightFlags{} - 1;
     for (int b = 0; b < D; ++b) {
         const auto& u = (*source_)[b];
         const real* q = u.data() + u.linear(I);
         const std::ptrdiff_t below = u.stride(a), above = u.stride(b);
-        const real scale = frame_.inv_h[b] * dt;
-        real far = 0;
-#pragma omp simd reduction(max : far)
-        for (int i = 0; i < row_lanes; ++i) {
-            const real v = b == a ? q[i] : 0.25 * ((q[i] + q[i - below]) + (q[i + above] + q[i + above - below]));
-            k[component(b)][static_cast<std::size_t>(i)] = scale * v;
-            far = std::max(far, std::abs(scale * v));
-        }
-        farthest = std::max(farthest, far);
+        const Eight v = b == a ? load_eight(q)
+                               : 0.25 * ((load_eight(q) + load_eight(q - below)) + (load_eight(q + above) + load_eight(q + above - below)));
+        k[component(b)] = frame_.inv_h[b] * dt * v;
+        near &= magnitude(k[component(b)]) <= 1;
     }
-    if (!(farthest <= 1)) return false;
+    if (!all_of_eight(near)) return false;
     const auto trace = [&](real sign) {
-        for (std::size_t b = 0; b < D; ++b)
-            for (std::size_t i = 0; i < row_lanes; ++i) half[b][i] = 0.5 * sign * k[b][i];
-        real far = 0;
+        for (std::size_t b = 0; b < D; ++b) half[b] = 0.5 * sign * k[b];
         for (int b = 0; b < D; ++b) {
             const auto& u = (*source_)[b];
-            Eight v;
-            sample_near<D>(u.data() + u.linear(I), u.stride(1), D == 3 ? u.stride(D - 1) : 0, hats_of<D>(half, a, b), v);
-            for (std::size_t i = 0; i < row_lanes; ++i) {
-                from[component(b)][i] = sign * dt * frame_.inv_h[b] * v[i];
-                far = std::max(far, std::abs(from[component(b)][i]));
-            }
+            from[component(b)] =
+                sign * dt * frame_.inv_h[b] * sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), half, a, b);
+            near &= magnitude(from[component(b)]) <= 1;
         }
-        return far <= 1;
+        return all_of_eight(near);
     };
     if (!trace(-1)) return false;
     const auto& u = (*source_)[a];
     const std::size_t first = u.linear(I);
-    const std::ptrdiff_t sy = u.stride(1), sz = D == 3 ? u.stride(D - 1) : 0;
-    const auto departure = hats_of<D>(from, a, a);
-    if constexpr (!Correct) sample_near<D>(u.data() + first, sy, sz, departure, to);
+    const std::ptrdiff_t sy = u.stride(1), sz = u.stride(D - 1);
+    if constexpr (!Correct) to = sample_near<D>(u.data() + first, sy, sz, from, a, a);
     if constexpr (Correct) {
-        Eight low, high, back;
-        const real* predicted = predicted_[a].data() + first;  // that very sample, of the first pass
-        bounds_near<D>(u.data() + first, sy, sz, departure, low, high);
+        Eight low, high;
+        bounds_near<D>(u.data() + first, sy, sz, from, low, high);
         if (!trace(1)) return false;
-        sample_near<D>(predicted_[a].data() + first, sy, sz, hats_of<D>(from, a, a), back);
-        for (std::size_t i = 0; i < row_lanes; ++i)
-            to[i] = std::min(std::max(predicted[i] + 0.5 * (u[first + i] - back[i]), low[i]), high[i]);
+        const auto& predicted = predicted_[a];  // what departed() gives, by the first pass
+        const Eight back = sample_near<D>(predicted.data() + first, sy, sz, from, a, a);
+        to = least(most(load_eight(predicted.data() + first) + 0.5 * (load_eight(u.data() + first) - back), low), high);
     }
     return true;
 }
@@ -422,7 +406,7 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                         I[up] = row;
                         real& u = to[a][column.face + static_cast<std::size_t>(row) * face_stride];
                         if (together && this->inner(I, 0))
-                            u = value[static_cast<std::size_t>(i)];
+                            u = value[i];
                         else if constexpr (Correct)
                             u = corrected(a, face_place(a, I), before_[a](I), dt);
                         else

@@ -4,6 +4,7 @@
 #include "support/test.hpp"
 
 #include "core/parallel.hpp"
+#include "tallcell/solver.hpp"
 #include "water/solver.hpp"
 
 namespace weir {
@@ -38,6 +39,17 @@ std::unique_ptr<Solver> make_water(int dim, const std::string& transfer, const s
                              (flat ? "" : ", 0.75") + "] } ]\neffects = { gravity = { g = [0.0, -9.81" + (flat ? "" : ", 0.0") +
                              "] } }\nscheme = { transfer = \"" + transfer + "\" }\n";
     return water::kind().make(scene::parse(text, "water.toml", {water::kind().schema}));
+}
+
+/// Water 36 cells deep on tall cells, with a wave that moves knots of the columns up and down; `more` is added.
+std::unique_ptr<Solver> make_tall(int dim, const std::string& scheme, const std::string& more) {
+    const bool flat = dim == 2;
+    const std::string text = "solver = \"tallcell\"\ndim = " + std::to_string(dim) + "\ngrid = { cells = [24, 48" + (flat ? "" : ", 10") +
+                             "], size = [0.75, 1.5" + (flat ? "" : ", 0.3125") +
+                             "] }\ntime = { end = 9.0 }\nfluid = { density = 1000.0 }\n" +
+                             "liquid = [ { shape = \"wave\", level = 1.13, amplitude = 0.12, wavelength = 0.75 } ]\n" +
+                             "effects.gravity.g = [0.0, -9.81" + (flat ? "" : ", 0.0") + "]\nscheme = { " + scheme + " }\n" + more;
+    return tallcell::kind().make(scene::parse(text, "tall.toml", {tallcell::kind().schema}));
 }
 
 }  // namespace
@@ -106,6 +118,43 @@ TEST_IN_2D_AND_3D("a step of water allocates nothing after the first while its s
         for (int i = 0; i < 5; ++i) water->step(0.001);
         EXPECT_EQ(test::allocations - before, 0) << transfer;
     }
+}
+
+TEST_IN_2D_AND_3D("a step on tall cells allocates nothing after the first while columns keep their knots") {
+    set_threads(1);
+    for (const char* columns : {"stacked", "single", "uniform"})
+        for (const char* advection : {"maccormack", "semi_lagrangian"})
+            for (const std::string& more : {std::string(), std::string("effects.volume_control = {}\n")}) {
+                const auto water = make_tall(D, std::string("columns = \"") + columns + "\", advection = \"" + advection + "\"", more);
+                water->step(0.001);
+                const long before = test::allocations;
+                for (int i = 0; i < 5; ++i) water->step(0.001);
+                EXPECT_EQ(test::allocations - before, 0) << columns << ' ' << advection << ' ' << more;
+            }
+}
+
+// Lists get an eighth more room at least each time that they need more. There are 25 to each of the six levels of this tank's hierarchy and
+// 30 besides, and they go with the rows that columns share, 30 at least and 48 at most: four times an eighth.
+TEST_IN_2D_AND_3D("as a wave moves knots, steps on tall cells allocate only where lists grow") {
+    set_threads(1);
+    const auto water = make_tall(D, "columns = \"stacked\"", "");
+    const auto unknowns = [&] {
+        for (const auto& value : water->integrals())
+            if (value.name == "pressure_unknowns") return value.value;
+        return real{0};
+    };
+    water->step(0.01);
+    const real at_first = unknowns();
+    bool knots_moved = false;
+    long allocated = 0;
+    for (int i = 0; i < 100; ++i) {  // of a period of 0.69 s and a half
+        const long before = test::allocations;
+        water->step(0.01);
+        allocated += test::allocations - before;
+        knots_moved = knots_moved || unknowns() != at_first;
+    }
+    EXPECT_TRUE(knots_moved);
+    EXPECT_LE(allocated, 4 * (6 * 25 + 30));
 }
 
 // A vector grows only past twice its largest size so far. Some 40 vectors have the surface's, the spray's or the components' size; from the
