@@ -88,6 +88,11 @@ std::vector<std::string> field_names(const Frame& frame) {
     return names;
 }
 
+vtkSmartPointer<vtkFloatArray> numbers_of_cells(const Frame& frame, const std::string& field) {
+    vtkDataArray* array = frame.grid ? frame.grid->GetCellData()->GetArray(array_of(field).c_str()) : nullptr;
+    return array ? numbers(*array) : nullptr;
+}
+
 vtkSmartPointer<vtkDataSet> coloured(vtkDataSet* data, const Frame& frame, const std::string& field) {
     const std::string array = array_of(field);
     vtkSmartPointer<vtkDataSet> with = data;

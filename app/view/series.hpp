@@ -3,6 +3,7 @@
 #include "core/types.hpp"
 
 #include <vtkDataSet.h>
+#include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
@@ -37,6 +38,9 @@ private:
 
 /// What a frame can be coloured by: fields of the grid, then of particles; "speed" stands for a velocity. Empty where there is none.
 std::vector<std::string> field_names(const Frame& frame);
+
+/// The grid's field as one number a cell; null where it has none of this name.
+vtkSmartPointer<vtkFloatArray> numbers_of_cells(const Frame& frame, const std::string& field);
 
 /// The field's values at the points of `data` as one number each, as the active scalars of a copy: its own, or the grid's sampled there.
 /// Null where neither has it.

@@ -77,9 +77,10 @@ void Stage::show(const Frame& frame, const std::string& field, Show what) {
     props_.clear();
     const bool sheet = std::any_of(frame.particles.begin(), frame.particles.end(),
                                    [](const auto& set) { return set.second->GetNumberOfPolys() > 0; });  // the grid is one layer of cells
-    const bool grid = frame.grid && !sheet && (what != Show::particles || frame.particles.empty());
-    if (grid) dim() == 2 ? add_sheet(frame, field) : add_cloud(frame, field);
-    if (what != Show::grid || !grid)
+    const bool columns = is_of_columns(frame);  // their particles are what floats in them
+    const bool grid = frame.grid && !sheet && (columns || what != Show::particles || frame.particles.empty());
+    if (grid) columns ? add_columns(frame, field) : dim() == 2 ? add_sheet(frame, field) : add_cloud(frame, field);
+    if (what != Show::grid || !grid || columns)
         for (const auto& [set, points] : frame.particles) add_particles(frame, points, field);
     set_colours(field);
     add_solids(frame.time);
@@ -140,6 +141,7 @@ void Stage::colour(vtkMapper* mapper, vtkDataSet* shown) {
 
 void Stage::add_particles(const Frame& frame, vtkPolyData* points, const std::string& field) {
     if (points->GetNumberOfPoints() == 0) return;
+    if (points->GetPointData()->HasArray("size")) return add_boxes(points);
     if (points->GetNumberOfPolys() + points->GetNumberOfLines() > 0) return add_surface(frame, points, field);
     const auto shown = coloured(points, frame, field);
     vtkNew<vtkPointGaussianMapper> mapper;

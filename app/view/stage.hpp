@@ -1,5 +1,5 @@
-// What stands in the viewer's window: particles as spheres, a grid as a coloured sheet (2D) or a cloud (3D), the scene's solids, the
-// outline of the domain, a scale, and a line of text.
+// What stands in the viewer's window: particles as spheres, a grid as a coloured sheet (2D) or a cloud (3D), columns of water as ground and
+// water on it, boxes that float, the scene's solids, the outline of the domain, a scale, and a line of text.
 #pragma once
 #include "app/view/series.hpp"
 #include "scene/scene.hpp"
@@ -19,6 +19,9 @@ class vtkScalarBarActor;
 class vtkTextActor;
 
 namespace weir::view {
+
+/// Whether the grid is of columns of water, one cell high, which stands on its bed.
+bool is_of_columns(const Frame& frame);
 
 enum class Show { particles, grid, both };
 
@@ -42,6 +45,8 @@ public:
 private:
     void add_particles(const Frame& frame, vtkPolyData* points, const std::string& field);
     void add_surface(const Frame& frame, vtkPolyData* points, const std::string& field);
+    void add_columns(const Frame& frame, const std::string& field);
+    void add_boxes(vtkPolyData* points);
     void add_sheet(const Frame& frame, const std::string& field);
     void add_cloud(const Frame& frame, const std::string& field);
     void add_solids(real time);

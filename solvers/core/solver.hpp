@@ -60,6 +60,9 @@ inline constexpr const char* surface_height_name = "surface";
 inline constexpr const char* marker_set_name = "markers";
 inline constexpr const char* particle_set_name = "particles";
 
+/// A particle set of boxes along the axes: "position" is the middle of each, "size" its extent.
+inline constexpr const char* box_set_name = "floats";
+
 /// The same surface as points in space, which may have moved sideways too.
 inline constexpr const char* surface_set_name = "surface";
 

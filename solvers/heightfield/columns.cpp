@@ -25,6 +25,10 @@ void refuse_what_columns_cannot(const scene::Scene& scene, const State& state) {
     if (scene.has("initial.velocity"))
         scene.refuse("initial.velocity", "columns that pull their neighbours have no currents",
                      "scheme.model = \"shallow_water\" has them");
+    for (std::size_t s = 0; s < scene.root().tables("solids").size(); ++s)
+        if (scene.root().tables("solids")[s].has("motion"))
+            scene.refuse(fmt::format("solids[{}].motion", s), "columns keep their still depth: solids on their bed do not move",
+                         "floats are dragged through columns; scheme.model = \"shallow_water\" has a bed that moves");
     for (int axis = 0; axis < scene.dim() - 1; ++axis)
         for (int end = 0; end < 2; ++end)
             if (const SideKind kind = state.sides(axis, end).kind;
@@ -190,6 +194,7 @@ FieldSet Columns::fields() const {
         floats_.displaced(surface_, displaced_);
         for (std::size_t c = 0; c < depth_.size(); ++c) depth_[c] -= displaced_[c];
         set.fields.push_back({"displaced", "m", Where::cell, "", {displaced_}});
+        floats_.show(set);
     }
     return set;
 }

@@ -18,7 +18,8 @@ template <int D>
 class Box final : public Body {
 public:
     Box(const scene::Table& table, const Plane& plane, real rho) : plane_(plane), size_(table.vec<D>("size")), at_(table.vec<D>("at")) {
-        if (table.has("motion")) motion_ = geometry::Motion<D>::make(table.table("motion"), at_);
+        moves_ = table.has("motion");
+        if (moves_) motion_ = geometry::Motion<D>::make(table.table("motion"), at_);
         heaves_ = table.flag("heave");
         height_ = at_[1];
         real volume = 1;
@@ -28,21 +29,30 @@ public:
     void move(real t, std::vector<Cover>& covers) override {
         const geometry::Pose<D> pose = motion_.pose(t);
         if (!heaves_) height_ = at_[1] + pose.offset[1], speed_ = pose.velocity[1];
+        offset_ = pose.offset;
         const real x = at_[0] + pose.offset[0], x0 = x - size_[0] / 2 - plane_.x0, x1 = x + size_[0] / 2 - plane_.x0;
         real z0 = 0, z1 = plane_.dz;
         if constexpr (D == 3) {
             const real z = at_[2] + pose.offset[2];
             z0 = z - size_[2] / 2 - plane_.z0, z1 = z + size_[2] / 2 - plane_.z0;
         }
-        const auto first = [](real from, real d) { return std::max(0, static_cast<int>(std::floor(from / d))); };
-        const auto behind = [](real to, real d, int n) { return std::min(n, static_cast<int>(std::ceil(to / d))); };
-        const auto part = [](real from, real to, int i, real d) {
-            return std::max(0.0, (std::min(to, (i + 1) * d) - std::max(from, i * d)) / d);
-        };
+        const real soft = moves_ ? 1 : 0;  // columns on either side of an edge
+        const auto first = [&](real from, real d) { return std::max(0, static_cast<int>(std::floor(from / d - soft))); };
+        const auto behind = [&](real to, real d, int n) { return std::min(n, static_cast<int>(std::ceil(to / d + soft))); };
+        const auto part = [&](real from, real to, int i, real d) { return before(to / d - i) - before(from / d - i); };
+        const auto along_z = [&](int k) { return D == 3 ? part(z0, z1, k, plane_.dz) : 1; };
         for (int k = first(z0, plane_.dz); k < behind(z1, plane_.dz, plane_.nz); ++k)
             for (int i = first(x0, plane_.dx); i < behind(x1, plane_.dx, plane_.nx); ++i)
-                if (const real covered = part(x0, x1, i, plane_.dx) * part(z0, z1, k, plane_.dz); covered > 1e-12)
+                if (const real covered = part(x0, x1, i, plane_.dx) * along_z(k); covered > 1e-12)
                     covers.push_back({plane_.at(i, k), std::min(1.0, covered), 0});
+    }
+    /// The part of a column from 0 to 1 that lies before an edge at u. An edge that moves is smeared evenly over two columns: what it
+    /// covers begins and ends smoothly, and the shortest wave of a grid, two columns long, which stays behind as a comb, is a quarter as
+    /// high.
+    real before(real u) const {
+        if (!moves_) return std::clamp(u, 0.0, 1.0);
+        const real v = std::clamp(u + 1, 0.0, 3.0);
+        return v < 1 ? 0.25 * v * v : v < 2 ? 0.5 * v - 0.25 : 1 - 0.25 * (3 - v) * (3 - v);
     }
     real pace(real t) const override {
         const Vec<D> v = motion_.pose(t).velocity;
@@ -55,6 +65,12 @@ public:
         if (heaves_) height_ = height, speed_ = speed;
     }
     real top() const override { return size_[1]; }
+    Vec<3> middle() const override {
+        Vec<3> x{{at_[0] + offset_[0], height_ + size_[1] / 2, 0}};
+        if constexpr (D == 3) x[2] = at_[2] + offset_[2];
+        return x;
+    }
+    Vec<3> size() const override { return {{size_[0], size_[1], D == 3 ? size_[D - 1] : 0}}; }
     void save(Checkpoint& to, const std::string& name) const override {
         to.put_value(name + "height", height_);
         to.put_value(name + "speed", speed_);
@@ -66,9 +82,9 @@ public:
 
 private:
     Plane plane_;
-    Vec<D> size_, at_;
+    Vec<D> size_, at_, offset_{};
     geometry::Motion<D> motion_;
-    bool heaves_ = true;
+    bool heaves_ = true, moves_ = false;
     real height_ = 0, speed_ = 0, mass_ = 0;
 };
 
@@ -144,6 +160,7 @@ void Floats::locate(real t, const Field& surface, const Field& rate) {
         covers_.clear();
         bodies_[b]->move(t, covers_);
         const real height = bodies_[b]->height();
+        if (bodies_[b]->mass() < infinity) see_whole(b);
         for (const Cover& c : covers_) {
             if (place_of_[c.column] < 0) add(c.column, surface[c.column] - bed_[c.column], surface, rate);
             if (depth_[c.column] > 0 && !(c.underside + height > bed_[c.column]))
@@ -154,6 +171,15 @@ void Floats::locate(real t, const Field& surface, const Field& rate) {
         }
     }
     for (Field* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_}) f->assign(covered_.size(), 0);
+}
+
+/// A body that floats, and is not over columns with all of its area, would sink as if it leaked.
+void Floats::see_whole(std::size_t b) const {
+    const Vec<3> size = bodies_[b]->size();
+    const real area = size[0] * (plane_.dim == 3 ? size[2] : 1);
+    real covered = 0;
+    for (const Cover& c : covers_) covered += c.part * plane_.area();
+    if (covered < (1 - 1e-6) * area) throw NumericalFailure("float", fmt::format("object {} has left the domain", b));
 }
 
 /// What is left for water below bodies, and between them.
@@ -443,6 +469,20 @@ real Floats::over_top(const Field& surface) const {
     return most;
 }
 
+void Floats::show(FieldSet& fields) const {
+    for (Field& f : shown_) f.resize(bodies_.size());
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const Vec<3> middle = bodies_[b]->middle(), size = bodies_[b]->size();
+        for (std::size_t a = 0; a < 3; ++a) shown_[a][b] = middle[static_cast<int>(a)], shown_[3 + a][b] = size[static_cast<int>(a)];
+    }
+    const auto add = [&](const char* name, std::size_t first) {
+        FieldView field{name, "m", Where::particle, box_set_name, {shown_[first], shown_[first + 1]}};
+        if (plane_.dim == 3) field.data.push_back(shown_[first + 2]);
+        fields.fields.push_back(std::move(field));
+    };
+    add("position", 0), add("size", 3);
+}
+
 real Floats::missing(const Field& surface) const {
     real sum = 0;
     for (const Covered& c : covered_) sum += c.water - (surface[c.column] - bed_[c.column]);
@@ -453,6 +493,7 @@ std::size_t Floats::bytes() const {
     std::size_t total = place_of_.capacity() * sizeof(std::ptrdiff_t) + covered_.capacity() * sizeof(Covered) +
                         contacts_.capacity() * sizeof(Contact) + covers_.capacity() * sizeof(Cover);
     for (const Field* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_, &stiff_, &given_}) total += f->capacity() * sizeof(real);
+    for (const Field& f : shown_) total += f.capacity() * sizeof(real);
     return total;
 }
 

@@ -40,6 +40,9 @@ public:
     virtual real speed() const = 0;
     virtual void set(real height, real speed) = 0;
     virtual real top() const = 0;  // above the height: water over it is more than a height field can tell [m]
+    /// Of the box around it [m], where it was moved to last.
+    virtual Vec<3> middle() const = 0;
+    virtual Vec<3> size() const = 0;
     virtual void save(Checkpoint& to, const std::string& name) const = 0;
     virtual void restore(const Checkpoint& from, const std::string& name) = 0;
 };
@@ -73,6 +76,8 @@ public:
     void after(real dt, Field& surface, Field& rate);
     /// Depth that bodies displace in each column.
     void displaced(const Field& surface, Field& to) const;
+    /// Adds the set "floats": where each body is, and how large.
+    void show(FieldSet& fields) const;
     /// Columns that the fastest passes a second at time t.
     real pace(real t) const;
     /// The highest column of water above the top of a body [m]; 0 where none is.
@@ -103,6 +108,7 @@ private:
     };
     void locate(real t, const Field& surface, const Field& rate);
     void add(std::size_t column, real water, const Field& surface, const Field& rate);
+    void see_whole(std::size_t body) const;
     void see_depths();
     void set_stiffness(Stiffness& k);
     void see_neighbours(const Field& surface, const Stiffness& k);
@@ -128,6 +134,7 @@ private:
     Field x_, r_, p_, ap_, diagonal_, free_, gap_, part_;  // one a covered column
     Field stiff_, given_;                                  // one a body
     int iterations_ = 0;
+    mutable std::array<Field, 6> shown_;  // middle and size of each body
 };
 
 }  // namespace weir::heightfield

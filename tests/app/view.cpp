@@ -103,6 +103,22 @@ TEST("a cloud of smoke and a ball stand where the scene puts them in 3D") {
     EXPECT_LT(covered(viewer, {{0.15, 0.8, 0.3}}), 0.2);  // an edge of the box may pass behind
 }
 
+TEST("columns stand as ground with water on it up to its surface, and a box floats in them as high as it is") {
+    view::Options still;
+    still.offscreen = true;
+    view::Viewer viewer = viewer_of("raft", still);  // ground at -1 m, water to 0, a box from -0.4 to 0.4 m, an island up to 0.8 m
+    EXPECT_GT(covered(viewer, {{2.2, -0.2, 0}}), 0.9);
+    EXPECT_GT(covered(viewer, {{2.2, -1.2, 0}}), 0.9);
+    EXPECT_EQ(covered(viewer, {{2.2, 0.3, 0}}), 0);
+    EXPECT_GT(covered(viewer, {{1.0, 0.3, 0}}), 0.9);
+    EXPECT_EQ(covered(viewer, {{1.0, 0.7, 0}}), 0);
+    EXPECT_GT(covered(viewer, {{3.4, 0.4, 0}}), 0.9);
+    view::Viewer deep = viewer_of("raft_3d", still);  // a box from -0.2 to 0.6 m
+    EXPECT_GT(covered(deep, {{2.0, 0.4, 0.3}}), 0.9);
+    EXPECT_GT(covered(deep, {{0.8, 0.0, 0.5}}), 0.9);
+    EXPECT_EQ(covered(deep, {{0.8, 0.9, 0.0}}), 0);
+}
+
 TEST("the scale spans the values of the frame's field, and only grows until another field is chosen") {
     view::Viewer viewer = viewer_of("water");
     EXPECT_EQ(viewer.field(), "speed");
