@@ -42,7 +42,7 @@ void check_density(const scene::Scene& scene, const thermo::Substance& substance
 thermo::HeatCurve liquid_curve(const scene::Scene& scene, const thermo::Substance& substance) {
     const auto curve = matter::curve_of(scene, substance);
     if (!has_liquid(curve))
-        scene.refuse("heat.pressure",
+        scene.refuse(substance.has(thermo::Boundary::saturation) ? "heat.pressure" : "substance",
                      "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance.name() + " is never a liquid",
                      "particles are those of a liquid");
     return curve;

@@ -283,14 +283,19 @@ ReferencePairs::Warming ReferencePairs::warming(const std::vector<Point>& x, con
         for (const int plane : image.planes) r2 = heat_behind(r2, height(x[i], plane, w), height(x[j], plane, w));
         return r2;
     };
+    std::vector<HeatImage> near;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        for (const HeatImage& image : images)
+        near.clear();
+        std::copy_if(images.begin(), images.end(), std::back_inserter(near), [&](const HeatImage& image) {
+            return std::all_of(image.planes.begin(), image.planes.end(), [&](int plane) { return height(x[i], plane, w) < p.h; });
+        });
+        for (const HeatImage& image : near)
             if (image.held) to.by_walls[i] += functions[kernel].heat_flow(behind(p.guard, i, i, image), 2 * (image.theta - theta[i]), &p);
         for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period);
             const double r2 = distance2(d[0], d[1], d[2], p.guard), rise = theta[j] - theta[i];
             to.rate[i] += functions[kernel].heat_flow(r2, rise, &p);
-            for (const HeatImage& image : images)
+            for (const HeatImage& image : near)
                 (image.held ? to.by_walls : to.rate)[i] +=
                     functions[kernel].heat_flow(behind(r2, i, j, image), image.held ? 2 * image.theta - theta[j] - theta[i] : rise, &p);
         }

@@ -178,6 +178,18 @@ std::map<std::string, Said> everything() {
           wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"})
         said["mac"].lines.push_back(line);
     for (const std::string& line : fluids) said["mac"].refused.push_back(line);
+    Lines of_heat{"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }",
+                  wax + "heat.pressure = 2e3",
+                  wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }",
+                  wax + "sides.x_min = { kind = \"wall\", temperature = 320 }",
+                  wax + emitter + ", temperature = 310 } ]",
+                  wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"};
+    for (const char* function :
+         {"\"linear\", value = 310, gradient = [1, 0], at = [0, 0]", "\"gaussian\", base = 300, amplitude = 1, centre = [0, 0], width = 1",
+          "\"ball\", centre = [0, 0], radius = 1, value = 290, outside = 310", "\"formula\", value = \"300 + x\""})
+        of_heat.push_back(wax.substr(0, wax.find("initial")) + "initial.temperature = { name = " + function + " }");
+    Lines no_heat{wax + "sides.x_min = { kind = \"outflow\", temperature = 310 }", wax + inflow + ", temperature = 310 } }"};
+    no_heat.insert(no_heat.end(), std::begin(fluids), std::end(fluids));
     said["phase_diagram"] = {
         {"substance = \"water\""},
         all(of_the_run, probes("state"),
@@ -188,22 +200,27 @@ std::map<std::string, Said> everything() {
         all(of_the_surface, Lines{at_the_wall})};
     said["pbf"] = {
         liquid,
-        all(of_the_run, particles, solids, particle_velocities, of_the_surface, Lines{walls[0]}, open_sides,
+        all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
             Lines{"time.cfl = 0.4", "fluid.density = 2",
                   "scheme = { kernel = \"cubic\", support = 2, iterations = 3, cfm = 1, relaxation = 1, warm_start = 0, settle = 1 "
                   "}",
                   "scheme = { tolerance = 0.1, max_iterations = 9, backend = \"threads\" }",
                   "effects.artificial_pressure = { k = 1, dq = 0.1 }"}),
-        all(probes("density"), Lines{walls[1], at_the_wall}, refused_by_particles)};
+        all(probes("density"),
+            Lines{walls[1], at_the_wall, wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
+            refused_by_particles, no_heat)};
     said["sph"] = {
         liquid,
-        all(of_the_run, particles, solids, particle_velocities, of_the_surface, Lines{walls[0], at_the_wall}, open_sides,
+        all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall}, open_sides,
+            Lines{"substance = \"water\"\nfluid = { density = 1000, viscosity = 0.01 }\neffects.viscosity = {}\ninitial.temperature = { "
+                  "name = \"constant\", value = 280 "
+                  "}\nsides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
             Lines{walls[1] + "\neffects.viscosity = {}\nfluid.viscosity = 0.01", "fluid.density = 2", "initial.surface = [0, 1]",
                   "scheme = { kernel = \"cubic\", support = 2, sound_speed = 10, state = \"tait\", gamma = 7, density = \"delta\" }",
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
                   "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
                   "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
-        all(probes("density"), refused_by_particles)};
+        all(probes("density"), refused_by_particles, no_heat)};
     const std::string of_input = std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/", asc = of_input + "hill.asc",
                       pgm = of_input + "hill.pgm";
     const std::string hill = "terrain = { kind = ";
