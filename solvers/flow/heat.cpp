@@ -28,20 +28,7 @@ real largest(const Grid<real, D>& q, F&& f) {
     });
 }
 
-/// t < moment, where a sum of rounded steps that ends at the moment counts as there.
-bool before(real t, real moment) { return t < moment * (1 - 1e-9); }
-
 }  // namespace
-
-template <int D>
-void Heat<D>::set_source(const MacState<D>& s) {
-    if (source_.empty()) return;
-    source_.fill(0);
-    if (!wall_source_.empty()) for_each_cell(s.extent(), [&](const Index<D>& I) { source_(I) = wall_source_(I); });
-    for (const Heater& heater : heaters_)
-        if (!before(s.time, heater.start) && before(s.time, heater.end))
-            for (const std::size_t c : heater.cells) source_[c] += heater.density;
-}
 
 /// Temperature and share of liquid that belong to the enthalpies.
 template <int D>
@@ -69,9 +56,13 @@ void Heat<D>::note(MacState<D>& s) {
 
 template <int D>
 void Heat<D>::conduct(MacState<D>& s, real dt) {
-    set_source(s);
+    if (supply_.ambient().pressure_changes()) {
+        melting_ = matter::melting_at(*substance_, supply_.ambient().pressure(s.time + dt));
+        conduction_.set_melting(melting_);
+    }
+    const auto& source = supply_.at(s.time, dt, s, conduction_);
     auto& h = s.field("enthalpy");
-    const typename Conduction<D>::Given given{s.cells, false, source_, beside_flow_ ? &h.before : nullptr};
+    const typename Conduction<D>::Given given{s.cells, false, source, beside_flow_ ? &h.before : nullptr};
     added_ += explicit_ ? conduction_.euler_step(h.values, given, dt) : conduction_.step(h.values, given, dt);
     note(s);
 }
@@ -162,7 +153,8 @@ real Heat<D>::stable_dt(const MacState<D>&) const {
     return explicit_ ? conduction_.longest_euler_step() : infinity;
 }
 
-/// A step lets what is lightest fall through no more than the cells that it may cross, and crosses no moment at which a heater is switched.
+/// A step lets what is lightest fall through no more than the cells that it may cross, and crosses no moment at which a heater is switched
+/// or the surroundings begin to change otherwise.
 template <int D>
 real Heat<D>::max_dt(const MacState<D>& s) const {
     real limit = stable_dt(s);
@@ -171,9 +163,7 @@ real Heat<D>::max_dt(const MacState<D>& s) const {
         const real most = max_over(s.extent(), [&](const Index<D>& I) { return std::abs((*lightness_)(T(I))); });
         limit = std::min(limit, acceleration_limit(std::abs(gravity_) * most, s.u.h[1], cfl_));
     }
-    for (const Heater& heater : heaters_)
-        for (const real moment : {heater.start, heater.end})
-            if (before(s.time, moment)) limit = std::min(limit, moment - s.time);
+    limit = std::min(limit, supply_.to_next_change(s.time));
     return limit;
 }
 
@@ -196,9 +186,7 @@ void Heat<D>::restore(const Checkpoint& from, MacState<D>& s) {
 
 template <int D>
 std::size_t Heat<D>::bytes() const {
-    std::size_t count = slowed_.bytes() + conduction_.bytes();
-    for (const auto* grid : {&source_, &wall_source_, &liquid_}) count += grid->size() * sizeof(real);
-    for (const Heater& heater : heaters_) count += heater.cells.size() * sizeof(std::size_t);
+    std::size_t count = slowed_.bytes() + conduction_.bytes() + supply_.bytes() + liquid_.size() * sizeof(real);
     return count;
 }
 

@@ -2,6 +2,7 @@
 #include "staggered/kind.hpp"
 #include "flow/effects.hpp"
 #include "flow/solver.hpp"
+#include "matter/heat.hpp"
 #include "staggered/inflow.hpp"
 #include "staggered/initial.hpp"
 
@@ -25,12 +26,7 @@ Key sides_key() {
                                 .doc = "uniform; parabolic: the mean of 6 s (1 - s); kovasznay: the exact wake at Re = 1 / viscosity.",
                                 .fallback = std::string("uniform"),
                                 .choices = inflow_profiles()}}}};
-            side.variants.push_back({"wall",
-                                     "",
-                                     {{.name = "heat_flux",
-                                       .type = Type::number,
-                                       .doc = "Heat that passes into the fluid. Only where `substance` is named.",
-                                       .unit = "W/m^2"}}});
+            side.variants.push_back(matter::wall_with_heat_flux());
             sides.keys.push_back(std::move(side));
         }
     return sides;

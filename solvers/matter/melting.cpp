@@ -1,13 +1,11 @@
 #include "matter/melting.hpp"
 
 #include "core/error.hpp"
+#include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
 
 namespace weir::matter {
-
-using scene::Key;
-using scene::Type;
 
 namespace {
 
@@ -24,26 +22,28 @@ void refuse_density(const scene::Scene& scene, const thermo::Substance& substanc
 
 }  // namespace
 
-Melting melting_of(const scene::Scene& scene, const std::string& solver) {
-    const auto substance = substance_of(scene);
-    const real p = scene.number("heat.pressure");
-    const auto curve = [&] {
-        try {
-            return substance->heat_curve(p);
-        } catch (const BadInput& error) {
-            scene.refuse("heat.pressure", error.what());
-        }
-    }();
+Melting melting_at(const thermo::Substance& substance, real pressure) {
+    const auto curve = substance.heat_curve(pressure);
     if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
-        scene.refuse("heat.pressure",
-                     std::string("at ") + scene::number_text(p) + " Pa " + substance->name() + " is never a liquid that freezes",
-                     "solver \"" + solver + "\" knows solid and liquid");
+        throw BadInput("at " + scene::number_text(pressure) + " Pa " + substance.name() + " is never a liquid that freezes");
     Melting m;
     m.T = curve.begins_at(1), m.h_solid = curve.highest(0), m.h_liquid = curve.lowest(1);
     m.c_solid = curve.heat_capacity(0), m.c_liquid = curve.heat_capacity(1);
-    m.k_solid = substance->conduction(thermo::State::solid).conductivity;
-    m.k_liquid = substance->conduction(thermo::State::liquid).conductivity;
+    m.k_solid = substance.conduction(thermo::State::solid).conductivity;
+    m.k_liquid = substance.conduction(thermo::State::liquid).conductivity;
     if (curve.states() > 2) m.boils_above = curve.highest(1);
+    return m;
+}
+
+Melting melting_of(const scene::Scene& scene, const std::string& solver) {
+    const auto substance = substance_of(scene);
+    const auto curve = curve_of(scene, *substance);
+    if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
+        scene.refuse(
+            "heat.pressure",
+            "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance->name() + " is never a liquid that freezes",
+            "solver \"" + solver + "\" knows solid and liquid");
+    const Melting m = melting_at(*substance, scene.number("heat.pressure"));
     refuse_density(scene, *substance, m.T);
     return m;
 }
@@ -60,31 +60,6 @@ Lightness::Lightness(const scene::Scene& scene) {
         const auto beta = [&](real part) { return substance->expansion(m.T + (static_cast<real>(i) + part) * step); };
         value_[i + 1] = value_[i] + step / 6 * (beta(0) + 4 * beta(0.5) + beta(1));
     }
-}
-
-Key pressure_key() {
-    return {.name = "pressure",
-            .type = Type::number,
-            .doc = "At which it melts and boils.",
-            .unit = "Pa",
-            .fallback = 101325.0,
-            .min = 0,
-            .min_open = true};
-}
-
-Key heaters_key() {
-    return {.name = "heaters",
-            .type = Type::tables,
-            .doc = "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.",
-            .keys = {{.name = "power",
-                      .type = Type::number,
-                      .doc = "Heat given off; in 2D by a metre of depth. Negative: a cooler.",
-                      .unit = "W",
-                      .required = true},
-                     {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
-                     {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
-            .selector = "shape",
-            .variants_from = &scene::shapes};
 }
 
 }  // namespace weir::matter

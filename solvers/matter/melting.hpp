@@ -3,6 +3,7 @@
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
+#include "thermo/substance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,6 +33,9 @@ struct Melting {
 /// `solver` takes one density for both, and is named in the message.
 Melting melting_of(const scene::Scene& scene, const std::string& solver);
 
+/// At another pressure. Throws BadInput where there is no melting liquid at it.
+Melting melting_at(const thermo::Substance& substance, real pressure);
+
 /// How much lighter than at its melting point a liquid is: the integral of its coefficient of expansion over temperature, by which gravity
 /// is multiplied in Boussinesq's approximation. Nothing in a solid.
 class Lightness {
@@ -48,9 +52,5 @@ private:
     real melts_, per_step_;
     std::array<real, steps + 1> value_{};
 };
-
-/// The key "pressure" of the table "heat", and the list "heaters".
-scene::Key pressure_key();
-scene::Key heaters_key();
 
 }  // namespace weir::matter

@@ -121,7 +121,7 @@ TEST("every #include names a folder that the target links") {
 const std::map<std::string, int>& level() {
     static const std::map<std::string, int> table = {
         {"solvers/core", 0},      {"solvers/scene", 1},         {"solvers/backend", 2},     {"solvers/geometry", 2},
-        {"solvers/thermo", 2},    {"solvers/poisson", 3},       {"solvers/particles", 3},   {"solvers/rigid", 3},
+        {"solvers/thermo", 2},    {"solvers/poisson", 3},       {"solvers/particles", 4},   {"solvers/rigid", 3},
         {"solvers/staggered", 4}, {"solvers/surface", 5},       {"solvers/flow", 6},        {"solvers/water", 6},
         {"solvers/studies", 6},   {"solvers/tallcell", 6},      {"solvers/heightfield", 6}, {"solvers/waves", 6},
         {"solvers/sph", 6},       {"solvers/pbf", 6},           {"solvers/coupling", 7},    {"solvers/sim", 8},

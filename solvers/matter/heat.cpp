@@ -1,0 +1,77 @@
+#include "matter/heat.hpp"
+
+#include "core/error.hpp"
+#include "matter/substance.hpp"
+#include "scene/names.hpp"
+
+namespace weir::matter {
+
+using scene::Key;
+using scene::Type;
+
+Key substance_key_of_heat(const std::string& doc) {
+    Key key = substance_key();
+    key.required = false;
+    key.doc += " " + doc;
+    return key;
+}
+
+Key pressure_key() {
+    return {.name = "pressure",
+            .type = Type::number,
+            .doc = "At which it melts and boils.",
+            .unit = "Pa",
+            .fallback = 101325.0,
+            .min = 0,
+            .min_open = true};
+}
+
+Key heaters_key(const std::string& doc) {
+    return {.name = "heaters",
+            .type = Type::tables,
+            .doc = doc,
+            .keys = {{.name = "power",
+                      .type = Type::number,
+                      .doc = "Heat given off; in 2D by a metre of depth. Negative: a cooler.",
+                      .unit = "W",
+                      .required = true},
+                     {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
+                     {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
+            .selector = "shape",
+            .variants_from = &scene::shapes};
+}
+
+scene::Variant wall_with_heat_flux() {
+    return {"wall",
+            "",
+            {{.name = "heat_flux",
+              .type = Type::number,
+              .doc = "Heat that passes into the fluid. Only where `substance` is named.",
+              .unit = "W/m^2"},
+             {.name = "exchange",
+              .type = Type::number,
+              .doc = "Heat that comes in for each kelvin by which the surroundings, heat.ambient, are warmer than the wall's inner face.",
+              .unit = "W/(m^2 K)",
+              .min = 0,
+              .min_open = true}}};
+}
+
+thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance) {
+    try {
+        return substance.heat_curve(scene.number("heat.pressure"));
+    } catch (const BadInput& error) {
+        scene.refuse("heat.pressure", error.what());
+    }
+}
+
+void check_temperature(const scene::Scene& scene, const std::string& path, real T) {
+    if (!(T > 0)) scene.refuse(path, "a temperature of " + scene::number_text(T) + " K", "temperatures are above 0 K");
+}
+
+void check_heater(const scene::Scene& scene, std::size_t i) {
+    const auto& table = scene.root().tables("heaters")[i];
+    const std::string path = "heaters[" + std::to_string(i) + "]";
+    if (!(table.number_or("end", infinity) > table.number("start"))) scene.refuse(path + ".end", path + ".end is not after its start");
+}
+
+}  // namespace weir::matter

@@ -1,0 +1,24 @@
+// What scenes say of heat in the same words to every solver that carries it: the pressure, heaters, walls through which heat comes.
+#pragma once
+#include "scene/scene.hpp"
+#include "thermo/substance.hpp"
+
+namespace weir::matter {
+
+/// The key "substance" of a solver that carries heat where it is named, and only there; `doc` is added to its own.
+scene::Key substance_key_of_heat(const std::string& doc);
+/// "heat.pressure"
+scene::Key pressure_key();
+/// "heaters": regions with a power; `doc` says over what it is spread.
+scene::Key heaters_key(const std::string& doc);
+/// What a side of kind "wall" says beside its temperature.
+scene::Variant wall_with_heat_flux();
+
+/// Enthalpy against temperature at the scene's heat.pressure, at which it is refused where the substance is not known there.
+thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance);
+/// Refuses a temperature of 0 K and below, at its place.
+void check_temperature(const scene::Scene& scene, const std::string& path, real T);
+/// Refuses a heater, scene.heaters[i], that ends before it starts.
+void check_heater(const scene::Scene& scene, std::size_t i);
+
+}  // namespace weir::matter
