@@ -1,6 +1,7 @@
 #include "flow/heat.hpp"
 
 #include "core/error.hpp"
+#include "staggered/ice.hpp"
 #include "staggered/rows.hpp"
 
 #include <algorithm>
@@ -12,8 +13,6 @@ namespace {
 
 using poisson::Cell;
 
-constexpr real smallest_liquid = 1e-3;  // ε: of the same size as in Voller & Prakash 1987; the drag of pure ice is C/ε
-constexpr real least_mobility = 1e-3;   // less is none: the pressure's matrix knows no weaker face
 /// The largest f(q) of all cells; NaN where q is not finite.
 template <int D, class F>
 real largest(const Grid<real, D>& q, F&& f) {
@@ -89,51 +88,9 @@ template <int D>
 bool Heat<D>::slow(MacState<D>& s, real dt) {
     const bool was_ice = std::exchange(slows_, any_ice_);
     if (!any_ice_ && !was_ice) return false;
-    if (s.mobility[0].empty()) {
-        for (int a = 0; a < D; ++a) s.mobility[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent(), 1);
-        slowed_ = MacVelocity<D>(s.u.cells, s.u.h, s.u.origin);
-    }
-    const real k = dt * drag_ / s.rho;
-    for (int a = 0; a < D; ++a) {
-        auto &beta = s.mobility[static_cast<std::size_t>(a)], &u = s.u[a];
-        auto& slowed = slowed_[a];
-        for_each_row(Index<D>{}, u.extent(), [&](const Index<D>& first, int count) {
-            real *to = &beta(first), *speed = &u(first), *kept = &slowed(first);
-            const auto face = [&](int i, real below, real above) {
-                const real f = std::min(below, above), ice = 1 - f;
-                const real b = 1 / (1 + k * ice * ice / (f * f * f + smallest_liquid));
-                to[i] = b < least_mobility ? 0 : b;
-                speed[i] *= to[i];
-                kept[i] = speed[i];
-            };
-            Index<D> below = first - e<D>(a), above = first;
-            const int n = s.extent()[a];
-            const bool joins = s.sides.periodic(a);
-            if (a == 0) {  // its first and last face have a cell on one side alone
-                int i = 0, end = count;
-                const auto outer = [&](int at) {
-                    Index<D> low = below, high = above;
-                    low[0] += at, high[0] += at;
-                    if (high[0] == n) high[0] = joins ? 0 : n - 1;
-                    if (low[0] < 0) low[0] = joins ? n - 1 : 0;
-                    face(at, liquid_(low), liquid_(high));
-                };
-                if (first[0] == 0) outer(i++);
-                if (first[0] + count > n) outer(--end);
-                if (i >= end) return;
-                above[0] += i;
-                const real* f = &liquid_(above) - i;
-#pragma omp simd
-                for (int j = i; j < end; ++j) face(j, f[j - 1], f[j]);
-                return;
-            }
-            if (first[a] == 0) below[a] = joins ? n - 1 : 0;
-            if (first[a] == n) above[a] = joins ? 0 : n - 1;
-            const real *f = &liquid_(above), *g = &liquid_(below);
-#pragma omp simd
-            for (int i = 0; i < count; ++i) face(i, g[i], f[i]);
-        });
-    }
+    if (slowed_[0].empty()) slowed_ = MacVelocity<D>(s.u.cells, s.u.h, s.u.origin);
+    hold_back(s, liquid_, dt * drag_ / s.rho);
+    for (int a = 0; a < D; ++a) slowed_[a] = s.u[a];
     return true;
 }
 

@@ -26,6 +26,8 @@ public:
     Conduction(const matter::Melting& melting, const Index<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
     /// At another pressure, say.
     void set_melting(const matter::Melting& melting) { melting_ = melting, known_ = false; }
+    /// Mass over volume of the fluid's cells, where those do not hold what the density says [kg/m³].
+    void set_density(real rho) { rho_ = rho; }
     /// A side of which heat comes in by an exchange with what is outside [W/(m² K)], through the half cell beside it.
     void exchange_through(int axis, int end, real coefficient);
     /// What that side imposes, or the outside of an exchange.
