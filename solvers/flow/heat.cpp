@@ -1,6 +1,7 @@
 #include "flow/heat.hpp"
 
 #include "core/error.hpp"
+#include "staggered/ice.hpp"
 #include "staggered/rows.hpp"
 
 #include <algorithm>
@@ -12,8 +13,6 @@ namespace {
 
 using poisson::Cell;
 
-constexpr real smallest_liquid = 1e-3;  // ε: of the same size as in Voller & Prakash 1987; the drag of pure ice is C/ε
-constexpr real least_mobility = 1e-3;   // less is none: the pressure's matrix knows no weaker face
 /// The largest f(q) of all cells; NaN where q is not finite.
 template <int D, class F>
 real largest(const Grid<real, D>& q, F&& f) {
@@ -28,20 +27,7 @@ real largest(const Grid<real, D>& q, F&& f) {
     });
 }
 
-/// t < moment, where a sum of rounded steps that ends at the moment counts as there.
-bool before(real t, real moment) { return t < moment * (1 - 1e-9); }
-
 }  // namespace
-
-template <int D>
-void Heat<D>::set_source(const MacState<D>& s) {
-    if (source_.empty()) return;
-    source_.fill(0);
-    if (!wall_source_.empty()) for_each_cell(s.extent(), [&](const Index<D>& I) { source_(I) = wall_source_(I); });
-    for (const Heater& heater : heaters_)
-        if (!before(s.time, heater.start) && before(s.time, heater.end))
-            for (const std::size_t c : heater.cells) source_[c] += heater.density;
-}
 
 /// Temperature and share of liquid that belong to the enthalpies.
 template <int D>
@@ -69,9 +55,13 @@ void Heat<D>::note(MacState<D>& s) {
 
 template <int D>
 void Heat<D>::conduct(MacState<D>& s, real dt) {
-    set_source(s);
+    if (supply_.ambient().pressure_changes()) {
+        melting_ = matter::melting_at(*substance_, supply_.ambient().pressure(s.time + dt));
+        conduction_.set_melting(melting_);
+    }
+    const auto& source = supply_.at(s.time, dt, s, conduction_);
     auto& h = s.field("enthalpy");
-    const typename Conduction<D>::Given given{s.cells, false, source_, beside_flow_ ? &h.before : nullptr};
+    const typename Conduction<D>::Given given{s.cells, false, source, beside_flow_ ? &h.before : nullptr};
     added_ += explicit_ ? conduction_.euler_step(h.values, given, dt) : conduction_.step(h.values, given, dt);
     note(s);
 }
@@ -98,51 +88,9 @@ template <int D>
 bool Heat<D>::slow(MacState<D>& s, real dt) {
     const bool was_ice = std::exchange(slows_, any_ice_);
     if (!any_ice_ && !was_ice) return false;
-    if (s.mobility[0].empty()) {
-        for (int a = 0; a < D; ++a) s.mobility[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent(), 1);
-        slowed_ = MacVelocity<D>(s.u.cells, s.u.h, s.u.origin);
-    }
-    const real k = dt * drag_ / s.rho;
-    for (int a = 0; a < D; ++a) {
-        auto &beta = s.mobility[static_cast<std::size_t>(a)], &u = s.u[a];
-        auto& slowed = slowed_[a];
-        for_each_row(Index<D>{}, u.extent(), [&](const Index<D>& first, int count) {
-            real *to = &beta(first), *speed = &u(first), *kept = &slowed(first);
-            const auto face = [&](int i, real below, real above) {
-                const real f = std::min(below, above), ice = 1 - f;
-                const real b = 1 / (1 + k * ice * ice / (f * f * f + smallest_liquid));
-                to[i] = b < least_mobility ? 0 : b;
-                speed[i] *= to[i];
-                kept[i] = speed[i];
-            };
-            Index<D> below = first - e<D>(a), above = first;
-            const int n = s.extent()[a];
-            const bool joins = s.sides.periodic(a);
-            if (a == 0) {  // its first and last face have a cell on one side alone
-                int i = 0, end = count;
-                const auto outer = [&](int at) {
-                    Index<D> low = below, high = above;
-                    low[0] += at, high[0] += at;
-                    if (high[0] == n) high[0] = joins ? 0 : n - 1;
-                    if (low[0] < 0) low[0] = joins ? n - 1 : 0;
-                    face(at, liquid_(low), liquid_(high));
-                };
-                if (first[0] == 0) outer(i++);
-                if (first[0] + count > n) outer(--end);
-                if (i >= end) return;
-                above[0] += i;
-                const real* f = &liquid_(above) - i;
-#pragma omp simd
-                for (int j = i; j < end; ++j) face(j, f[j - 1], f[j]);
-                return;
-            }
-            if (first[a] == 0) below[a] = joins ? n - 1 : 0;
-            if (first[a] == n) above[a] = joins ? 0 : n - 1;
-            const real *f = &liquid_(above), *g = &liquid_(below);
-#pragma omp simd
-            for (int i = 0; i < count; ++i) face(i, g[i], f[i]);
-        });
-    }
+    if (slowed_[0].empty()) slowed_ = MacVelocity<D>(s.u.cells, s.u.h, s.u.origin);
+    hold_back(s, liquid_, dt * drag_ / s.rho);
+    for (int a = 0; a < D; ++a) slowed_[a] = s.u[a];
     return true;
 }
 
@@ -162,7 +110,8 @@ real Heat<D>::stable_dt(const MacState<D>&) const {
     return explicit_ ? conduction_.longest_euler_step() : infinity;
 }
 
-/// A step lets what is lightest fall through no more than the cells that it may cross, and crosses no moment at which a heater is switched.
+/// A step lets what is lightest fall through no more than the cells that it may cross, and crosses no moment at which a heater is switched
+/// or the surroundings begin to change otherwise.
 template <int D>
 real Heat<D>::max_dt(const MacState<D>& s) const {
     real limit = stable_dt(s);
@@ -171,9 +120,7 @@ real Heat<D>::max_dt(const MacState<D>& s) const {
         const real most = max_over(s.extent(), [&](const Index<D>& I) { return std::abs((*lightness_)(T(I))); });
         limit = std::min(limit, acceleration_limit(std::abs(gravity_) * most, s.u.h[1], cfl_));
     }
-    for (const Heater& heater : heaters_)
-        for (const real moment : {heater.start, heater.end})
-            if (before(s.time, moment)) limit = std::min(limit, moment - s.time);
+    limit = std::min(limit, supply_.to_next_change(s.time));
     return limit;
 }
 
@@ -196,9 +143,7 @@ void Heat<D>::restore(const Checkpoint& from, MacState<D>& s) {
 
 template <int D>
 std::size_t Heat<D>::bytes() const {
-    std::size_t count = slowed_.bytes() + conduction_.bytes();
-    for (const auto* grid : {&source_, &wall_source_, &liquid_}) count += grid->size() * sizeof(real);
-    for (const Heater& heater : heaters_) count += heater.cells.size() * sizeof(std::size_t);
+    std::size_t count = slowed_.bytes() + conduction_.bytes() + supply_.bytes() + liquid_.size() * sizeof(real);
     return count;
 }
 

@@ -11,6 +11,7 @@
 #include "matter/melting.hpp"
 #include "staggered/conduction.hpp"
 #include "staggered/ghosts.hpp"
+#include "staggered/heat_supply.hpp"
 
 #include <optional>
 
@@ -50,24 +51,18 @@ public:
     std::size_t bytes() const;
 
 private:
-    struct Heater {
-        real start, end, density;  // [s], [s], [W/m³]
-        std::vector<std::size_t> cells;
-    };
-    void read_heaters(const scene::Scene& scene, const MacState<D>& s);
-    void read_sides(const scene::Scene& scene, MacState<D>& s);
-    void set_source(const MacState<D>& s);
+    void read_sides(MacState<D>& s);
     void note(MacState<D>& s);
 
-    Melting melting_;
+    thermo::SubstancePtr substance_;
+    Melting melting_;                             // at the pressure of the moment
     real gravity_;                                // that acts on what is lighter [m/s²]
     std::optional<matter::Lightness> lightness_;  // where it does
     real cfl_;
     real drag_;                    // C [kg/(m³ s)]
     bool explicit_, beside_flow_;  // in one stage; while it flows, not after: with fluxes, whose steady states know no step
     Conduction<D> conduction_;
-    std::vector<Heater> heaters_;
-    Grid<real, D> source_, wall_source_;  // [W/m³]; empty where the scene has none
+    HeatSupply<D> supply_;
     Grid<real, D> liquid_;
     MacVelocity<D> slowed_;                 // β u*
     bool any_ice_ = false, slows_ = false;  // anywhere; and in the last step

@@ -10,15 +10,8 @@
 
 namespace weir::flow {
 
-namespace {
-
-using poisson::Cell;
 using scene::Key;
 using scene::Type;
-
-std::string side_path(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
-
-}  // namespace
 
 template <int D>
 std::vector<Key> Heat<D>::keys() {
@@ -29,6 +22,7 @@ std::vector<Key> Heat<D>::keys() {
          .type = Type::table,
          .doc = "How a substance takes up heat. Only where `substance` is named.",
          .keys = {matter::pressure_key(),
+                  matter::ambient_key(),
                   {.name = "conduction",
                    .type = Type::choice,
                    .doc =
@@ -59,7 +53,8 @@ void Heat<D>::needs(FieldPlan& plan) {
 
 template <int D>
 Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
-    : melting_(matter::melting_of(scene, "mac")),
+    : substance_(matter::substance_of(scene)),
+      melting_(matter::melting_of(scene, "mac")),
       gravity_(scene.number("heat.gravity")),
       cfl_(scene.number("time.cfl")),
       drag_(scene.number("heat.drag")),
@@ -81,61 +76,23 @@ Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
     temperature.derived = true;
     liquid_ = Grid<real, D>(s.extent());
     conduction_ = Conduction<D>(melting_, s.extent(), s.u.h, s.rho, temperature.boundary);
-    read_sides(scene, s);
-    read_heaters(scene, s);
+    supply_ = HeatSupply<D>(scene, s, melting_, conduction_);
+    supply_.refuse_heaters_without_fluid(scene, s);
+    read_sides(s);
 }
 
-/// What flows in brings the enthalpy of its temperature. A flux into the fluid is a source in the cells beside its wall.
+/// What flows in brings the enthalpy of its temperature.
 template <int D>
-void Heat<D>::read_sides(const scene::Scene& scene, MacState<D>& s) {
+void Heat<D>::read_sides(MacState<D>& s) {
     auto& enthalpy = s.field("enthalpy").boundary;
     for (int a = 0; a < D; ++a)
         for (int end = 0; end < 2; ++end) {
             const auto& side = s.sides.side(a, end);
-            const std::string path = side_path(a, end);
-            auto& rule = enthalpy.end[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)];
             const bool passes = side.kind == geometry::SideKind::inflow || side.kind == geometry::SideKind::outflow;
-            if (side.temperature) {
-                const real T = *side.temperature;
-                matter::check_temperature(scene, path + ".temperature", T);
-                const real h = melting_.enthalpy(T);
-                if (h > melting_.boils_above)
-                    scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils",
-                                 "solver \"mac\" has no vapour");
-                if (passes) rule = {EndRule::Kind::dirichlet, h, {}};
-            }
-            if (!scene.has(path + ".heat_flux")) continue;
-            if (side.temperature) scene.refuse(path + ".heat_flux", "the wall has a temperature: how much heat passes follows from it");
-            const real flux = scene.number(path + ".heat_flux");
-            if (wall_source_.empty()) wall_source_ = Grid<real, D>(s.extent());
-            for_each_cell(s.extent(), [&](const Index<D>& I) {
-                if (I[a] == (end == 0 ? 0 : s.extent()[a] - 1) && s.cells(I) == Cell::fluid) wall_source_(I) += flux / s.u.h[a];
-            });
+            if (side.temperature && passes)
+                enthalpy.end[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)] = {
+                    EndRule::Kind::dirichlet, melting_.enthalpy(*side.temperature), {}};
         }
-}
-
-template <int D>
-void Heat<D>::read_heaters(const scene::Scene& scene, const MacState<D>& s) {
-    const auto& tables = scene.root().tables("heaters");
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        const auto& table = tables[i];
-        const std::string path = "heaters[" + std::to_string(i) + "]";
-        Heater heater{table.number("start"), table.number_or("end", infinity), 0, {}};
-        matter::check_heater(scene, i);
-        const auto shape = geometry::make_shape<D>(table);
-        bool covers = false;
-        for (std::size_t c = 0; c < product(s.extent()); ++c) {
-            const Index<D> I = index_of<D>(s.extent(), c);
-            if (!shape->contains(s.u.cell_centre(I))) continue;
-            covers = true;
-            if (s.cells(I) == Cell::fluid) heater.cells.push_back(c);
-        }
-        if (heater.cells.empty())
-            scene.refuse(path, covers ? "the heater lies inside solids: no heat leaves it" : "the heater covers the centre of no cell");
-        heater.density = table.number("power") / (static_cast<real>(heater.cells.size()) * s.u.cell_volume());
-        heaters_.push_back(std::move(heater));
-    }
-    if (!heaters_.empty() || !wall_source_.empty()) source_ = Grid<real, D>(s.extent());
 }
 
 template <int D>
@@ -152,12 +109,11 @@ void Heat<D>::start(MacState<D>& s, const scene::Scene& scene) {
     note(s);
 }
 
-#define WEIR_INSTANTIATE(D)                                                       \
-    template std::vector<Key> Heat<D>::keys();                                    \
-    template void Heat<D>::needs(FieldPlan&);                                     \
-    template Heat<D>::Heat(const scene::Scene&, MacState<D>&);                    \
-    template void Heat<D>::read_sides(const scene::Scene&, MacState<D>&);         \
-    template void Heat<D>::read_heaters(const scene::Scene&, const MacState<D>&); \
+#define WEIR_INSTANTIATE(D)                                    \
+    template std::vector<Key> Heat<D>::keys();                 \
+    template void Heat<D>::needs(FieldPlan&);                  \
+    template Heat<D>::Heat(const scene::Scene&, MacState<D>&); \
+    template void Heat<D>::read_sides(MacState<D>&);           \
     template void Heat<D>::start(MacState<D>&, const scene::Scene&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -1,5 +1,6 @@
 #include "matter/melting.hpp"
 
+#include "core/error.hpp"
 #include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
@@ -21,20 +22,28 @@ void refuse_density(const scene::Scene& scene, const thermo::Substance& substanc
 
 }  // namespace
 
-Melting melting_of(const scene::Scene& scene, const std::string& solver) {
-    const auto substance = substance_of(scene);
-    const real p = scene.number("heat.pressure");
-    const auto curve = curve_of(scene, *substance);
+Melting melting_at(const thermo::Substance& substance, real pressure) {
+    const auto curve = substance.heat_curve(pressure);
     if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
-        scene.refuse("heat.pressure",
-                     std::string("at ") + scene::number_text(p) + " Pa " + substance->name() + " is never a liquid that freezes",
-                     "solver \"" + solver + "\" knows solid and liquid");
+        throw BadInput("at " + scene::number_text(pressure) + " Pa " + substance.name() + " is never a liquid that freezes");
     Melting m;
     m.T = curve.begins_at(1), m.h_solid = curve.highest(0), m.h_liquid = curve.lowest(1);
     m.c_solid = curve.heat_capacity(0), m.c_liquid = curve.heat_capacity(1);
-    m.k_solid = substance->conduction(thermo::State::solid).conductivity;
-    m.k_liquid = substance->conduction(thermo::State::liquid).conductivity;
+    m.k_solid = substance.conduction(thermo::State::solid).conductivity;
+    m.k_liquid = substance.conduction(thermo::State::liquid).conductivity;
     if (curve.states() > 2) m.boils_above = curve.highest(1);
+    return m;
+}
+
+Melting melting_of(const scene::Scene& scene, const std::string& solver) {
+    const auto substance = substance_of(scene);
+    const auto curve = curve_of(scene, *substance);
+    if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
+        scene.refuse(
+            "heat.pressure",
+            "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance->name() + " is never a liquid that freezes",
+            "solver \"" + solver + "\" knows solid and liquid");
+    const Melting m = melting_at(*substance, scene.number("heat.pressure"));
     refuse_density(scene, *substance, m.T);
     return m;
 }

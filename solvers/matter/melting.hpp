@@ -3,6 +3,7 @@
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
+#include "thermo/substance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,6 +32,9 @@ struct Melting {
 /// Of a scene's substance at its `heat.pressure`. Refuses what never is a liquid that freezes, and a `fluid.density` that neither has:
 /// `solver` takes one density for both, and is named in the message.
 Melting melting_of(const scene::Scene& scene, const std::string& solver);
+
+/// At another pressure. Throws BadInput where there is no melting liquid at it.
+Melting melting_at(const thermo::Substance& substance, real pressure);
 
 /// How much lighter than at its melting point a liquid is: the integral of its coefficient of expansion over temperature, by which gravity
 /// is multiplied in Boussinesq's approximation. Nothing in a solid.

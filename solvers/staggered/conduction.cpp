@@ -125,6 +125,7 @@ void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>
             for (int i = 0; i < count; ++i) to[i] = factor * face_conductivity(below[i], above[i]);
         });
     }
+    weaken_exchanges();
     most_conductance_ = max_of_rows(n, [&](const Index<D>& I) {
         std::array<const real*, D> g;
         std::array<std::ptrdiff_t, D> up;
@@ -137,6 +138,29 @@ void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>
         }
         return most;
     });
+}
+
+template <int D>
+void Conduction<D>::exchange_through(int axis, int end, real coefficient) {
+    exchange_[static_cast<std::size_t>(2 * axis + end)] = coefficient;
+    rule(axis, end).kind = EndRule::Kind::dirichlet;
+}
+
+/// A half cell and an exchange one after the other let pass 1/(h/(2k) + 1/α) for a kelvin: the half cell's own 2k/h over 1 + 2k/(α h).
+template <int D>
+void Conduction<D>::weaken_exchanges() {
+    for (int a = 0; a < D; ++a)
+        for (int end = 0; end < 2; ++end) {
+            const real alpha = exchange_[static_cast<std::size_t>(2 * a + end)];
+            if (alpha == 0) continue;
+            auto& g = conductance_[static_cast<std::size_t>(a)];
+            Index<D> side = g.extent();
+            side[a] = 1;
+            for_each_cell(side, [&](Index<D> I) {
+                if (end == 1) I[a] = g.extent()[a] - 1;
+                g(I) /= 1 + 2 * g(I) * h_[a] / alpha;
+            });
+        }
 }
 
 /// T_ = T(H + D_j), or T of that from `before`, with its ghosts.

@@ -24,7 +24,14 @@ public:
     Conduction() = default;
     /// `temperature`: what the sides impose.
     Conduction(const matter::Melting& melting, const Index<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
-    Boundary<D>& boundary() { return boundary_; }
+    /// At another pressure, say.
+    void set_melting(const matter::Melting& melting) { melting_ = melting, known_ = false; }
+    /// Mass over volume of the fluid's cells, where those do not hold what the density says [kg/m³].
+    void set_density(real rho) { rho_ = rho; }
+    /// A side of which heat comes in by an exchange with what is outside [W/(m² K)], through the half cell beside it.
+    void exchange_through(int axis, int end, real coefficient);
+    /// What that side imposes, or the outside of an exchange.
+    void set_outside(int axis, int end, real T) { rule(axis, end).value = T; }
 
     /// What a step is told beside H.
     struct Given {
@@ -44,6 +51,8 @@ public:
     std::size_t bytes() const;
 
 private:
+    EndRule& rule(int axis, int end) { return boundary_.end[static_cast<std::size_t>(axis)][static_cast<std::size_t>(end)]; }
+    void weaken_exchanges();
     void prepare(const Grid<real, D>& H, const Given& given);
     void set_conductances(const Grid<real, D>& H, const Grid<poisson::Cell, D>& cells);
     real stages(Grid<real, D>& H, const Given& given, real dt, int count);
@@ -56,6 +65,7 @@ private:
     Vec<D> h_{};
     real rho_ = 1, cell_volume_ = 0;
     Boundary<D> boundary_, no_flux_;
+    std::array<real, 2 * D> exchange_{};        // of the ends of the axes; 0: none
     std::array<Grid<real, D>, D> conductance_;  // k/h² of faces [W/(m³ K)]
     real most_conductance_ = 0;                 // of all faces of a cell
     bool all_liquid_ = false, known_ = false;   // when they were set; whether they were

@@ -1,5 +1,6 @@
 // What a scene may say to the solver "mac_water".
 #include "staggered/kind.hpp"
+#include "matter/heat.hpp"
 #include "staggered/initial.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
@@ -63,9 +64,17 @@ scene::SolverKind kind() {
     schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0}}},
                    scheme_keys(),
                    initial_keys()};
+    Key sides{.name = "sides", .type = Type::table};
+    for (const char* axis : {"x", "y", "z"})
+        for (const char* end : {"_min", "_max"}) {
+            Key side{.name = std::string(axis) + end, .type = Type::table};
+            side.variants = {matter::wall_with_heat_flux()};
+            sides.keys.push_back(std::move(side));
+        }
+    schema.keys.push_back(std::move(sides));
+    for (Key& key : LiquidHeat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = effect_schemas();
-    schema.without = {"sides.*.temperature", "sides.*.smoke",       "sides.*.profile", "emitters.temperature",
-                      "emitters.smoke",      "initial.temperature", "initial.smoke"};
+    schema.without = {"sides.*.smoke", "sides.*.profile", "emitters.temperature", "emitters.smoke", "initial.smoke"};
     return {schema,
             staggered::make<Water>,
             {{"velocity", "pressure", "level_set", "position", "velocity"},

@@ -136,6 +136,20 @@ void SurfacePressure<D>::set_rhs(const MacState<D>& state, const LevelSet<D>& su
 }
 
 template <int D>
+void SurfacePressure<D>::hold_back(const MacState<D>& state) {
+    for (int a = 0; a < D; ++a) {
+        real* weight = A_.weight[static_cast<std::size_t>(a)].data();
+        const real* beta = state.mobility[static_cast<std::size_t>(a)].data();
+        for_faces_of_liquid(
+            a,
+            [&](std::size_t face, std::size_t, int count) {
+                for (std::size_t i = face; i < face + static_cast<std::size_t>(count); ++i) weight[i] *= beta[i];
+            },
+            [&](const Index<D>&, std::size_t face) { weight[face] *= beta[face]; });
+    }
+}
+
+template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature) {
     if (!has_liquid_) return nothing_to_do_;  // every drop has left or is thinner than a cell: nothing is under pressure

@@ -25,6 +25,8 @@ public:
 
     /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells.
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
+    /// Faces follow the pressure as far as state.mobility says; state.u must be that part of itself already.
+    void hold_back(const MacState<D>& state);
     /// Makes the liquid free of divergence: solves for state.p, then u −= (dt/ρ) ∇p. `curvature` [1/m] at cells, or nullptr.
     const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
     /// Largest |∇·u| over liquid cells [1/s], open fractions counted.

@@ -22,6 +22,7 @@ FieldSet Water<D>::fields() const {
     }
     set.fields.push_back(std::move(velocity));
     set.fields.push_back({"pressure", "Pa", Where::cell, "", {state_.p.values()}});
+    if (heat_) set.fields.push_back(heat_->temperature()), set.fields.push_back(heat_->liquid());
     set.fields.push_back({level_set_name, "m", Where::cell, "", {surface_.phi.values()}});
     set.fields.push_back(std::move(position));
     if (markers_.carries_velocity()) set.fields.push_back(std::move(carried));
@@ -35,6 +36,8 @@ std::vector<Integral> Water<D>::integrals() const {
     list.push_back({"markers", "", static_cast<real>(markers_.count())});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     if (hand_) geometry::sum_up(*hand_, D, list);
+    if (heat_)
+        for (auto& integral : heat_->integrals(state_, volume_target_)) list.push_back(std::move(integral));
     list.push_back({"escaped_markers", "", static_cast<real>(escaped_)});
     list.push_back({"reseeded_markers", "", static_cast<real>(reseeded_)});
     return list;
@@ -52,6 +55,7 @@ void Water<D>::save(Checkpoint& to) const {
     to.put_value("water.counts", counts);
     to.put_value("water.rate", rate_);
     if (hand_) hand_->save(to);
+    if (heat_) heat_->save(to);
 }
 
 template <int D>
@@ -69,6 +73,7 @@ void Water<D>::restore(const Checkpoint& from) {
     if (hand_ && from.has("hand")) hand_->restore(from);
     markers_.sort(frame_);
     pressure_.set_surface(surface_, closed_, state_);
+    if (heat_) heat_->restore(from, state_);
     mark_liquid_faces();
     rate_ = from.has("water.rate") ? from.get_value<real>("water.rate") : max_speed_rate();
 }
@@ -76,8 +81,8 @@ void Water<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
-                        (viscosity_ ? viscosity_->bytes() : 0) + closed_.size() + near_solid_.size() + not_solved_for_.size() +
-                        curvature_.size() * sizeof(real) + in_solids_.bytes();
+                        (viscosity_ ? viscosity_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.size() + near_solid_.size() +
+                        not_solved_for_.size() + curvature_.size() * sizeof(real) + in_solids_.bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();
     for (const auto& sum : sums_.sum) total += sum.size() * (sizeof(FaceSum) + 1);  // with its mark
     return total;

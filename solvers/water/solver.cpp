@@ -13,6 +13,7 @@ StepReport Water<D>::step(real dt) {
     pour_and_drain(dt);                           // emitters, open sides
     redistribute_markers();                       // no holes, no heaps
     correct_surface(dt);                          // φ joins escaped markers, and is a distance again
+    conduct(dt);                                  // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
     momentum_to_faces(dt);                        // u* = what the markers carry, or D u/Dt = 0 on the grid
     forces(dt);                                   // (I − dt ν∇²) u* = ..., u* += dt f
     const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
@@ -44,6 +45,7 @@ template <int D>
 void Water<D>::move_surface(real dt) {
     const auto timed = passes_.time("move surface");
     move_markers(markers_, state_.u, frame_, dt, options_.trace, state_.sides, solids_.solids(), near_solid_);
+    if (heat_) heat_->carry(state_, surface_, dt, options_.trace);
     surface_.advect(state_.u, dt);
 }
 
@@ -54,10 +56,44 @@ void Water<D>::correct_surface(real dt) {
         escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
         surface_.redistance();
     }
+    evaporate(dt);
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
+}
+
+/// The surface falls by what evaporates, the same everywhere. What has left is what the level set has lost by it; markers that are outside
+/// now go with it.
+template <int D>
+void Water<D>::evaporate(real dt) {
+    if (!heat_) return;
+    const real area = surface_.area(), wanted = heat_->evaporates(state_, area, dt);
+    if (wanted == 0 || area == 0) return;
+    const auto timed = passes_.time("evaporate");
+    const real before = surface_.volume();
+    surface_.dilate(-wanted / area);
+    const real lost = before - surface_.volume();
+    heat_->leaves(state_, lost, volume_target_);
+    volume_target_ -= lost;
+    if (lost < 0) return;
+    markers_.retain([&](std::size_t p) { return sample_cells(surface_.phi, Stencil<D>(frame_, markers_.position(p))) < 0; });
+    markers_.sort(frame_);
+}
+
+template <int D>
+void Water<D>::conduct(real dt) {
+    if (!heat_) return;
+    const auto timed = passes_.time("heat");
+    heat_->conduct(state_, volume_target_, surface_.area(), dt);
+}
+
+/// Where ice resists, the velocity follows the pressure less than elsewhere.
+template <int D>
+void Water<D>::slow(real dt) {
+    if (!heat_) return;
+    const auto timed = passes_.time("ice");
+    if (heat_->slow(state_, dt)) pressure_.hold_back(state_);
 }
 
 template <int D>
@@ -93,6 +129,7 @@ void Water<D>::forces(real dt) {
 
 template <int D>
 poisson::Report Water<D>::project(real dt) {
+    slow(dt);
     const auto timed = passes_.time("project");
     impose_emitters(dt, &Emitter<D>::Face::pours);
     return pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr);
@@ -283,6 +320,7 @@ real Water<D>::advised_dt() const {
         if (emitter.works(state_.time, state_.time + dt))
             for (int a = 0; a < D; ++a)
                 if (emitter.velocity[a] != 0) dt = std::min(dt, options_.cfl * frame_.h[a] / std::abs(emitter.velocity[a]));
+    if (heat_) dt = std::min(dt, heat_->max_dt(state_, surface_.area()));
     return std::min(dt, effects_.max_dt(state_));
 }
 

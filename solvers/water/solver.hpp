@@ -16,6 +16,7 @@
 #include "surface/solid_faces.hpp"
 #include "surface/start.hpp"
 #include "water/emitters.hpp"
+#include "water/heat.hpp"
 #include "water/pressure.hpp"
 #include "water/transfer.hpp"
 #include "water/viscosity.hpp"
@@ -94,6 +95,9 @@ private:
     const Grid<std::uint8_t, D>& not_solved_for(real dt);
     void curvature();
     void correct_surface(real dt);
+    void evaporate(real dt);
+    void conduct(real dt);
+    void slow(real dt);
     void momentum_to_faces(real dt);
     void forces(real dt);
     poisson::Report project(real dt);
@@ -126,7 +130,8 @@ private:
     MacVelocity<D> before_;  // faces as the markers left them, or as they were before advection
     Grid<real, D> curvature_;
     std::unique_ptr<SurfaceViscosity<D>> viscosity_;
-    real volume_target_ = 0;  // what the ledger says: start + poured in − drained [m^D]
+    std::unique_ptr<LiquidHeat<D>> heat_;  // none where the scene names no substance
+    real volume_target_ = 0;               // what the ledger says: start + poured in − drained [m^D]
     std::int64_t steps_ = 0;
     real rate_ = 0;  // max |u|/h over known faces [1/s]
     int up_ = 1;     // the axis that gravity is most along

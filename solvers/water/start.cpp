@@ -55,6 +55,7 @@ Water<D>::Water(const scene::Scene& scene)
         refuse_buried_emitters(scene);
     }
     fill_with_liquid(scene);
+    if (LiquidHeat<D>::named(scene)) heat_ = std::make_unique<LiquidHeat<D>>(scene, state_, frame_);
     set_initial_velocity(state_, scene);
     set_fixed_faces();
     extend_velocity(0);

@@ -173,7 +173,10 @@ std::map<std::string, Said> everything() {
         "conductivity = 0.6 }, vapour = { heat_capacity = 2000, conductivity = 0.02 } }"};
     for (const std::string& line :
          {"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }\n" + std::string(),
-          wax + "heat = { pressure = 2e3, conduction = \"explicit\", drag = 1e5 }",
+          wax + "heat = { pressure = 2e3, conduction = \"explicit\", drag = 1e5, gravity = 1 }",
+          wax + "heat.ambient = { temperature = 310 }\nsides.x_min = { kind = \"wall\", exchange = 5 }",
+          wax + "heat.ambient = { keyframes = [ { t = 0, temperature = 310, pressure = 2e3 }, { t = 1, temperature = 320, pressure = 3e3 } "
+                "] }",
           wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }",
           wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"})
         said["mac"].lines.push_back(line);

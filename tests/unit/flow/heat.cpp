@@ -237,6 +237,64 @@ TEST_IN_2D_AND_3D("the same bits with one and with three threads, and after a re
     EXPECT_EQ(integral_of(one, "heat_added"), integral_of(restarted, "heat_added"));
 }
 
+namespace {
+
+/// A slab of the substance's liquid, one metre long and of 8 cells.
+std::string slab(const std::string& more) {
+    return "solver = \"mac\"\ndim = 2\ngrid = { cells = [8, 2], size = [1.0, 0.25] }\ntime = { end = 1e9 }\nfluid = { density = 1000.0 }\n"
+           "initial = { temperature = { name = \"constant\", value = 310.0 } }\n" +
+           more + wax;
+}
+
+}  // namespace
+
+TEST("a wall that exchanges heat and the slab behind it resist one after the other") {
+    set_threads(1);
+    FlowSolver<2> flow(
+        test::mac_scene(slab("sides = { x_min = { kind = \"wall\", exchange = 2.0 }, x_max = { kind = \"wall\", temperature = 310.0 } }\n"
+                             "heat = { pressure = 1e5, ambient = { temperature = 330.0 } }\n")));
+    for (int i = 0; i < 40; ++i) flow.step(4e6);  // L^2 rho c/k = 6.7e6 s
+    const real flux = 20 / (1 / 2.0 + 1 / 0.6);
+    const auto& T = *flow.state().find("temperature");
+    for (int i = 0; i < 8; ++i) EXPECT_NEAR(T({i, 0}), 310 + flux * (1 - (i + 0.5) / 8) / 0.6, 1e-9) << i;
+    const real before = integral_of(flow, "heat_added");
+    flow.step(1000);
+    EXPECT_NEAR(integral_of(flow, "heat_added"), before, 1e-6);  // as much leaves as comes
+}
+
+TEST("surroundings follow their keyframes, and a step ends at each") {
+    set_threads(1);
+    FlowSolver<2> flow(
+        test::mac_scene(slab("sides.x_min = { kind = \"wall\", exchange = 1e-3 }\n"
+                             "heat = { pressure = 1e5, ambient = { keyframes = [ { t = 10.0, temperature = 300.0 }, { t = 30.0, "
+                             "temperature = 400.0 } ] } }\n")));
+    const real passes = 1 / (1 / 1e-3 + 0.0625 / 0.6);  // the exchange and half a cell
+    EXPECT_EQ(flow.advised_dt(), 10);
+    flow.step(10);
+    EXPECT_NEAR(integral_of(flow, "heat_added"), passes * 0.25 * 10 * -10, 1e-6);
+    EXPECT_NEAR(flow.advised_dt(), 20, 1e-9);
+    flow.step(20);  // 350 K in the mean
+    EXPECT_NEAR(integral_of(flow, "heat_added"), passes * 0.25 * (-100 + 20 * 40), 1e-5);
+    flow.step(10);
+    EXPECT_NEAR(integral_of(flow, "heat_added"), passes * 0.25 * (-100 + 800 + 10 * 90), 1e-5);
+}
+
+TEST("ice melts under pressure, and takes the heat for it from itself") {
+    set_threads(1);
+    FlowSolver<2> flow(test::mac_scene(
+        "solver = \"mac\"\ndim = 2\ngrid = { cells = [4, 4], size = [1.0, 1.0] }\ntime = { end = 1.0 }\nfluid = { density = 1000.0 }\n"
+        "substance = \"water\"\ninitial = { temperature = { name = \"constant\", value = 272.9 } }\n"
+        "heat = { ambient = { keyframes = [ { t = 0.0, pressure = 1e5 }, { t = 1.0, pressure = 2e7 } ] } }\n"));
+    EXPECT_EQ(integral_of(flow, "liquid_volume"), 0);
+    const real heat = integral_of(flow, "heat");
+    flow.step(1);
+    const auto curve = thermo::water()->heat_curve(2e7);
+    EXPECT_NEAR((*flow.state().find("temperature"))({1, 1}), curve.begins_at(1), 1e-9);
+    EXPECT_GT(integral_of(flow, "liquid_volume"), 0.005);  // 1.2 K of ice's heat capacity over the heat of fusion: 0.8%
+    EXPECT_LT(integral_of(flow, "liquid_volume"), 0.01);
+    EXPECT_EQ(integral_of(flow, "heat"), heat);
+}
+
 TEST("without a substance no face has a mobility and no field is derived") {
     FlowSolver<2> flow(test::mac_scene(test::unit_box(2, 8, "effects = { buoyancy = { beta = 0.1 } }\n")));
     EXPECT_TRUE(flow.state().mobility[0].empty());

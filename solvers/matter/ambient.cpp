@@ -1,0 +1,90 @@
+#include "matter/ambient.hpp"
+
+#include "scene/names.hpp"
+
+#include <algorithm>
+
+namespace weir::matter {
+
+using scene::Key;
+using scene::Type;
+
+namespace {
+
+Key temperature_key(const char* doc) {
+    return {.name = "temperature", .type = Type::number, .doc = doc, .unit = "K", .min = 0, .min_open = true};
+}
+
+/// Whether all frames say it; refuses the first that does not where another one does.
+bool all_say(const scene::Scene& scene, const std::vector<scene::Table>& frames, const char* what) {
+    const auto says = [&](const scene::Table& frame) { return frame.has(what); };
+    if (std::none_of(frames.begin(), frames.end(), says)) return false;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (!says(frames[i])) {
+            const std::string path = "heat.ambient.keyframes[" + std::to_string(i) + "]";
+            scene.refuse(path, path + " says no " + what + ", and others do", "each keyframe, or none");
+        }
+    return true;
+}
+
+}  // namespace
+
+Key ambient_key() {
+    return {.name = "ambient",
+            .type = Type::table,
+            .doc = "The surroundings.",
+            .keys = {temperature_key("Of the surroundings: what walls with an `exchange` see."),
+                     {.name = "keyframes",
+                      .type = Type::tables,
+                      .doc = "Temperature and pressure in the course of time, on straight lines between these moments.",
+                      .keys = {{.name = "t", .type = Type::number, .doc = "The moment.", .unit = "s", .required = true},
+                               temperature_key("Of the surroundings."),
+                               {.name = "pressure",
+                                .type = Type::number,
+                                .doc = "At which it melts and boils, in place of heat.pressure.",
+                                .unit = "Pa",
+                                .min = 0,
+                                .min_open = true}}}}};
+}
+
+Ambient::Ambient(const scene::Scene& scene) {
+    pressure_ = {{0, scene.number("heat.pressure")}};
+    if (!scene.has("heat.ambient")) return;
+    const scene::Table& table = scene.root().table("heat.ambient");
+    if (table.has("temperature")) temperature_ = {{0, table.number("temperature")}};
+    if (!table.has("keyframes")) return;
+    const auto& frames = table.tables("keyframes");
+    for (std::size_t i = 1; i < frames.size(); ++i)
+        if (!(frames[i].number("t") > frames[i - 1].number("t"))) {
+            const std::string path = "heat.ambient.keyframes[" + std::to_string(i) + "].t";
+            scene.refuse(path, path + " is " + scene::number_text(frames[i].number("t")) + " s, not after " +
+                                   scene::number_text(frames[i - 1].number("t")) + " s of the frame before");
+        }
+    const auto take = [&](std::vector<Frame>& list, const char* what) {
+        if (frames.empty() || !all_say(scene, frames, what)) return;
+        list.clear();
+        for (const auto& frame : frames) list.push_back({frame.number("t"), frame.number(what)});
+    };
+    if (table.has("temperature") && !frames.empty() && frames[0].has("temperature"))
+        scene.refuse("heat.ambient.temperature", "the keyframes say a temperature already", "one of the two");
+    take(temperature_, "temperature");
+    take(pressure_, "pressure");
+}
+
+real Ambient::at(const std::vector<Frame>& frames, real t) {
+    const auto next = std::find_if(frames.begin(), frames.end(), [&](const Frame& frame) { return frame.t > t; });
+    if (next == frames.begin()) return next->value;
+    const Frame& last = *(next - 1);
+    if (next == frames.end()) return last.value;
+    return last.value + (t - last.t) / (next->t - last.t) * (next->value - last.value);
+}
+
+real Ambient::to_next_frame(real t) const {
+    real least = infinity;
+    for (const auto* frames : {&temperature_, &pressure_})
+        for (const Frame& frame : *frames)
+            if (t < frame.t * (1 - 1e-9)) least = std::min(least, frame.t - t);  // a sum of rounded steps that ends there counts as there
+    return least;
+}
+
+}  // namespace weir::matter

@@ -1,0 +1,313 @@
+#include "water/heat.hpp"
+
+#include "core/error.hpp"
+#include "geometry/shape.hpp"
+#include "matter/heat.hpp"
+#include "matter/substance.hpp"
+#include "scene/names.hpp"
+#include "staggered/ice.hpp"
+#include "staggered/initial.hpp"
+
+#include <algorithm>
+
+namespace weir::water {
+
+using poisson::Cell;
+using scene::Key;
+using scene::Type;
+
+template <int D>
+std::vector<Key> LiquidHeat<D>::keys() {
+    return {
+        matter::substance_key_of_heat(
+            "Naming it lets the liquid carry heat, freeze and evaporate, with `fluid.density` for solid and liquid alike."),
+        {.name = "heat",
+         .type = Type::table,
+         .doc = "How a substance takes up heat. Only where `substance` is named.",
+         .keys = {matter::pressure_key(),
+                  matter::ambient_key(),
+                  {.name = "drag",
+                   .type = Type::number,
+                   .doc = "C of Carman and Kozeny's drag C (1 - f)^2/(f^3 + 0.001) in cells that are part solid.",
+                   .unit = "kg/(m^3 s)",
+                   .fallback = 1.6e6,
+                   .min = 0,
+                   .min_open = true},
+                  {.name = "surface_exchange",
+                   .type = Type::number,
+                   .doc = "Heat that comes in through the free surface for each kelvin by which heat.ambient is warmer.",
+                   .unit = "W/(m^2 K)",
+                   .fallback = 0.0,
+                   .min = 0},
+                  {.name = "evaporation",
+                   .type = Type::number,
+                   .doc = "Liquid that evaporates from the surface for each pascal by which its saturation pressure is above "
+                          "vapour_pressure. It goes with its heat and the heat of evaporation, and is counted.",
+                   .unit = "kg/(m^2 s Pa)",
+                   .fallback = 0.0,
+                   .min = 0},
+                  {.name = "vapour_pressure",
+                   .type = Type::number,
+                   .doc = "Of the substance's vapour above the liquid.",
+                   .unit = "Pa",
+                   .fallback = 0.0,
+                   .min = 0}}},
+        matter::heaters_key("Regions that give off heat, evenly over the liquid's cells whose centres they cover; none where there is no "
+                            "liquid. Only where `substance` is named.")};
+}
+
+namespace {
+
+/// What would carry heat in or out that nobody knows.
+template <int D>
+void refuse_open(const scene::Scene& scene, const MacState<D>& s) {
+    if (!scene.root().tables("emitters").empty())
+        scene.refuse("emitters[0]", "an emitter pours liquid of no temperature, and the scene names a substance that keeps its heat");
+    for (int a = 0; a < D; ++a)
+        for (int end = 0; end < 2; ++end)
+            if (const auto kind = s.sides.side(a, end).kind; kind == geometry::SideKind::inflow || kind == geometry::SideKind::outflow)
+                scene.refuse(std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max"),
+                             "liquid passes through an open side, and the balance of a substance's heat is for a closed box");
+    for (std::size_t i = 0; scene.has("solids") && i < scene.root().tables("solids").size(); ++i)
+        if (scene.root().tables("solids")[i].has("motion"))
+            scene.refuse("solids[" + std::to_string(i) + "].motion",
+                         "solids that move and a substance that melts are not simulated together");
+}
+
+}  // namespace
+
+template <int D>
+LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame)
+    : substance_(matter::substance_of(scene)),
+      melting_(matter::melting_of(scene, "mac_water")),
+      frame_(frame),
+      drag_(scene.number("heat.drag")),
+      exchange_(scene.number("heat.surface_exchange")),
+      evaporation_(scene.number("heat.evaporation")),
+      vapour_pressure_(scene.number("heat.vapour_pressure")),
+      enthalpy_(s.extent()),
+      temperature_(s.extent()),
+      liquid_(s.extent(), 1),
+      moved_(s.extent()),
+      source_(s.extent()),
+      known_(s.extent()) {
+    refuse_open(scene, s);
+    s.sides.read(scene, "temperature");
+    conduction_ = Conduction<D>(melting_, s.extent(), s.u.h, s.rho, field_boundary(s.sides, "temperature"));
+    supply_ = HeatSupply<D>(scene, s, melting_, conduction_);
+    if (exchange_ > 0 && !supply_.ambient().has_temperature())
+        scene.refuse("heat.surface_exchange", "the surface exchanges heat with surroundings of which nothing is said",
+                     "heat.ambient with a temperature or keyframes");
+    set_initial_field(temperature_, s.u, scene, "temperature");
+    const char* place = scene.has("initial.temperature") ? "initial.temperature" : "substance";
+    const real coldest = -max_over(s.extent(), [&](const Index<D>& I) { return -temperature_(I); });
+    if (!(coldest > 0))
+        scene.refuse(place, "somewhere it is " + scene::number_text(coldest) + " K at the start", "temperatures are above 0 K");
+    for_each_cell(s.extent(), [&](const Index<D>& I) { enthalpy_(I) = melting_.enthalpy(temperature_(I)); });
+    const real most = max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? enthalpy_(I) : -infinity; });
+    if (most > melting_.boils_above)
+        scene.refuse(place, "at " + scene::number_text(melting_.temperature(most)) + " K the liquid boils",
+                     "solver \"mac_water\" evaporates at its surface, and has no bubbles");
+    find_surface(s);
+    mean_ = mean(s);
+    note(s);
+}
+
+template <int D>
+real LiquidHeat<D>::mean(const MacState<D>& s) const {
+    const real sum = sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? enthalpy_(I) : 0; });
+    return cells_ > 0 ? sum / static_cast<real>(cells_) : mean_;
+}
+
+/// The liquid's cells that have air beside them; and how many there are of all.
+template <int D>
+void LiquidHeat<D>::find_surface(const MacState<D>& s) {
+    surface_cells_.clear();
+    cells_ = 0;
+    for (std::size_t c = 0; c < s.cells.size(); ++c) {
+        if (s.cells[c] != Cell::fluid) continue;
+        ++cells_;
+        const Index<D> I = frame_.index_of(c);
+        bool air = false;
+        for (int a = 0; a < D; ++a)
+            for (const int by : {-1, 1}) {
+                Index<D> J = I;
+                air = air || (frame_.step(J, a, by) && s.cells(J) == Cell::air);
+            }
+        if (air) surface_cells_.push_back(c);
+    }
+}
+
+/// Temperature and share of liquid that belong to the enthalpies; beside the liquid all counts as melt.
+template <int D>
+void LiquidHeat<D>::note(const MacState<D>& s) {
+    for_each_cell(s.extent(), [&](const Index<D>& I) {
+        temperature_(I) = melting_.temperature(enthalpy_(I));
+        liquid_(I) = s.cells(I) == Cell::fluid ? melting_.liquid(enthalpy_(I)) : 1;
+    });
+    const real hottest = max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? enthalpy_(I) : -infinity; });
+    if (!(hottest <= melting_.boils_above))
+        throw NumericalFailure("temperature", std::isnan(hottest) ? "the enthalpy is not finite"
+                                                                  : "the liquid begins to boil, and solver \"mac_water\" has no bubbles");
+}
+
+/// H of cells beside the liquid is the mean of their neighbours', layer by layer.
+template <int D>
+void LiquidHeat<D>::continue_outwards(const MacState<D>& s, int layers) {
+    for_each_cell(s.extent(), [&](const Index<D>& I) { known_(I) = s.cells(I) == Cell::fluid ? 1 : 0; });
+    for (int layer = 2; layer < layers + 2; ++layer)
+        for_each_cell(s.extent(), [&](const Index<D>& I) {  // reads earlier layers alone, so that no order matters
+            if (known_(I) != 0) return;
+            real sum = 0;
+            int count = 0;
+            for (int a = 0; a < D; ++a)
+                for (const int by : {-1, 1}) {
+                    Index<D> J = I;
+                    if (frame_.step(J, a, by) && known_(J) != 0 && known_(J) < layer) sum += enthalpy_(J), ++count;
+                }
+            if (count > 0) enthalpy_(I) = sum / count, known_(I) = static_cast<std::uint8_t>(layer);
+        });
+}
+
+template <int D>
+void LiquidHeat<D>::carry(const MacState<D>& s, const LevelSet<D>& surface, real dt, Trace order) {
+    continue_outwards(s, surface.layers());
+    const real near = 2 * frame_.h_max();
+    for_each_cell(s.extent(), [&](const Index<D>& I) {
+        moved_(I) = enthalpy_(I);
+        if (!(surface.phi(I) < near) || s.cells(I) == Cell::solid) return;
+        const Vec<D> from = trace(s.u, frame_, frame_.centre(I), -dt, order);
+        moved_(I) = sample_cells(enthalpy_, Stencil<D>(frame_, frame_.wrap(from)));
+    });
+    enthalpy_.swap(moved_);  // moved_: as it was
+}
+
+/// Cells whose enthalpy has changed bear what the mean lacks, each in proportion; all alike where none has.
+template <int D>
+void LiquidHeat<D>::keep_mean(const MacState<D>& s) {
+    if (cells_ == 0) return;
+    const real lacks = (mean_ - mean(s)) * static_cast<real>(cells_);
+    const auto moved = [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? std::abs(enthalpy_(I) - moved_(I)) : 0; };
+    const real change = sum_over(s.extent(), moved);
+    const bool bears = change > std::abs(lacks);
+    for_each_cell(s.extent(), [&](const Index<D>& I) {
+        if (s.cells(I) == Cell::fluid) enthalpy_(I) += lacks * (bears ? moved(I) / change : 1 / static_cast<real>(cells_));
+    });
+}
+
+template <int D>
+real LiquidHeat<D>::surface_temperature() const {
+    real sum = 0;
+    for (const std::size_t c : surface_cells_) sum += temperature_[c];
+    return sum / static_cast<real>(surface_cells_.size());
+}
+
+template <int D>
+real LiquidHeat<D>::evaporates(const MacState<D>& s, real area, real dt) {
+    if (evaporation_ == 0 || surface_cells_.empty()) return 0;
+    const real T = surface_temperature();
+    const auto from = T < substance_->triple()->T ? thermo::Boundary::sublimation : thermo::Boundary::saturation;
+    return dt * area * evaporation_ * (substance_->pressure(from, T) - vapour_pressure_) / s.rho;
+}
+
+template <int D>
+void LiquidHeat<D>::leaves(const MacState<D>& s, real lost, real volume) {
+    if (surface_cells_.empty() || !(volume > lost)) return;
+    const real T = surface_temperature(), h = melting_.enthalpy(T);
+    const auto from = T < substance_->triple()->T ? thermo::Boundary::sublimation : thermo::Boundary::saturation;
+    const real latent = substance_->latent_heat(from, T), m = s.rho * lost;
+    evaporated_ += lost;
+    vapour_heat_ += m * (h + latent);
+    pending_ += m * latent;
+    mean_ = (mean_ * volume - lost * h) / (volume - lost);
+}
+
+template <int D>
+void LiquidHeat<D>::conduct(const MacState<D>& s, real volume, real area, real dt) {
+    find_surface(s);
+    if (cells_ == 0) return;
+    keep_mean(s);
+    if (supply_.ambient().pressure_changes()) {
+        melting_ = matter::melting_at(*substance_, supply_.ambient().pressure(s.time + dt));
+        conduction_.set_melting(melting_);
+    }
+    conduction_.set_density(s.rho * volume / (static_cast<real>(cells_) * frame_.cell_volume()));
+    const auto& given = supply_.at(s.time, dt, s, conduction_);
+    if (given.empty())
+        source_.fill(0);
+    else
+        for_each_cell(s.extent(), [&](const Index<D>& I) { source_(I) = given(I); });
+    if (!surface_cells_.empty()) {
+        const real cell = static_cast<real>(surface_cells_.size()) * frame_.cell_volume();
+        const real outside = exchange_ > 0 ? supply_.ambient().temperature(s.time + 0.5 * dt) : 0;
+        for (const std::size_t c : surface_cells_)
+            source_[c] += (exchange_ * area * (outside - melting_.temperature(enthalpy_[c])) - pending_ / dt) / cell;
+        added_ += pending_, pending_ = 0;  // not from outside: counted as the vapour's
+    }
+    added_ += conduction_.step(enthalpy_, {s.cells, true, source_}, dt);
+    mean_ = mean(s);
+    note(s);
+}
+
+template <int D>
+bool LiquidHeat<D>::slow(MacState<D>& s, real dt) {
+    const bool ice = max_over(s.extent(), [&](const Index<D>& I) { return -liquid_(I); }) > -1;
+    if (!std::exchange(ice_, ice) && !ice) return false;
+    hold_back(s, liquid_, dt * drag_ / s.rho);
+    return true;
+}
+
+template <int D>
+real LiquidHeat<D>::max_dt(const MacState<D>& s, real area) const {
+    real limit = supply_.to_next_change(s.time);
+    if (surface_cells_.empty()) return limit;
+    const real capacity = s.rho * std::min(melting_.c_solid, melting_.c_liquid) * static_cast<real>(surface_cells_.size()) *
+                          frame_.cell_volume();  // of the cells at the surface [J/K]
+    if (exchange_ > 0) limit = std::min(limit, 0.5 * capacity / (exchange_ * area));
+    if (evaporation_ > 0) {  // a tenth of a cell, and a kelvin of those at the surface
+        const real T = surface_temperature();
+        const auto from = T < substance_->triple()->T ? thermo::Boundary::sublimation : thermo::Boundary::saturation;
+        const real rate = evaporation_ * area * std::abs(substance_->pressure(from, T) - vapour_pressure_);  // [kg/s]
+        if (rate > 0)
+            limit = std::min({limit, 0.1 * frame_.h_min() * s.rho * area / rate, capacity / (rate * substance_->latent_heat(from, T))});
+    }
+    return limit;
+}
+
+template <int D>
+std::vector<Integral> LiquidHeat<D>::integrals(const MacState<D>& s, real volume) const {
+    const std::string depth = D == 2 ? "/m" : "", m = D == 2 ? "m^2" : "m^3";
+    const real melt = sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? liquid_(I) : 0; });
+    return {{"heat", "J" + depth, s.rho * volume * mean_ - pending_},
+            {"heat_added", "J" + depth, added_},
+            {"vapour_heat", "J" + depth, vapour_heat_},
+            {"evaporated", m, evaporated_},
+            {"liquid_volume", m, cells_ > 0 ? volume * melt / static_cast<real>(cells_) : 0}};
+}
+
+template <int D>
+void LiquidHeat<D>::save(Checkpoint& to) const {
+    to.put("water.enthalpy", enthalpy_.values());
+    to.put_value("water.heat", std::array<real, 5>{mean_, pending_, added_, evaporated_, vapour_heat_});
+}
+
+template <int D>
+void LiquidHeat<D>::restore(const Checkpoint& from, const MacState<D>& s) {
+    from.get("water.enthalpy", enthalpy_.values());
+    const auto reals = from.template get_value<std::array<real, 5>>("water.heat");
+    mean_ = reals[0], pending_ = reals[1], added_ = reals[2], evaporated_ = reals[3], vapour_heat_ = reals[4];
+    find_surface(s);
+    note(s);
+}
+
+template <int D>
+std::size_t LiquidHeat<D>::bytes() const {
+    std::size_t count = conduction_.bytes() + supply_.bytes() + known_.size() + surface_cells_.capacity() * sizeof(std::size_t);
+    for (const auto* grid : {&enthalpy_, &temperature_, &liquid_, &moved_, &source_}) count += grid->size() * sizeof(real);
+    return count;
+}
+
+template class LiquidHeat<2>;
+template class LiquidHeat<3>;
+
+}  // namespace weir::water

@@ -1,0 +1,73 @@
+// Heat in a liquid with a free surface: specific enthalpy H in its cells, carried along paths, conducted between cells of liquid alone,
+// given and taken by sides, heaters and the surface; ice stops the flow (staggered/ice.hpp). The ledger is of the whole: the liquid's mass
+// is what the volume's ledger says, its heat that mass times the mean of H over its cells. Paths do not keep that mean, so it is set right
+// after them, where H has changed. Liquid that evaporates leaves with its own enthalpy and the heat of evaporation, which the cells at the
+// surface lose:
+//     dm/dt = A e (p_sat(T) − p_v),   M' = M − dm,   M' H̄' = M H̄ − dm (H_s + L).
+#pragma once
+#include "core/checkpoint.hpp"
+#include "core/solver.hpp"
+#include "staggered/conduction.hpp"
+#include "staggered/heat_supply.hpp"
+#include "surface/level_set.hpp"
+
+#include <vector>
+
+namespace weir::water {
+
+using namespace surface;  // the words of the grid and of its free surface are the solver's own
+
+template <int D>
+class LiquidHeat {
+public:
+    static bool named(const scene::Scene& scene) { return scene.has("substance"); }
+    static std::vector<scene::Key> keys();
+
+    /// Refuses what it cannot be told together with. The surface and the cells of liquid are known.
+    LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame);
+
+    /// DH/Dt = 0 in the flow that moves the surface, before that has moved.
+    void carry(const MacState<D>& s, const LevelSet<D>& surface, real dt, Trace trace);
+    /// How much liquid evaporates in dt [m^D]: the surface is to be lowered by it. Negative where vapour condenses.
+    real evaporates(const MacState<D>& s, real area, real dt);
+    /// What has in fact left the liquid, whose volume was `volume` before.
+    void leaves(const MacState<D>& s, real lost, real volume);
+    /// ρ dH/dt = ∇·(k ∇T) + q in the liquid of s.cells, whose volume is `volume` and whose surface has this area.
+    void conduct(const MacState<D>& s, real volume, real area, real dt);
+    /// u* becomes β u*, s.mobility is β. Whether any face is held back.
+    bool slow(MacState<D>& s, real dt);
+
+    /// Up to the next switch of a heater or keyframe, and what explicit exchange through the surface allows [s].
+    real max_dt(const MacState<D>& s, real area) const;
+    FieldView temperature() const { return {"temperature", "K", Where::cell, "", {temperature_.values()}}; }
+    FieldView liquid() const { return {"liquid", "", Where::cell, "", {liquid_.values()}}; }
+    std::vector<Integral> integrals(const MacState<D>& s, real volume) const;
+    void save(Checkpoint& to) const;
+    void restore(const Checkpoint& from, const MacState<D>& s);
+    std::size_t bytes() const;
+
+private:
+    void note(const MacState<D>& s);
+    void find_surface(const MacState<D>& s);
+    void continue_outwards(const MacState<D>& s, int layers);
+    real mean(const MacState<D>& s) const;
+    void keep_mean(const MacState<D>& s);
+    real surface_temperature() const;
+
+    thermo::SubstancePtr substance_;
+    matter::Melting melting_;
+    Frame<D> frame_;
+    real drag_, exchange_, evaporation_, vapour_pressure_;
+    Conduction<D> conduction_;
+    HeatSupply<D> supply_;
+    Grid<real, D> enthalpy_, temperature_, liquid_, moved_, source_;
+    Grid<std::uint8_t, D> known_;
+    std::vector<std::size_t> surface_cells_;             // of liquid, beside air
+    std::int64_t cells_ = 0;                             // of liquid
+    real mean_ = 0;                                      // H̄ of the ledger [J/kg]
+    real pending_ = 0;                                   // heat of evaporation that the surface has still to give [J]
+    real added_ = 0, evaporated_ = 0, vapour_heat_ = 0;  // since the start [J], [m^D], [J]
+    bool ice_ = false;
+};
+
+}  // namespace weir::water
