@@ -8,11 +8,6 @@ namespace weir::water {
 
 namespace {
 
-template <int D>
-geometry::Solids<D> solids_of(const scene::Scene& scene) {
-    return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
-}
-
 /// Beyond flattest_cell a splash has been seen to gain more than a fifth of its energy (cases/hard_water): a surface that falls by several
 /// cells from one column to the next is not resolved across them.
 template <int D>
@@ -37,7 +32,8 @@ Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
-      solids_(solids_of<D>(scene), state_),
+      bodies_(BodiesInFlow<D>::make(scene)),
+      solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
       effects_(make_effects<D>(body_forces(), scene)) {
     refuse_flat_cells(scene, frame_);
     if (const auto* gravity = scene.effect("gravity")) gravity_ = gravity->template vec<D>("g");
@@ -68,6 +64,7 @@ Water<D>::Water(const scene::Scene& scene)
         refuse_buried_emitters(scene);
     }
     fill_with_liquid(scene);
+    if (bodies_) bodies_->start(state_, solids_);
     set_initial_velocity(state_, scene);
     set_fixed_faces();
     extend_velocity(0);
