@@ -1,6 +1,7 @@
 #include "app/view/stage.hpp"
 
 #include "app/picture/canvas.hpp"
+#include "rigid/bodies.hpp"
 
 #include <vtkActor.h>
 #include <vtkCamera.h>
@@ -80,9 +81,10 @@ void Stage::show(const Frame& frame, const std::string& field, Show what) {
     const bool grid = frame.grid && !sheet && (what != Show::particles || frame.particles.empty());
     if (grid) dim() == 2 ? add_sheet(frame, field) : add_cloud(frame, field);
     if (what != Show::grid || !grid)
-        for (const auto& [set, points] : frame.particles) add_particles(frame, points, field);
+        for (const auto& [set, points] : frame.particles)
+            if (set != rigid::body_set_name) add_particles(frame, points, field);
     set_colours(field);
-    add_solids(frame.time);
+    add_solids(frame);
     scale_->SetVisibility(low_ <= high_);
     renderer_->ResetCameraClippingRange();
 }

@@ -43,7 +43,7 @@ private:
     void add_surface(const Frame& frame, vtkPolyData* points, const std::string& field);
     void add_sheet(const Frame& frame, const std::string& field);
     void add_cloud(const Frame& frame, const std::string& field);
-    void add_solids(real time);
+    void add_solids(const Frame& frame);
     void add_outline();
     void widen(vtkDataSet* shown);
     void set_colours(const std::string& field);

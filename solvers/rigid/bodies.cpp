@@ -63,6 +63,15 @@ Key bodies_key() {
             .variants_from = &scene::shapes};
 }
 
+Key probe_key() {
+    Key probes{.name = "probes", .type = Type::tables};
+    probes.variants = {
+        {"body",
+         "Where a body is and how it moves, and the force and torque of the fluid on it.",
+         {{.name = "body", .type = Type::text, .doc = "Its name, or its number from 0.", .required = true, .example = "body = \"0\""}}}};
+    return probes;
+}
+
 namespace {
 
 std::string path_of(std::size_t number) { return "bodies[" + std::to_string(number) + "]"; }
@@ -189,6 +198,30 @@ void Bodies<D>::place(geometry::Solids<D>& solids) const {
 }
 
 template <int D>
+void Bodies<D>::recall(const std::function<real(const char*, std::size_t, std::size_t)>& value) {
+    for (std::size_t b = 0; b < count(); ++b) {
+        Body<D>& body = list_[b];
+        for (std::size_t a = 0; a < D; ++a) body.at[a] = value("position", a, b), body.velocity[a] = value("velocity", a, b);
+        for (std::size_t k = 0; k < (D == 2 ? 1 : 4); ++k) body.orientation[k] = value(D == 2 ? "angle" : "orientation", k, b);
+    }
+}
+
+template <int D>
+ShownSolids<D>::ShownSolids(const scene::Scene& scene) : bodies_(scene) {
+    if (scene.has("solids")) solids_ = geometry::Solids<D>(scene.root().tables("solids"));
+    bodies_.join(solids_);
+}
+
+template <int D>
+const geometry::Solids<D>& ShownSolids<D>::at(real t, const std::function<real(const char*, std::size_t, std::size_t)>& value) {
+    solids_.set_time(t);
+    if (bodies_.empty()) return solids_;
+    bodies_.recall(value);
+    bodies_.place(solids_);
+    return solids_;
+}
+
+template <int D>
 Surroundings<D> Bodies<D>::surroundings(const geometry::Solids<D>& solids) const {
     Surroundings<D> around = around_;
     around.solids = &solids;
@@ -265,5 +298,7 @@ std::size_t Bodies<D>::bytes() const {
 
 template class Bodies<2>;
 template class Bodies<3>;
+template class ShownSolids<2>;
+template class ShownSolids<3>;
 
 }  // namespace weir::rigid

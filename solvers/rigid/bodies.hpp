@@ -6,6 +6,7 @@
 #include "rigid/contacts.hpp"
 #include "scene/schema.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace weir::rigid {
@@ -14,8 +15,9 @@ namespace weir::rigid {
 /// orientation (3D, a quaternion), spin, and what the fluid does to it.
 inline constexpr const char* body_set_name = "bodies";
 
-/// What solvers that carry bodies add to their keys.
+/// What solvers that carry bodies add to their keys: the bodies, and the probe that follows one.
 scene::Key bodies_key();
+scene::Key probe_key();
 
 template <int D>
 class Bodies {
@@ -34,6 +36,8 @@ public:
     /// Appends them to the solids, and puts them where they are.
     void join(geometry::Solids<D>& solids);
     void place(geometry::Solids<D>& solids) const;
+    /// Puts them where they were shown to be: value(field, component, body) of the set of points.
+    void recall(const std::function<real(const char*, std::size_t, std::size_t)>& value);
     /// Walls of the domain and solids that they may touch.
     Surroundings<D> surroundings(const geometry::Solids<D>& solids) const;
     /// The fastest crossing of a length h by a point of a body [1/s].
@@ -53,6 +57,19 @@ private:
     std::vector<Body<D>> list_;
     Surroundings<D> around_;
     mutable std::vector<std::vector<real>> shown_;
+};
+
+/// All solids of a scene with its bodies where they were shown to be, for those who draw; `value` as in Bodies::recall.
+template <int D>
+class ShownSolids {
+public:
+    explicit ShownSolids(const scene::Scene& scene);
+    bool empty() const { return solids_.empty(); }
+    const geometry::Solids<D>& at(real t, const std::function<real(const char*, std::size_t, std::size_t)>& value);
+
+private:
+    Bodies<D> bodies_;
+    geometry::Solids<D> solids_;
 };
 
 }  // namespace weir::rigid
