@@ -289,7 +289,7 @@ void FlowSolver<D>::project(real dt) {
     slow(dt);
     const auto timed = passes_.time("project");
     report_ = &projection_.project(state_, dt, bodies_.get(), &solids_);
-    if (bodies_) solids_.see_velocities();
+    if (bodies_) solids_.see_velocities(state_);
     if (heat_) heat_->give_back(state_);
     impulse_ += dt * pressure_force(state_);
 }

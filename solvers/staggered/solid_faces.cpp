@@ -98,14 +98,14 @@ void SolidPlacement<D>::find_extended(const MacState<D>& s) {
             if (I[a] == 0 || I[a] == s.u.cells[a] || !beside_open(I)) continue;
             const Vec<D> x = s.u.face_centre(a, I);
             if (solids_[solids_.nearest(x)].no_slip) continue;
-            extended_.push_back({a, I, solids_.normal(x, 1e-3 * s.u.h[a]), solids_.velocity(x), x, 0});
+            extended_.push_back({a, I, solids_.normal(x, 1e-3 * s.u.h[a]), solids_.velocity(x), 0});
         }
     }
 }
 
 template <int D>
-void SolidPlacement<D>::see_velocities() {
-    for (Extended& f : extended_) f.velocity = solids_.velocity(f.at);
+void SolidPlacement<D>::see_velocities(const MacState<D>& s) {
+    for (Extended& f : extended_) f.velocity = solids_.velocity(s.u.face_centre(f.axis, f.face));
 }
 
 /// The mean of the open neighbours, then without what would pass through the solid: u ← u − ((u − u_solid)·n) n. Left in, it feeds the

@@ -30,7 +30,7 @@ public:
     /// u·n = u_solid·n on closed faces.
     void set_faces(MacState<D>& s) const;
     /// The solids move at other speeds than when they were placed.
-    void see_velocities();
+    void see_velocities(const MacState<D>& s);
     /// Continues s.before one face into solids with free slip: tangentially as the flow beside, through the surface as the solid moves.
     void extend_velocity(MacState<D>& s) const;
     /// Continues a field's `before` one cell into solids: the mean of the neighbours that are not solid.
@@ -44,7 +44,6 @@ private:
         int axis;
         Index<D> face;
         Vec<D> normal, velocity;  // of the solid there
-        Vec<D> at;
         real value;
     };
     void find_extended(const MacState<D>& s);
