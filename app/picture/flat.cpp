@@ -123,13 +123,17 @@ void draw_below_line(const View& view, const Plane& plane, Canvas& canvas) {
 }
 
 void draw_solids(const View& view, const Plane& plane, Canvas& canvas) {
-    geometry::Solids<2> solids(view.scene.root().tables("solids"));
-    if (solids.empty()) return;
-    solids.set_time(view.frame.time);
+    rigid::ShownSolids<2> shown(view.scene);
+    if (shown.empty()) return;
+    const geometry::Solids<2>& solids = shown.at(view.frame.time, bodies_of(view.frame));
+    const std::size_t bodies = solids.count() - view.scene.root().tables("bodies").size();  // the first of them
     parallel_for(0, plane.height, [&](int y) {
         for (int x = 0; x < plane.width; ++x) {
-            const real depth = -solids.distance(plane.place(x, y)) / plane.metre;  // pixels
-            if (depth > 0) canvas.at(x, y) = depth < 3 * oversampling ? hex(0x2b2f36) : hex(0x8d939c);
+            const Vec<2> at = plane.place(x, y);
+            const real depth = -solids.distance(at) / plane.metre;  // pixels
+            if (depth <= 0) continue;
+            const Colour inside = solids.nearest(at) < bodies ? hex(0x8d939c) : hex(0xe0a43a);
+            canvas.at(x, y) = depth < 3 * oversampling ? hex(0x2b2f36) : inside;
         }
     });
 }

@@ -40,9 +40,10 @@ Vec<2> Camera::pixel(const Vec<3>& world) const {
 }
 
 Stage::Stage(const View& view, const Box& domain)
-    : domain_(domain), dark_(view.field != "water"), solids_(view.scene.root().tables("solids")) {
-    solids_.set_time(view.frame.time);
-}
+    : domain_(domain),
+      dark_(view.field != "water"),
+      solids_(rigid::ShownSolids<3>(view.scene).at(view.frame.time, bodies_of(view.frame))),
+      bodies_(solids_.count() - view.scene.root().tables("bodies").size()) {}
 
 Vec<3> Stage::light() { return normalised({{0.45, 1.0, 0.35}}); }
 
@@ -84,6 +85,7 @@ real Stage::solid_distance(const Ray& ray, real limit) const {
 Colour Stage::solid_colour(const Vec<3>& x) const {
     const Vec<3> n = solids_.normal(x, 1e-3 * norm(domain_.max - domain_.min));
     const real lit = 0.35 + 0.65 * std::max(0.0, dot(n, light()));
+    if (solids_.nearest(x) >= bodies_) return lit * hex(0xf0b03c);
     return lit * (dark_ ? hex(0xb0a494) : hex(0x9aa0a8));
 }
 

@@ -45,6 +45,7 @@ private:
     Box domain_;
     bool dark_;  // smoke wants a dark stage
     geometry::Solids<3> solids_;
+    std::size_t bodies_ = 0;  // the first of them among the solids
 };
 
 }  // namespace weir::picture

@@ -2,6 +2,7 @@
 #pragma once
 #include "app/picture/canvas.hpp"
 #include "output/read_frame.hpp"
+#include "rigid/bodies.hpp"
 #include "scene/scene.hpp"
 
 #include <string>
@@ -17,6 +18,12 @@ struct View {
     bool grid = false;  // 2D: lines between the cells that hold liquid, tall ones as they are
 };
 
+/// What a frame says of its bodies, as rigid::ShownSolids asks for it.
+inline auto bodies_of(const output::FrameData& frame) {
+    return [&frame](const char* field, std::size_t component, std::size_t body) {
+        return frame.particles.at(rigid::body_set_name).at(field).at(component).at(body);
+    };
+}
 /// Lets a run without a grid be drawn: its particles become markers, on a grid of the scene's domain with 2^D of them to a cell.
 void particles_as_markers(output::FrameData& frame, const scene::Scene& scene);
 /// Lets a run of liquid that has a level set and no markers be drawn as water: 2^D markers to a cell where the level set is negative.

@@ -1,6 +1,6 @@
 // What the viewer's stage shows in space: clouds of a 3D grid's field, the scene's solids, the outline of the domain.
+#include "rigid/bodies.hpp"
 #include "app/view/stage.hpp"
-#include "geometry/solids.hpp"
 
 #include <vtkActor.h>
 #include <vtkClipDataSet.h>
@@ -29,10 +29,15 @@ namespace {
 
 /// Signed distance to the solids [m] on a lattice of `step` [m] over the box.
 template <int D>
-vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, real time, const std::array<real, 6>& box, real step) {
-    geometry::Solids<D> solids(scene.root().tables("solids"));
-    if (solids.empty()) return nullptr;
-    solids.set_time(time);
+vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, const Frame& frame, const std::array<real, 6>& box, real step) {
+    rigid::ShownSolids<D> shown(scene);
+    if (shown.empty()) return nullptr;
+    const geometry::Solids<D>& solids = shown.at(frame.time, [&](const char* field, std::size_t component, std::size_t body) {
+        vtkPolyData* points = frame.particles.at(rigid::body_set_name);
+        const auto point = static_cast<vtkIdType>(body);
+        if (std::string_view(field) == "position") return points->GetPoint(point)[component];
+        return points->GetPointData()->GetArray(field)->GetComponent(point, static_cast<int>(component));
+    });
     auto image = vtkSmartPointer<vtkImageData>::New();
     std::array<int, 3> n{1, 1, 1};
     for (std::size_t a = 0; a < D; ++a) n[a] = 1 + static_cast<int>(std::ceil((box[2 * a + 1] - box[2 * a]) / step - 1e-9));
@@ -52,11 +57,11 @@ vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, real time, co
 
 }  // namespace
 
-void Stage::add_solids(real time) {
+void Stage::add_solids(const Frame& frame) {
     const bool flat = dim() == 2;
     const real longest = std::max({domain_[1] - domain_[0], domain_[3] - domain_[2], domain_[5] - domain_[4]});
     const real step = std::max(0.5 * cell_, longest / (flat ? 600 : 160));
-    const auto image = flat ? distances<2>(scene_, time, domain_, step) : distances<3>(scene_, time, domain_, step);
+    const auto image = flat ? distances<2>(scene_, frame, domain_, step) : distances<3>(scene_, frame, domain_, step);
     if (!image) return;
     vtkNew<vtkDataSetMapper> mapper;
     if (flat) {

@@ -1,6 +1,7 @@
 #include "app/view/stage.hpp"
 
 #include "app/picture/canvas.hpp"
+#include "rigid/bodies.hpp"
 
 #include <vtkActor.h>
 #include <vtkCamera.h>
@@ -81,9 +82,10 @@ void Stage::show(const Frame& frame, const std::string& field, Show what) {
     const bool grid = frame.grid && !sheet && (columns || what != Show::particles || frame.particles.empty());
     if (grid) columns ? add_columns(frame, field) : dim() == 2 ? add_sheet(frame, field) : add_cloud(frame, field);
     if (what != Show::grid || !grid || columns)
-        for (const auto& [set, points] : frame.particles) add_particles(frame, points, field);
+        for (const auto& [set, points] : frame.particles)
+            if (set != rigid::body_set_name) add_particles(frame, points, field);
     set_colours(field);
-    add_solids(frame.time);
+    add_solids(frame);
     scale_->SetVisibility(low_ <= high_);
     renderer_->ResetCameraClippingRange();
 }

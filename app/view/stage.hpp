@@ -49,7 +49,7 @@ private:
     void add_boxes(vtkPolyData* points);
     void add_sheet(const Frame& frame, const std::string& field);
     void add_cloud(const Frame& frame, const std::string& field);
-    void add_solids(real time);
+    void add_solids(const Frame& frame);
     void add_outline();
     /// Colours by the field of `shown`; plain where that is null.
     void colour(vtkMapper* mapper, vtkDataSet* shown);

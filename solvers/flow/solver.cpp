@@ -29,7 +29,7 @@ StepReport FlowSolver<D>::step(real dt) {
         conduct(part);                 // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
         arrive(dt);                    // u += what is left of dt f(u, q)
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
-        move_solids(t += part);        // u·n = u_solid·n
+        move_solids(t += part, part);  // u·n = u_solid·n
         project(part);                 // ∇·u = 0
         hold();                        // what emitters and solids prescribe
     }
@@ -107,7 +107,8 @@ template <int D>
 FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     : effects_(make_effects<D>(effect_kinds(), scene)),
       state_(scene, field_plan(effects_, scene)),
-      solids_(scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>(), state_),
+      bodies_(BodiesInFlow<D>::make(scene)),
+      solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
       heat_(Heat<D>::named(scene) ? std::make_unique<Heat<D>>(scene, state_) : nullptr),
       options_(scene.root().table("scheme")),
       characteristics_(options_),
@@ -135,6 +136,12 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     if (heat_) {
         if (solids_.moving()) scene.refuse("solids", "solids that move and a substance that melts are not simulated together");
         heat_->start(state_, scene);
+    }
+    if (bodies_) {
+        if (options_.scheme == Scheme::conservative)
+            scene.refuse("bodies", "scheme.advection = \"conservative\" takes a step in stages, and bodies move in whole steps",
+                         "scheme.advection: semi_lagrangian, maccormack");
+        bodies_->start(state_, solids_);
     }
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
@@ -261,9 +268,10 @@ void FlowSolver<D>::blend(const Substep& stage) {
 }
 
 template <int D>
-void FlowSolver<D>::move_solids(real t) {
+void FlowSolver<D>::move_solids(real t, real dt) {
     if (!solids_.any()) return;
     const auto timed = passes_.time("solids");
+    if (bodies_) bodies_->fly(solids_, dt);
     if (solids_.moving()) {
         solids_.place(state_, t);
         projection_.set_matrix(state_);
@@ -295,7 +303,8 @@ template <int D>
 void FlowSolver<D>::project(real dt) {
     slow(dt);
     const auto timed = passes_.time("project");
-    report_ = &projection_.project(state_, dt);
+    report_ = &projection_.project(state_, dt, bodies_.get(), &solids_);
+    if (bodies_) solids_.see_velocities(state_);
     if (heat_) heat_->give_back(state_);
     impulse_ += dt * pressure_force(state_);
 }
@@ -337,7 +346,8 @@ void FlowSolver<D>::remember_solids() {
 /// Largest number of cells that anything crosses in a second, where the fluid crosses as many as it is said to.
 template <int D>
 real FlowSolver<D>::rate(real fluid) const {
-    return std::isnan(fluid) ? fluid : std::max({fluid, side_rate_, solids_.max_rate(state_)});
+    const real h = *std::min_element(state_.u.h.begin(), state_.u.h.end());
+    return std::isnan(fluid) ? fluid : std::max({fluid, side_rate_, solids_.max_rate(state_), bodies_ ? bodies_->bodies().max_rate(h) : 0});
 }
 
 /// The same after the last step, which knows its fastest flow.
@@ -392,6 +402,7 @@ FieldSet FlowSolver<D>::fields() const {
         });
         set.fields.push_back({"divergence", "1/s", Where::cell, "", {divergence_.values()}});
     }
+    if (bodies_) bodies_->bodies().show(set);
     return set;
 }
 
@@ -402,6 +413,8 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
     if (hand_) geometry::sum_up(*hand_, D, list);
     if (!solids_.any()) return list;
+    if (bodies_)
+        for (auto& integral : bodies_->bodies().integrals(bodies_->gravity())) list.push_back(std::move(integral));
     if (state_.find("smoke")) {
         list.push_back({"smoke_removed", D == 2 ? "m^2" : "m^3", smoke_removed_});
         list.push_back({"smoke_continued", D == 2 ? "m^2" : "m^3", smoke_continued_});
@@ -418,6 +431,7 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
 template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
     state_.save(to);
+    if (bodies_) bodies_->save(to);
     to.put_value("impulse", impulse_);
     if (heat_) heat_->save(to);
     if (hand_) hand_->save(to);
@@ -427,6 +441,7 @@ void FlowSolver<D>::save(Checkpoint& to) const {
 template <int D>
 void FlowSolver<D>::restore(const Checkpoint& from) {
     state_.restore(from);
+    if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
     if (hand_ && from.has("hand")) hand_->restore(from);
     fastest_ = not_applicable;
@@ -447,7 +462,7 @@ std::size_t FlowSolver<D>::bytes() const {
     for (const auto& blend : velocity_blend_) total += blend.bytes();
     for (const auto& blend : field_blend_) total += blend.bytes();
     for (const auto& component : carried_.face) total += component.bytes();
-    total += was_solid_.size();
+    total += was_solid_.size() + (bodies_ ? bodies_->bytes() : 0);
     if (heat_) total += heat_->bytes();
     return total;
 }

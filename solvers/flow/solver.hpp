@@ -56,7 +56,7 @@ private:
     void advect_fields(real dt);
     void advect_velocity(real dt);
     void blend(const Substep& stage);
-    void move_solids(real t);
+    void move_solids(real t, real dt);
     void conduct(real dt);
     void lift(real dt);
     void slow(real dt);
@@ -70,6 +70,7 @@ private:
 
     Effects<MacState<D>> effects_;
     MacState<D> state_;
+    std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none
     SolidPlacement<D> solids_;
     std::unique_ptr<Heat<D>> heat_;  // none where the scene names no substance
     AdvectionOptions options_;

@@ -18,13 +18,24 @@ Solids<D>::Solids(const std::vector<scene::Table>& tables) {
 }
 
 template <int D>
+void Solids<D>::add_free(ShapePtr<D> shape, bool no_slip) {
+    Solid<D> solid;
+    solid.shape = std::move(shape);
+    solid.no_slip = no_slip;
+    solid.free = true;
+    solids_.push_back(std::move(solid));
+    poses_.emplace_back();
+}
+
+template <int D>
 bool Solids<D>::moving() const {
-    return std::any_of(solids_.begin(), solids_.end(), [](const Solid<D>& s) { return s.motion.moves(); });
+    return std::any_of(solids_.begin(), solids_.end(), [](const Solid<D>& s) { return s.free || s.motion.moves(); });
 }
 
 template <int D>
 void Solids<D>::set_time(real t) {
-    for (std::size_t i = 0; i < solids_.size(); ++i) poses_[i] = solids_[i].motion.pose(t);
+    for (std::size_t i = 0; i < solids_.size(); ++i)
+        if (!solids_[i].free) poses_[i] = solids_[i].motion.pose(t);
 }
 
 template <int D>

@@ -15,6 +15,7 @@ struct Solid {
     ShapePtr<D> shape;
     Motion<D> motion;
     bool no_slip = false;
+    bool free = false;  // whoever moves it says where it is (place)
 };
 
 /// All solids; set_time() places them, every query speaks of that time.
@@ -30,6 +31,9 @@ public:
     /// Whether any solid moves: otherwise fractions never change.
     bool moving() const;
     void set_time(real t);
+    /// A solid that moves as it is told to: its place is the last one given, at any time.
+    void add_free(ShapePtr<D> shape, bool no_slip);
+    void place(std::size_t solid, const Pose<D>& pose) { poses_[solid] = pose; }
     const Solid<D>& operator[](std::size_t i) const { return solids_[i]; }
 
     /// Signed distance to the nearest solid [m], negative inside; +infinity without solids.

@@ -21,7 +21,7 @@ struct FrameOptions {
     Compression compression = Compression::zlib;
     bool single_precision = false;
     /// 1 for each cell that a solid takes at a time: ParaView draws nothing there. Empty: there are no solids.
-    std::function<std::vector<std::uint8_t>(const GridView& grid, real t)> solid = {};
+    std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t)> solid = {};
 };
 
 /// Whether this build can write frames at all (WEIR_VTK).

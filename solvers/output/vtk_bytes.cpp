@@ -151,7 +151,7 @@ std::string image_bytes(const FieldSet& fields, real t, const FrameOptions& opti
         if (field.where == Where::particle || !chosen(options, field)) continue;
         data->GetCellData()->AddArray(field.where == Where::face ? at_centres(field, fields.grid, options) : as_it_is(field, options));
     }
-    if (options.solid) data->GetCellData()->AddArray(hidden(options.solid(fields.grid, t)));
+    if (options.solid) data->GetCellData()->AddArray(hidden(options.solid(fields, t)));
     stamp(*data, t);
     return bytes_of<vtkXMLImageDataWriter>(data, options);
 }

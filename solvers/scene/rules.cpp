@@ -70,6 +70,7 @@ void check_bodies(const Table& root, const Domain& domain, const Report& report)
     each("solids", [&](const Table& t, const std::string& path) {
         if (t.has("motion")) check_motion(t.table("motion"), path + ".motion", report);
     });
+    each("bodies", [](const Table&, const std::string&) {});
     each("emitters", [&](const Table& t, const std::string& path) {
         check_reach(t, path, domain, report);
         if (t.has("start") && t.has("end") && t.number("end") <= t.number("start"))

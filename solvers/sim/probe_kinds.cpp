@@ -1,6 +1,7 @@
 #include "sim/probe_kinds.hpp"
 
 #include "geometry/solids.hpp"
+#include "rigid/bodies.hpp"
 #include "sim/sampling.hpp"
 #include "sim/surface.hpp"
 #include "sim/wall_fit.hpp"
@@ -119,6 +120,32 @@ private:
     Vec<D> at_;
 };
 
+/// All that a solver shows of one body.
+class BodyTrack final : public ProbeKind {
+public:
+    BodyTrack(const FieldSet& fields, std::size_t body) : body_(body) {
+        for (const auto& field : fields.fields) {
+            if (field.set != rigid::body_set_name) continue;
+            names_.push_back(field.name);
+            for (int c = 0; c < field.components(); ++c)
+                columns_.push_back(column(field.name == "orientation" ? std::string("orientation_") + "wxyz"[c]
+                                                                      : component_name(field.name, field.components(), c),
+                                          field.unit));
+        }
+    }
+    void describe(ProbeSeries& series) const override { series.columns = columns_; }
+    std::vector<real> measure(const Solver&, const FieldSet& fields) const override {
+        std::vector<real> row;
+        for (const auto& name : names_)
+            for (const auto& values : fields.find(rigid::body_set_name, name)->data) row.push_back(values[body_]);
+        return row;
+    }
+
+private:
+    std::size_t body_;
+    std::vector<std::string> names_, columns_;
+};
+
 /// The checks and the makers, one function a kind.
 class Maker {
 public:
@@ -138,6 +165,7 @@ public:
         if (kind == "front") return surface(), std::make_unique<Front>(static_cast<int>(table_.text("axis")[0] - 'x'));
         if (kind == "integral") return integral();
         if (kind == "wall_pressure") return wall_pressure();
+        if (kind == "body") return body();
         throw std::logic_error("probe \"" + kind + "\" is in the schema but has no maker");
     }
 
@@ -174,6 +202,19 @@ private:
         const Vec<3> at = inside("at");
         if (fields_.grid.dim == 2) return std::make_unique<WallPressure<2>>(scene_, Vec<2>{{at[0], at[1]}});
         return std::make_unique<WallPressure<3>>(scene_, at);
+    }
+
+    std::unique_ptr<ProbeKind> body() const {
+        const std::string& wanted = table_.text("body");
+        const auto& bodies = scene_.root().tables("bodies");
+        std::string known;
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            const std::string name = bodies[b].text_or("name", std::to_string(b));
+            if (name == wanted) return std::make_unique<BodyTrack>(fields_, b);
+            known += (known.empty() ? "" : ", ") + name;
+        }
+        scene_.refuse(path_ + ".body", "this scene has no body \"" + wanted + "\"",
+                      known.empty() ? "it has none at all" : "known: " + known);
     }
 
     const FieldView& grid_field() const {

@@ -15,7 +15,7 @@ namespace weir {
 /// Samples of one probe. Row i of `values` was taken at times[i] [s] and has one entry a column.
 struct ProbeSeries {
     std::string name;
-    std::string kind;                  // point, line, gauge, wall_pressure, integral, front
+    std::string kind;                  // point, line, gauge, wall_pressure, integral, body, front
     std::vector<std::string> columns;  // "velocity_x [m/s]", "height [m]", ...
     std::vector<Vec<3>> positions;     // of each column's sample where it has one (points, lines, gauges) [m]
     std::vector<real> times;

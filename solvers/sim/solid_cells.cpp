@@ -1,7 +1,7 @@
 #include "sim/solid_cells.hpp"
 
 #include "core/grid.hpp"
-#include "geometry/solids.hpp"
+#include "rigid/bodies.hpp"
 
 #include <memory>
 
@@ -11,9 +11,12 @@ namespace {
 
 template <int D>
 auto marker(const scene::Scene& scene) {
-    const auto solids = std::make_shared<geometry::Solids<D>>(scene.root().tables("solids"));
-    return [solids](const GridView& grid, real t) {
-        solids->set_time(t);
+    const auto shown = std::make_shared<rigid::ShownSolids<D>>(scene);
+    return [shown](const FieldSet& fields, real t) {
+        const GridView& grid = fields.grid;
+        const geometry::Solids<D>& solids = shown->at(t, [&](const char* field, std::size_t component, std::size_t body) {
+            return fields.find(rigid::body_set_name, field)->data[component][body];
+        });
         Index<D> cells;
         for (int a = 0; a < D; ++a) cells[a] = grid.cells[static_cast<std::size_t>(a)];
         Grid<std::uint8_t, D> inside(cells);
@@ -23,7 +26,7 @@ auto marker(const scene::Scene& scene) {
                 const auto at = static_cast<std::size_t>(a);
                 x[a] = grid.origin[at] + grid.spacing[at] * (I[a] + 0.5);
             }
-            inside(I) = solids->distance(x) < 0;
+            inside(I) = solids.distance(x) < 0;
         });
         return std::vector<std::uint8_t>(inside.values().begin(), inside.values().end());
     };
@@ -31,8 +34,8 @@ auto marker(const scene::Scene& scene) {
 
 }  // namespace
 
-std::function<std::vector<std::uint8_t>(const GridView& grid, real t)> solid_cells(const scene::Scene& scene) {
-    if (scene.root().tables("solids").empty()) return {};
+std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t)> solid_cells(const scene::Scene& scene) {
+    if (scene.root().tables("solids").empty() && scene.root().tables("bodies").empty()) return {};
     if (scene.dim() == 2) return marker<2>(scene);
     return marker<3>(scene);
 }

@@ -9,7 +9,7 @@
 
 namespace weir::sim {
 
-/// 1 for each cell whose centre lies in a solid at a time, x fastest; no function where the scene has no solids.
-std::function<std::vector<std::uint8_t>(const GridView& grid, real t)> solid_cells(const scene::Scene& scene);
+/// 1 for each cell whose centre lies in a solid, or in a body, at a time, x fastest; no function where the scene has neither.
+std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t)> solid_cells(const scene::Scene& scene);
 
 }  // namespace weir::sim

@@ -182,9 +182,10 @@ static void set_rhs(const MacState<D>& s, real scale, Grid<real, D>& rhs) {
 }
 
 template <int D>
-const poisson::Report& Projection<D>::project(MacState<D>& s, real dt) {
+const poisson::Report& Projection<D>::project(MacState<D>& s, real dt, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
     set_rhs(s, -s.u.h[0] * s.u.h[0] * s.rho / dt, rhs_);
     const poisson::Report& report = solver_->solve(s.p, rhs_);
+    if (bodies) bodies->react(s, *solids, dt, solver_.get(), &rhs_);
     add_gradient(s.u, s, -dt / s.rho);
     return report;
 }

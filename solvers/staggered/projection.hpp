@@ -2,6 +2,7 @@
 // Ng, Min & Gibou 2009):     Σ_faces w (p(I) − p(N)) = −h² (ρ/dt) ∇·(w u + (1 − w) u_solid),      u −= (dt/ρ) ∇p.
 #pragma once
 #include "poisson/poisson.hpp"
+#include "staggered/bodies_in_flow.hpp"
 #include "staggered/state.hpp"
 
 #include <memory>
@@ -50,8 +51,9 @@ public:
     Projection(const PoissonChoice& choice, const MacState<D>& s);
     /// To be called when solids moved.
     void set_matrix(const MacState<D>& s);
-    /// Solves for s.p, which is the first guess, and makes s.u free of divergence.
-    const poisson::Report& project(MacState<D>& s, real dt);
+    /// Solves for s.p, which is the first guess, and makes s.u free of divergence. `bodies`, or nullptr, get their velocities by the same
+    /// pressure.
+    const poisson::Report& project(MacState<D>& s, real dt, BodiesInFlow<D>* bodies = nullptr, SolidPlacement<D>* solids = nullptr);
     std::size_t bytes() const;
 
 private:

@@ -103,6 +103,11 @@ void SolidPlacement<D>::find_extended(const MacState<D>& s) {
     }
 }
 
+template <int D>
+void SolidPlacement<D>::see_velocities(const MacState<D>& s) {
+    for (Extended& f : extended_) f.velocity = solids_.velocity(s.u.face_centre(f.axis, f.face));
+}
+
 /// The mean of the open neighbours, then without what would pass through the solid: u ← u − ((u − u_solid)·n) n. Left in, it feeds the
 /// flow beside the solid and grows.
 template <int D>

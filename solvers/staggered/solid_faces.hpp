@@ -23,11 +23,14 @@ public:
     bool any() const { return !solids_.empty(); }
     bool moving() const { return solids_.moving(); }
     const geometry::Solids<D>& solids() const { return solids_; }
+    geometry::Solids<D>& solids() { return solids_; }
 
     /// Open fractions, face velocities and cell flags at time t.
     void place(MacState<D>& s, real t);
     /// u·n = u_solid·n on closed faces.
     void set_faces(MacState<D>& s) const;
+    /// The solids move at other speeds than when they were placed.
+    void see_velocities(const MacState<D>& s);
     /// Continues s.before one face into solids with free slip: tangentially as the flow beside, through the surface as the solid moves.
     void extend_velocity(MacState<D>& s) const;
     /// Continues a field's `before` one cell into solids: the mean of the neighbours that are not solid.

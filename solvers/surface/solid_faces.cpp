@@ -28,6 +28,14 @@ void FacesInSolids<D>::find(const geometry::Solids<D>& solids, const MacState<D>
 }
 
 template <int D>
+void FacesInSolids<D>::see_velocities(const geometry::Solids<D>& solids, const MacState<D>& state) {
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        for (std::size_t i = 0; i < solid_[at].size(); ++i) solid_[at][i].velocity = solids.velocity(state.u.face_centre(a, faces_[at][i]));
+    }
+}
+
+template <int D>
 void FacesInSolids<D>::forget(FaceMarks<D>& known) const {
     for (int a = 0; a < D; ++a)
         for (const Index<D>& I : faces_[static_cast<std::size_t>(a)]) known[static_cast<std::size_t>(a)](I) = 0;

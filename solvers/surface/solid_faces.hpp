@@ -15,6 +15,8 @@ public:
     /// Of the solids as they stand. `room`: there is to be room for twice as many, for solids that move may come to cut more faces, so that
     /// no step allocates.
     void find(const geometry::Solids<D>& solids, const MacState<D>& state, const Frame<D>& frame, bool room);
+    /// The solids move at other speeds than when they were found.
+    void see_velocities(const geometry::Solids<D>& solids, const MacState<D>& state);
     /// Markers reach over a solid's surface with their hats, but what they leave there is not the liquid's velocity.
     void forget(FaceMarks<D>& known) const;
     /// u −= n n·(u − u_solid) where solids slip; u = u_solid where they do not, or where no liquid is near.

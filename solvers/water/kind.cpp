@@ -62,6 +62,8 @@ scene::SolverKind kind() {
     schema.doc = "Liquid with a free surface: markers on a staggered grid, level set, second-order surface pressure.";
     schema.dims = {2, 3};
     schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0}}},
+                   rigid::bodies_key(),
+                   rigid::probe_key(),
                    scheme_keys(),
                    initial_keys()};
     Key sides{.name = "sides", .type = Type::table};

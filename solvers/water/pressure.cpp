@@ -151,11 +151,15 @@ void SurfacePressure<D>::hold_back(const MacState<D>& state) {
 
 template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
-                                                   const Grid<real, D>* curvature) {
-    if (!has_liquid_) return nothing_to_do_;  // every drop has left or is thinner than a cell: nothing is under pressure
+                                                   const Grid<real, D>* curvature, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
+    if (!has_liquid_) {  // every drop has left or is thinner than a cell: nothing is under pressure
+        if (bodies) bodies->react(state, *solids, dt, nullptr, nullptr);
+        return nothing_to_do_;
+    }
     set_rhs(state, surface, dt, sigma, curvature);
     solver_->setup(A_);
     const poisson::Report& report = solver_->solve(state.p, b_);  // the last pressure is the first guess
+    if (bodies) bodies->react(state, *solids, dt, solver_.get(), &b_);
     subtract_gradient(state, dt);
     if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature);
     return report;

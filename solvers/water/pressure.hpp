@@ -4,6 +4,7 @@
 // thinnest) without any clamp: a plane surface, at any height and tilt, has exactly the hydrostatic p.
 #pragma once
 #include "poisson/poisson.hpp"
+#include "staggered/bodies_in_flow.hpp"
 #include "staggered/projection.hpp"
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
@@ -27,8 +28,10 @@ public:
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
     /// Faces follow the pressure as far as state.mobility says; state.u must be that part of itself already.
     void hold_back(const MacState<D>& state);
-    /// Makes the liquid free of divergence: solves for state.p, then u −= (dt/ρ) ∇p. `curvature` [1/m] at cells, or nullptr.
-    const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
+    /// Makes the liquid free of divergence: solves for state.p, then u −= (dt/ρ) ∇p. `curvature` [1/m] at cells, or nullptr. `bodies`, or
+    /// nullptr, get their velocities by the same pressure.
+    const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature,
+                                   BodiesInFlow<D>* bodies = nullptr, SolidPlacement<D>* solids = nullptr);
     /// Largest |∇·u| over liquid cells [1/s], open fractions counted.
     real max_divergence(const MacState<D>& state) const;
     /// The part of a line of faces along a, which begins at I and lies on no side across it, that has liquid on one side or the other.

@@ -26,6 +26,7 @@ FieldSet Water<D>::fields() const {
     set.fields.push_back({level_set_name, "m", Where::cell, "", {surface_.phi.values()}});
     set.fields.push_back(std::move(position));
     if (markers_.carries_velocity()) set.fields.push_back(std::move(carried));
+    if (bodies_) bodies_->bodies().show(set);
     return set;
 }
 
@@ -40,12 +41,15 @@ std::vector<Integral> Water<D>::integrals() const {
         for (auto& integral : heat_->integrals(state_, volume_target_)) list.push_back(std::move(integral));
     list.push_back({"escaped_markers", "", static_cast<real>(escaped_)});
     list.push_back({"reseeded_markers", "", static_cast<real>(reseeded_)});
+    if (bodies_)
+        for (auto& integral : bodies_->bodies().integrals(gravity_)) list.push_back(std::move(integral));
     return list;
 }
 
 template <int D>
 void Water<D>::save(Checkpoint& to) const {
     state_.save(to);
+    if (bodies_) bodies_->save(to);
     surface_.save(to);
     int at = 0;
     markers_.for_each_array([&](const std::vector<real>& array) { to.put("water.markers." + std::to_string(at++), array); });
@@ -61,6 +65,7 @@ void Water<D>::save(Checkpoint& to) const {
 template <int D>
 void Water<D>::restore(const Checkpoint& from) {
     state_.restore(from);
+    if (bodies_) bodies_->restore(from, solids_);
     place_solids(state_.time);
     state_.restore(from);  // what is liquid, after the solids have said what is not
     surface_.restore(from);
@@ -83,6 +88,7 @@ std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
                         (viscosity_ ? viscosity_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.size() + near_solid_.size() +
                         not_solved_for_.size() + curvature_.size() * sizeof(real) + in_solids_.bytes();
+    if (bodies_) total += bodies_->bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();
     for (const auto& sum : sums_.sum) total += sum.size() * (sizeof(FaceSum) + 1);  // with its mark
     return total;

@@ -8,6 +8,7 @@ namespace weir::water {
 /// the level set and free of divergence in the liquid, to the tolerance of the pressure.
 template <int D>
 StepReport Water<D>::step(real dt) {
+    move_bodies(dt);
     place_solids(state_.time + dt);
     move_surface(dt);                             // Dx/Dt = u for markers, Dφ/Dt = 0
     pour_and_drain(dt);                           // emitters, open sides
@@ -29,6 +30,13 @@ StepReport Water<D>::step(real dt) {
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
             .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0])};
+}
+
+template <int D>
+void Water<D>::move_bodies(real dt) {
+    if (!bodies_) return;
+    const auto timed = passes_.time("bodies");
+    bodies_->fly(solids_, dt);
 }
 
 template <int D>
@@ -132,7 +140,10 @@ poisson::Report Water<D>::project(real dt) {
     slow(dt);
     const auto timed = passes_.time("project");
     impose_emitters(dt, &Emitter<D>::Face::pours);
-    return pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr);
+    const auto& report =
+        pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr, bodies_.get(), &solids_);
+    if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);
+    return report;
 }
 
 template <int D>
@@ -312,7 +323,8 @@ template <int D>
 real Water<D>::advised_dt() const {
     const real h = frame_.h_min(), g = norm(gravity_);
     real dt = infinity;
-    const real rate = std::max(rate_, solids_.max_rate(state_));  // water at rest sees a body coming
+    const real rate =
+        std::max({rate_, solids_.max_rate(state_), bodies_ ? bodies_->bodies().max_rate(h) : 0});  // water at rest sees one coming
     if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
     if (g > 0) dt = std::min(dt, std::sqrt(h / (pi * g)));
     if (options_.sigma > 0) dt = std::min(dt, std::sqrt(state_.rho * h * h * h / (4 * pi * options_.sigma)));
@@ -330,7 +342,8 @@ template <int D>
 StepLimit Water<D>::stable_dt() const {
     constexpr real cells = 2;
     const real h = frame_.h_min(), g = norm(gravity_);
-    const real rate = std::max(rate_, solids_.max_rate(state_)), motion = rate + std::sqrt(cells * g / h);
+    const real bodies = bodies_ ? bodies_->bodies().max_rate(h) : 0;
+    const real rate = std::max({rate_, solids_.max_rate(state_), bodies}), motion = rate + std::sqrt(cells * g / h);
     StepLimit limit;
     const auto at_most = [&](real dt, std::string_view why) {
         if (dt < limit.dt) limit = {dt, why};

@@ -82,6 +82,7 @@ private:
     void seed_markers();
 
     // The passes of a step, in order (solver.cpp, sources.cpp)
+    void move_bodies(real dt);
     void place_solids(real t);
     void move_surface(real dt);
     void pour_and_drain(real dt);
@@ -113,6 +114,7 @@ private:
     WaterOptions options_;
     MacState<D> state_;
     Frame<D> frame_;
+    std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none
     SolidPlacement<D> solids_;
     Effects<MacState<D>> effects_;
     Vec<D> gravity_{};

@@ -23,7 +23,8 @@ Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
-      solids_(solids_of<D>(scene), state_),
+      bodies_(BodiesInFlow<D>::make(scene)),
+      solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
       effects_(make_effects<D>(body_forces(), scene)),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
@@ -55,6 +56,7 @@ Water<D>::Water(const scene::Scene& scene)
         refuse_buried_emitters(scene);
     }
     fill_with_liquid(scene);
+    if (bodies_) bodies_->start(state_, solids_);
     if (LiquidHeat<D>::named(scene)) heat_ = std::make_unique<LiquidHeat<D>>(scene, state_, frame_);
     set_initial_velocity(state_, scene);
     set_fixed_faces();

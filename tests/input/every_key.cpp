@@ -57,6 +57,22 @@ const std::vector<std::string> solids{
     "solids = [ { shape = \"difference\", from = { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9] }, minus = [ { shape = "
     "\"sphere\", centre = [0.7, 0.7], radius = 0.05 } ] } ]",
 };
+const std::string body = "bodies = [ { density = 2, ", body_probe = "probes = [ { name = \"a\", kind = \"body\", body = \"b\" } ]";
+const std::vector<std::string> bodies{
+    body +
+        "shape = \"box\", min = [0.6, 0.6], max = [0.8, 0.8], name = \"b\", centre_of_mass = [0.7, 0.7], velocity = [0, 0], spin = [0], "
+        "fixed = [\"x\"], slip = \"free\", friction = 0.1, restitution = 0.1 } ]\n" +
+        body_probe,
+    "bodies = [ { mass = 2, shape = \"sphere\", centre = [0.7, 0.7], radius = 0.1 } ]",
+    body + "shape = \"capsule\", from = [0.7, 0.7], to = [0.8, 0.7], radius = 0.1 } ]",
+    body + "shape = \"cylinder\", from = [0.7, 0.7], to = [0.8, 0.7], radius = 0.1 } ]",
+    body + "shape = \"union\", of = [ { shape = \"box\", min = [0.6, 0.6], max = [0.8, 0.8] } ] } ]",
+    body +
+        "shape = \"difference\", from = { shape = \"box\", min = [0.6, 0.6], max = [0.8, 0.8] }, minus = [ { shape = \"sphere\", centre = "
+        "[0.7, 0.7], radius = 0.05 } ] } ]",
+};
+const std::vector<std::string> endless_bodies{body + "shape = \"plane\", point = [0.8, 0.8], normal = [-1, -1] } ]",
+                                              body + "shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"};
 const std::vector<std::string> poisson{"scheme.poisson = { method = \"cg\", tolerance = 1e-6, max_iterations = 100, fixed = false }"};
 const std::vector<std::string> grid_velocities{
     "initial.velocity = \"rest\"",
@@ -118,7 +134,7 @@ std::map<std::string, Said> everything() {
     const Lines refused_by_particles{inflow + " } }", "output.fields = [\"vorticity\"]"};
     said["mac"] = {
         {},
-        all(of_the_run, probes("pressure"), Lines{at_the_wall}, solids, poisson, grid_velocities, of_field("temperature", true),
+        all(of_the_run, probes("pressure"), Lines{at_the_wall}, solids, bodies, poisson, grid_velocities, of_field("temperature", true),
             of_field("smoke", true), walls, open_sides,
             Lines{inflow + ", profile = \"parabolic\" }, x_max = \"outflow\" }", emitter + ", smoke = 1, temperature = 1 } ]",
                   "scheme = { advection = \"maccormack\", interpolation = \"linear\", trace = \"rk2\", limiter = \"clamp\" }",
@@ -127,19 +143,21 @@ std::map<std::string, Said> everything() {
                   "effects.confinement = { epsilon = 0.1 }", "effects.diffusion = { scheme = \"explicit\", temperature = 1, smoke = 1 }",
                   "effects.cooling = { rate = 1, ambient = 0 }", "effects.decay = { rate = 1 }", hand,
                   "effects.viscosity = { scheme = \"explicit\" }\nfluid.viscosity = 1"}),
-        of_the_surface,
+        all(of_the_surface, endless_bodies),
         {"solids = [ { shape = \"cylinder\", from = [0.4, 0.4, 0.4], to = [0.6, 0.4, 0.4], radius = 0.2, motion = { kind = \"rotation\", "
          "centre = [0.5, 0.5, 0.5], axis = [0, 0, 1], rate = 1 } } ]",
          "solids = [ { shape = \"sphere\", centre = [0.4, 0.4, 0.4], radius = 0.2, motion = { kind = \"keyframes\", axis = [0, 0, 1], "
          "frames = [ "
          "{ t = 0, angle = 0 }, { t = 1, angle = 1 } ] } } ]"}};
     said["mac_water"] = {
-        liquid, all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, poisson, grid_velocities, walls, open_sides,
-                    Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
-                    Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }", hand,
-                          "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4",
-                          "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]",
-                          "effects.surface_tension.sigma = 1", "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"})};
+        liquid,
+        all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, bodies, poisson, grid_velocities, walls, open_sides,
+            Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
+            Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }", hand,
+                  "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
+                  "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
+                  "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"}),
+        endless_bodies};
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
                             Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",

@@ -1,0 +1,75 @@
+// The free bodies of a scene: its list "bodies", what they show of themselves, their checkpoints.
+#pragma once
+#include "core/solver.hpp"
+#include "geometry/solids.hpp"
+#include "rigid/body.hpp"
+#include "rigid/contacts.hpp"
+#include "scene/schema.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace weir::rigid {
+
+/// The name of the set of points by which solvers show their bodies, one a body: position of the centre of mass, velocity, angle (2D) or
+/// orientation (3D, a quaternion), spin, and what the fluid does to it.
+inline constexpr const char* body_set_name = "bodies";
+
+/// What solvers that carry bodies add to their keys: the bodies, and the probe that follows one.
+scene::Key bodies_key();
+scene::Key probe_key();
+
+template <int D>
+class Bodies {
+public:
+    Bodies() = default;
+    /// From the scene's list; refuses what cannot be (BadScene).
+    explicit Bodies(const scene::Scene& scene);
+
+    bool empty() const { return list_.empty(); }
+    std::size_t count() const { return list_.size(); }
+    Body<D>& operator[](std::size_t b) { return list_[b]; }
+    const Body<D>& operator[](std::size_t b) const { return list_[b]; }
+    std::vector<Body<D>>& all() { return list_; }
+    const std::vector<Body<D>>& all() const { return list_; }
+
+    /// Appends them to the solids, and puts them where they are.
+    void join(geometry::Solids<D>& solids);
+    void place(geometry::Solids<D>& solids) const;
+    /// Puts them where they were shown to be: value(field, component, body) of the set of points.
+    void recall(const std::function<real(const char*, std::size_t, std::size_t)>& value);
+    /// Walls of the domain and solids that they may touch.
+    Surroundings<D> surroundings(const geometry::Solids<D>& solids) const;
+    /// The fastest crossing of a length h by a point of a body [1/s].
+    real max_rate(real h) const;
+
+    /// Appends their set of points; the views are valid until the next call.
+    void show(FieldSet& set) const;
+    std::vector<Integral> integrals(const Vec<D>& gravity) const;
+    void save(Checkpoint& to) const;
+    void restore(const Checkpoint& from);
+    std::size_t bytes() const;
+
+private:
+    void read(const scene::Scene& scene, std::size_t number);
+    void refuse_overlaps(const scene::Scene& scene) const;
+
+    std::vector<Body<D>> list_;
+    Surroundings<D> around_;
+    mutable std::vector<std::vector<real>> shown_;
+};
+
+/// All solids of a scene with its bodies where they were shown to be, for those who draw; `value` as in Bodies::recall.
+template <int D>
+class ShownSolids {
+public:
+    explicit ShownSolids(const scene::Scene& scene);
+    bool empty() const { return solids_.empty(); }
+    const geometry::Solids<D>& at(real t, const std::function<real(const char*, std::size_t, std::size_t)>& value);
+
+private:
+    Bodies<D> bodies_;
+    geometry::Solids<D> solids_;
+};
+
+}  // namespace weir::rigid

@@ -1,0 +1,83 @@
+// A rigid body: what it is, where it is, how it moves, and how it turns by itself. Torque-free turning is the splitting of Dullweber,
+// Leimkuhler & McLachlan 1997 ("Symplectic splitting methods for rigid body molecular dynamics"), a product of exact turns about the
+// principal axes, composed to fourth order (Suzuki 1990): it keeps the angular momentum to round-off, and the energy does not drift.
+#pragma once
+#include "core/checkpoint.hpp"
+#include "geometry/motion.hpp"
+#include "geometry/shape.hpp"
+#include "rigid/moments.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace weir::rigid {
+
+/// Components of a rigid velocity: D of translation, then the turning about z (2D) or about x, y and z.
+template <int D>
+inline constexpr int freedoms = D == 2 ? 3 : 6;
+template <int D>
+using Twist = std::array<real, freedoms<D>>;
+
+/// 3D: the unit quaternion (w, x, y, z) that turns the body from where the scene puts it. 2D: the angle, then zeros.
+using Orientation = std::array<real, 4>;
+
+/// A ball inside a body that reaches its surface: where it may touch others.
+template <int D>
+struct Feeler {
+    Vec<D> at{};  // in the scene's own place [m]
+    real radius = 0;
+};
+
+template <int D>
+struct Body {
+    std::string name;
+    geometry::ShapePtr<D> shape;
+    std::vector<Feeler<D>> feelers;
+    Moments<D> moments;  // of the shape, density 1
+    Vec<D> centre{};     // of mass, where the scene puts the body [m]
+    real radius = 0;     // of a ball about it that holds the shape [m]
+    real mass = 0;       // [kg; per metre of depth in 2D]
+    Vec<3> principal{};  // moments of inertia about the centre of mass [kg m²]; 2D: the last one
+    std::array<Vec<3>, 3> axes{Vec<3>::unit(0), Vec<3>::unit(1), Vec<3>::unit(2)};  // 3D: their axes, where the scene puts the body
+    std::array<bool, freedoms<D>> held{};                                           // what a scene fixes
+    bool no_slip = false;
+    real friction = 0, restitution = 0;
+
+    // State
+    Vec<D> at{};  // of the centre of mass [m]
+    Orientation orientation{1, 0, 0, 0};
+    Twist<D> velocity{};   // [m/s], then [rad/s]
+    bool touches = false;  // something other than fluid in the last step
+    real wet = 0;          // the part of its surface that fluid touched then, in [0, 1]
+    Twist<D> force{};      // of the fluid, mean over the last step [N], then [N m] about the centre of mass
+
+    real density() const { return mass / moments.volume; }
+    /// Position and velocity field, as solids have them.
+    geometry::Pose<D> pose() const;
+    /// Mass, then the inertia tensor in space; row by row.
+    std::array<Twist<D>, freedoms<D>> mass_matrix() const;
+    real kinetic_energy() const;
+    Vec<3> angular_momentum() const;  // about the centre of mass; 2D: about z, in the last entry
+    /// A time dt on its own: along its velocity, and where neither water nor walls touch it along the parabola of `gravity`, whose push on
+    /// the velocity comes later.
+    void fly(real dt, const Vec<D>& gravity);
+    /// Mass and inertia of a shape of density one times `density`, about the centre of mass.
+    void weigh(real total_mass, const Vec<D>& centre_of_mass);
+
+    void save(Checkpoint& to, const std::string& name) const;
+    void restore(const Checkpoint& from, const std::string& name);
+
+private:
+    void turn(real dt);
+    void turn_freely(real dt);
+};
+
+/// Rows of the rotation matrix.
+template <int D>
+std::array<Vec<D>, D> rotation(const Orientation& q);
+
+/// Eigenvalues and eigenvectors of a symmetric matrix (Jacobi's rotations).
+void diagonalise(std::array<Vec<3>, 3> matrix, Vec<3>& values, std::array<Vec<3>, 3>& vectors);
+
+}  // namespace weir::rigid

@@ -1,0 +1,114 @@
+#include "rigid/feelers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::rigid {
+
+namespace {
+
+constexpr int along_edge = 4, around_rim = 16;  // points
+
+/// Edges and rims are rounded by this part of the smallest extent: exact against a plane, and a corner that stands on another's edge feels
+/// its face.
+constexpr real rounded = 0.02;
+
+template <int D>
+void edges_of_box(Vec<D> min, Vec<D> max, std::vector<Feeler<D>>& list) {
+    real r = infinity;
+    for (int a = 0; a < D; ++a) r = std::min(r, rounded * (max[a] - min[a]));
+    min += Vec<D>::constant(r), max -= Vec<D>::constant(r);
+    for (int corner = 0; corner < 1 << D; ++corner) {
+        Vec<D> x;
+        for (int a = 0; a < D; ++a) x[a] = (corner >> a) & 1 ? max[a] : min[a];
+        list.push_back({x, r});
+        for (int a = 0; a < D; ++a) {
+            if ((corner >> a) & 1) continue;  // each edge once, from its lower end
+            for (int i = 1; i < along_edge; ++i) {
+                Vec<D> y = x;
+                y[a] += (max[a] - min[a]) * i / along_edge;
+                list.push_back({y, r});
+            }
+        }
+    }
+}
+
+/// Any direction across a unit vector.
+Vec<3> across(const Vec<3>& u) {
+    const int least =
+        std::abs(u[0]) < std::abs(u[1]) ? (std::abs(u[0]) < std::abs(u[2]) ? 0 : 2) : (std::abs(u[1]) < std::abs(u[2]) ? 1 : 2);
+    const Vec<3> v = Vec<3>::unit(least) - u[least] * u;
+    return v / norm(v);
+}
+
+template <int D>
+void rims_of_cylinder(Vec<D> from, Vec<D> to, real radius, std::vector<Feeler<D>>& list) {
+    const Vec<D> u = (to - from) / norm(to - from);
+    const real r = rounded * std::min(norm(to - from), 2 * radius);
+    from += r * u, to -= r * u, radius -= r;
+    for (int i = 0; i <= along_edge; ++i) {
+        const Vec<D> x = from + (static_cast<real>(i) / along_edge) * (to - from);
+        if constexpr (D == 2) {
+            const Vec<2> side{{-u[1], u[0]}};
+            list.push_back({x + radius * side, r}), list.push_back({x - radius * side, r});
+        } else {
+            if (i != 0 && i != along_edge / 2 && i != along_edge) continue;
+            const Vec<3> v = across(u), w{{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]}};
+            for (int k = 0; k < around_rim; ++k) {
+                const real angle = 2 * pi * k / around_rim;
+                list.push_back({x + radius * (std::cos(angle) * v + std::sin(angle) * w), r});
+            }
+        }
+    }
+}
+
+/// Those for which f holds.
+template <int D, class F>
+void keep(std::vector<Feeler<D>>& list, F&& f) {
+    list.erase(std::remove_if(list.begin(), list.end(), [&](const Feeler<D>& x) { return !f(x); }), list.end());
+}
+
+/// Points of a union's parts that lie inside another part touch nothing.
+template <int D>
+std::vector<Feeler<D>> of_union(const scene::Table& shape, real rounding) {
+    const auto whole = geometry::make_shape<D>(shape);
+    std::vector<Feeler<D>> list;
+    for (const auto& part : shape.tables("of"))
+        for (const auto& feeler : feelers_of<D>(part)) list.push_back(feeler);
+    keep<D>(list, [&](const Feeler<D>& f) { return whole->distance(f.at) + f.radius > -rounding; });
+    return list;
+}
+
+/// A ball with a hole still touches as a ball; corners that were cut away do not.
+template <int D>
+std::vector<Feeler<D>> of_difference(const scene::Table& shape, real rounding) {
+    std::vector<Feeler<D>> list = feelers_of<D>(shape.table("from"));
+    if (const std::string& kind = shape.text("from.shape"); kind == "sphere" || kind == "capsule") return list;
+    const auto whole = geometry::make_shape<D>(shape);
+    keep<D>(list, [&](const Feeler<D>& f) { return whole->distance(f.at) + f.radius < rounding; });
+    return list;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Feeler<D>> feelers_of(const scene::Table& shape) {
+    const std::string& kind = shape.text("shape");
+    std::vector<Feeler<D>> list;
+    if (kind == "box") edges_of_box<D>(shape.vec<D>("min"), shape.vec<D>("max"), list);
+    if (kind == "sphere") list.push_back({shape.vec<D>("centre"), shape.number("radius")});
+    if (kind == "cylinder") rims_of_cylinder<D>(shape.vec<D>("from"), shape.vec<D>("to"), shape.number("radius"), list);
+    if (kind == "capsule")
+        for (int i = 0; i <= along_edge; ++i)
+            list.push_back({shape.vec<D>("from") + (static_cast<real>(i) / along_edge) * (shape.vec<D>("to") - shape.vec<D>("from")),
+                            shape.number("radius")});
+    if (kind != "union" && kind != "difference") return list;
+    const Bounds<D> box = bounds_of<D>(shape);
+    const real rounding = 1e-9 * norm(box.max - box.min);
+    return kind == "union" ? of_union<D>(shape, rounding) : of_difference<D>(shape, rounding);
+}
+
+template std::vector<Feeler<2>> feelers_of<2>(const scene::Table&);
+template std::vector<Feeler<3>> feelers_of<3>(const scene::Table&);
+
+}  // namespace weir::rigid

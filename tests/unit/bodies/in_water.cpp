@@ -1,0 +1,92 @@
+// Bodies in water with a free surface: they float where Archimedes says, fall, rest, and come back from a checkpoint.
+#include "support.hpp"
+
+using namespace weir;
+using namespace weir::test;
+
+namespace {
+
+/// A tank of 1 m by 0.8 m, 0.4 m deep, with a body.
+std::string tank(int cells, const std::string& body, const std::string& more = "") {
+    return fmt::format(R"(solver = "mac_water"
+dim = 2
+grid = {{ cells = [{}, {}], size = [1.0, 0.8] }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1000.0 }}
+liquid = [ {{ shape = "box", min = [0.0, 0.0], max = [1.0, 0.4] }} ]
+effects = {{ gravity = {{ g = [0.0, -9.81] }} }}
+bodies = [ {} ]
+{}
+)",
+                       cells, cells * 4 / 5, body, more);
+}
+
+/// How deep a disc of radius 1 floats: (q − sin q cos q)/π = s, the depth is 1 − cos q.
+real draft_of_disc(real s) {
+    real low = 0, high = pi;
+    for (int i = 0; i < 60; ++i) {
+        const real q = 0.5 * (low + high);
+        ((q - std::sin(q) * std::cos(q)) / pi < s ? low : high) = q;
+    }
+    return 1 - std::cos(low);
+}
+
+}  // namespace
+
+TEST("discs and boxes float as deep as Archimedes says, to a tenth of a cell, at three resolutions") {
+    for (const int cells : {20, 30, 40})
+        for (const real s : {0.1, 0.5, 0.9}) {
+            const real r = 0.15, y = 0.4 + r - r * draft_of_disc(s), h = 1.0 / cells;
+            const auto disc = solver_of(
+                tank(cells, fmt::format("{{ shape = \"sphere\", centre = [0.5, {}], radius = {}, density = {} }}", y, r, 1000 * s)));
+            real sum = 0;
+            int count = 0;
+            for (; disc->time() < 1.0; ++count) disc->step(disc->advised_dt()), sum += shown(*disc, "position", 1);
+            EXPECT_NEAR(sum / count, y, 0.1 * h) << "disc, " << cells << " cells, s = " << s;
+            const real height = 0.12, low = 0.4 - s * height;
+            const auto box = solver_of(tank(cells, fmt::format("{{ shape = \"box\", min = [0.31, {}], max = [0.71, {}], density = {} }}",
+                                                               low, low + height, 1000 * s)));
+            for (sum = 0, count = 0; box->time() < 1.0; ++count) box->step(box->advised_dt()), sum += shown(*box, "position", 1);
+            EXPECT_NEAR(sum / count, low + height / 2, 0.1 * h) << "box, " << cells << " cells, s = " << s;
+        }
+}
+
+TEST("a checkpoint of bodies that touch in the water continues bit for bit") {
+    const std::string text =
+        tank(24,
+             "{ shape = \"box\", min = [0.1, 0.41], max = [0.3, 0.55], density = 300.0, friction = 0.3 }, { shape = \"box\", min = "
+             "[0.12, 0.56], max = [0.28, 0.66], density = 2000.0 }, { shape = \"sphere\", centre = [0.7, 0.12], radius = 0.1, "
+             "density = 5000.0, spin = [1.0] }");
+    const auto one = solver_of(text), two = solver_of(text);
+    for (int i = 0; i < 25; ++i) one->step(0.008);
+    Checkpoint checkpoint;
+    one->save(checkpoint);
+    two->restore(checkpoint);
+    for (int i = 0; i < 25; ++i) one->step(0.008), two->step(0.008);
+    for (std::size_t body = 0; body < 3; ++body)
+        for (const char* field : {"position", "velocity", "force"})
+            for (const std::size_t a : {0u, 1u}) EXPECT_EQ(shown(*one, field, a, body), shown(*two, field, a, body)) << field << body;
+    Checkpoint a, b;
+    one->save(a), two->save(b);
+    std::vector<real> p, q;
+    a.get("water.markers.0", p), b.get("water.markers.0", q);
+    EXPECT_EQ(p, q);
+}
+
+TEST("a heavy body falls through the air as a stone, sinks, and lies still on the floor") {
+    const auto solver = solver_of(tank(30, "{ shape = \"box\", min = [0.4, 0.55], max = [0.6, 0.7], density = 3000.0 }"));
+    const real dt = 0.002;
+    for (int i = 0; i < 50; ++i) solver->step(dt);  // 0.1 s: 4.9 cm of the 15 to the water
+    EXPECT_NEAR(shown(*solver, "position", 1), 0.625 - 0.5 * 9.81 * 0.01, 1e-12);
+    run(*solver, 2.5);
+    EXPECT_NEAR(shown(*solver, "position", 1), 0.075, 2e-3);  // it may sink in by the contacts' slop, and lies flat
+    EXPECT_NEAR(std::remainder(shown(*solver, "angle", 0), pi / 2), 0, 0.02);
+    EXPECT_NEAR(shown(*solver, "velocity", 1), 0, 1e-3);
+}
+
+TEST("a scene without bodies holds no byte of them, and runs no pass") {
+    const auto without = solver_of(tank(10, ""));
+    without->step(0.01);
+    for (const auto& entry : without->passes().list()) EXPECT_NE(entry.name, "bodies");
+    EXPECT_EQ(without->fields().find(rigid::body_set_name, "position"), nullptr);
+}

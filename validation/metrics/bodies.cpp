@@ -1,0 +1,125 @@
+// Bodies that float, are let go, heave and capsize. The scene's probe "body" follows the one that is asked about.
+#include "validation/metrics/lists.hpp"
+#include "validation/metrics/signal.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::validation {
+namespace {
+
+Curve track(const RunRecord& run, const std::string& name) {
+    const ProbeSeries& probe = run.probe("body");
+    for (std::size_t c = 0; c < probe.columns.size(); ++c)
+        if (probe.columns[c].substr(0, probe.columns[c].find(' ')) == name) return column(probe, c);
+    throw BadInput("the probe \"body\" has no column \"" + name + "\"");
+}
+
+/// Mean over the last part of a run.
+real body_late_mean(const Curve& c, real from, const std::function<real(real)>& of) {
+    real sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < c.size(); ++i)
+        if (c.x[i] >= from) sum += of(c.y[i]), ++count;
+    return count ? sum / static_cast<real>(count) : std::nan("");
+}
+
+/// In cells.
+real body_draft_error(const RunRecord& run, const Reference& ref) {
+    const Curve y = track(run, "position_y");
+    return std::abs(body_late_mean(y, 0.25 * run.time, [](real v) { return v; }) - ref.number("height")) / run.fields.grid.spacing[1];
+}
+
+/// a0 = (1 − s) g/(s + C), from the velocity after the first step.
+real added_mass_error(const RunRecord& run, const Reference& ref) {
+    const Curve v = track(run, "velocity_y");
+    const real s = run.scene->root().tables("bodies").at(0).number("density") / run.scene->number("fluid.density");
+    const real g = -run.scene->effect("gravity")->numbers("g").at(1), start = (v.y.at(1) - v.y.at(0)) / (v.x.at(1) - v.x.at(0));
+    return std::abs(((1 - s) * g / start - s) / ref.number("coefficient") - 1);
+}
+
+/// Of the height over its first value.
+Curve body_heave(const RunRecord& run, const Reference& ref) {
+    Curve y = track(run, "position_y");
+    const real level = run.scene->root().tables("liquid").at(0).numbers("max").at(1);
+    for (real& v : y.y) v = (v - level) / ref.number("start");
+    y.label = "weir";
+    return y;
+}
+
+/// The period between the first and the third time that the body passes its place of rest.
+real period(const Curve& c) {
+    const auto t = zero_crossings(c);
+    return t.size() < 3 ? std::nan("") : t[2] - t[0];
+}
+
+/// The least and the greatest values between the first crossings, signed, as many as both have, at most three.
+std::vector<real> first_extrema(const Curve& c) {
+    const auto t = zero_crossings(c);
+    std::vector<real> list;
+    for (std::size_t k = 0; k + 1 < t.size() && k < 3; ++k) {
+        real extreme = 0;
+        for (std::size_t i = 0; i < c.size(); ++i)
+            if (c.x[i] > t[k] && c.x[i] < t[k + 1] && std::abs(c.y[i]) > std::abs(extreme)) extreme = c.y[i];
+        list.push_back(extreme);
+    }
+    return list;
+}
+
+real extrema_error(const RunRecord& run, const Reference& ref) {
+    const auto ours = first_extrema(body_heave(run, ref)), exact = first_extrema(ref.curve("heave"));
+    if (ours.size() < 3 || exact.size() < 3) return std::nan("");
+    real worst = 0;
+    for (std::size_t i = 0; i < 3; ++i) worst = std::max(worst, std::abs(ours[i] - exact[i]));
+    return worst;
+}
+
+Panel body_heave_panel(const RunRecord& run, const Reference& ref) {
+    Curve exact = ref.curve("heave");
+    exact.dashed = true;
+    return {.title = "Height over where it was let go", .x = {"t [s]"}, .y = {"y/y0"}, .curves = {exact, body_heave(run, ref)}};
+}
+
+/// A square looks the same after a quarter turn: its tilt is at most an eighth of one.
+real tilt(real angle) { return std::abs(std::remainder(angle, pi / 2)); }
+
+Panel body_tilt_panel(const RunRecord& run, const Reference&) {
+    Curve c = track(run, "angle");
+    c.label = "weir";
+    return {.title = "Angle", .x = {"t [s]"}, .y = {"angle [rad]"}, .curves = {c}};
+}
+
+}  // namespace
+
+std::vector<Metric> body_metrics() {
+    return {
+        {.name = "body.draft_error",
+         .unit = "cells",
+         .doc = "Distance of the body's mean height, after the first quarter of the run, from the reference's.",
+         .measure = body_draft_error},
+        {.name = "body.added_mass_error",
+         .unit = "",
+         .doc = "Relative error of the added mass that the acceleration of the first step says, g (1 - s)/(s + C).",
+         .measure = added_mass_error},
+        {.name = "body.period_error",
+         .unit = "",
+         .doc = "Relative error of the time between the first and the third crossing of the place of rest.",
+         .measure = [](const RunRecord& run,
+                       const Reference& ref) { return std::abs(period(body_heave(run, ref)) / period(ref.curve("heave")) - 1); },
+         .figure = body_heave_panel},
+        {.name = "body.extrema_error",
+         .unit = "",
+         .doc = "Largest difference of the first three extrema to the reference's, over the height of release.",
+         .measure = extrema_error},
+        {.name = "body.tilt_error",
+         .unit = "rad",
+         .doc = "Distance of the mean tilt of a square section over the last quarter of the run from the reference's.",
+         .measure =
+             [](const RunRecord& run, const Reference& ref) {
+                 return std::abs(body_late_mean(track(run, "angle"), 0.75 * run.time, tilt) - ref.number("angle"));
+             },
+         .figure = body_tilt_panel},
+    };
+}
+
+}  // namespace weir::validation

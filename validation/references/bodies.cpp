@@ -1,0 +1,77 @@
+// Bodies in water: what Archimedes, Lamb and Ursell say of them.
+#include "validation/harness/reference.hpp"
+#include "validation/references/table.hpp"
+
+#include <cmath>
+
+using namespace weir;
+using namespace weir::validation;
+
+namespace {
+
+/// The root of an increasing function of a depth in [0, 1] of the body's height.
+template <class F>
+real depth_where(real value, F&& submerged) {
+    real low = 0, high = 1;
+    for (int i = 0; i < 100; ++i) {
+        const real middle = 0.5 * (low + high);
+        (submerged(middle) < value ? low : high) = middle;
+    }
+    return low;
+}
+
+const scene::Table& first_body(const scene::Scene& scene) { return scene.root().tables("bodies").at(0); }
+real density_ratio(const scene::Scene& scene) { return first_body(scene).number("density") / scene.number("fluid.density"); }
+real level(const scene::Scene& scene) { return scene.root().tables("liquid").at(0).numbers("max").at(1); }
+
+}  // namespace
+
+/// The height of the middle of an upright box, a disc or a ball afloat.
+REFERENCE(afloat) {
+    const scene::Table& body = first_body(scene);
+    const real s = density_ratio(scene);
+    Reference ref{.source = "Archimedes"};
+    if (body.text("shape") == "box") {
+        const real height = body.numbers("max").at(1) - body.numbers("min").at(1);
+        ref.numbers["height"] = level(scene) + (0.5 - s) * height;
+        return ref;
+    }
+    const real diameter = 2 * body.number("radius");
+    const real draft = depth_where(s, [&](real e) {
+        const real q = std::acos(1 - 2 * e);
+        return scene.dim() == 2 ? (q - std::sin(q) * std::cos(q)) / pi : 3 * e * e - 2 * e * e * e;
+    });
+    ref.numbers["height"] = level(scene) + (0.5 - draft) * diameter;
+    return ref;
+}
+
+/// Added mass over displaced mass of a disc or a ball in the middle of a round vessel: exact, from the potentials r + b²/r and r + b³/(2
+/// r²).
+REFERENCE(round_vessel) {
+    const real a = first_body(scene).number("radius");
+    const real b = scene.root().tables("solids").at(0).tables("minus").at(0).number("radius");
+    const real q = std::pow(b / a, scene.dim());
+    Reference ref{.source = "Lamb 1932, arts. 68 and 93"};
+    ref.numbers["coefficient"] = scene.dim() == 2 ? (q + 1) / (q - 1) : (q + 2) / (2 * (q - 1));
+    return ref;
+}
+
+/// Heave of a half-immersed cylinder let go at a small height, in deep water without friction, over that height.
+REFERENCE(heave_decay) {
+    const Table table = read_table(data / "heave_decay_cylinder_2d_linear.csv");
+    Reference ref{.source = "linear theory, from Ursell's multipoles (1949)"};
+    Curve curve = table.curve("t_star", "x_over_x0", ref.source);
+    const real a = first_body(scene).number("radius"), g = -scene.effect("gravity")->numbers("g").at(1);
+    for (real& t : curve.x) t *= std::sqrt(a / g);
+    ref.curves["heave"] = curve;
+    ref.numbers["start"] = first_body(scene).numbers("centre").at(1) - level(scene);
+    return ref;
+}
+
+/// A square beam stands upright where its metacentre lies above its middle; of half the water's density it rests on a corner.
+REFERENCE(square_section) {
+    const real s = density_ratio(scene), metacentric = s / 2 + 1 / (12 * s) - 0.5;
+    Reference ref{.source = "Archimedes; metacentre by Bouguer"};
+    ref.numbers["angle"] = metacentric > 0 ? 0 : pi / 4;
+    return ref;
+}
