@@ -1,5 +1,7 @@
 #include "particles/kind.hpp"
 
+#include "scene/surface_keys.hpp"
+
 namespace weir::particles {
 
 scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::Key>& in_initial) {
@@ -7,6 +9,7 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
     initial.keys.insert(initial.keys.end(), in_initial.begin(), in_initial.end());
     own.keys.push_back(std::move(initial));
     own.keys.push_back(sinks_key());
+    own.keys.push_back(scene::surface_key_of_particles());
     const auto shared = effect_schemas();
     for (const char* key : {"time.stop_when_steady", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters.temperature",
                             "emitters.smoke", "initial.temperature", "initial.smoke"})

@@ -1,6 +1,7 @@
 // What a scene may say to the solver "mac_water".
-#include "staggered/kind.hpp"
+#include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
+#include "staggered/kind.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
 
@@ -61,7 +62,8 @@ scene::SolverKind kind() {
     schema.dims = {2, 3};
     schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0}}},
                    scheme_keys(),
-                   initial_keys()};
+                   initial_keys(),
+                   scene::surface_key_of_level_set(true)};
     schema.effects = effect_schemas();
     schema.without = {"sides.*.temperature", "sides.*.smoke",       "sides.*.profile", "emitters.temperature",
                       "emitters.smoke",      "initial.temperature", "initial.smoke"};

@@ -36,6 +36,11 @@ std::vector<std::string> probes(const std::string& field) {
 }
 const std::vector<std::string> of_the_surface{"probes = [ { name = \"a\", kind = \"gauge\", at = [0.5, 0.5] } ]",
                                               "probes = [ { name = \"a\", kind = \"front\", axis = \"x\" } ]"};
+const std::string in_space = "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [0.5, 0.5, 0.5] } ]\noutput.surface = ";
+const std::vector<std::string> of_surfaces{in_space + "{ method = \"zhu_bridson\", cell = 0.5 }",
+                                           in_space + "{ method = \"anisotropic\", cell = 0.5 }",
+                                           in_space + "{ method = \"density\", cell = 0.5, smoothing = 3 }"};
+const std::string of_level_set = in_space + "\"level_set\"";
 const std::string at_the_wall = "probes = [ { name = \"a\", kind = \"wall_pressure\", at = [0.0, 0.4] } ]";
 const std::vector<std::string> solids{
     "solids = [ { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9], slip = \"free\", motion = { kind = \"constant\", velocity = [0.1, "
@@ -128,12 +133,15 @@ std::map<std::string, Said> everything() {
          "frames = [ "
          "{ t = 0, angle = 0 }, { t = 1, angle = 1 } ] } } ]"}};
     said["mac_water"] = {
-        liquid, all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, poisson, grid_velocities, walls, open_sides,
-                    Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
-                    Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }",
-                          "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4",
-                          "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]",
-                          "effects.surface_tension.sigma = 1", "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"})};
+        liquid,
+        all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, poisson, grid_velocities, walls, open_sides,
+            Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
+            Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }",
+                  "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
+                  "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
+                  "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"}),
+        {},
+        all(of_surfaces, Lines{of_level_set})};
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
                             Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",
@@ -141,7 +149,8 @@ std::map<std::string, Said> everything() {
                                   "scheme.poisson = { tolerance = 1e-6, max_iterations = 100, fixed = false }",
                                   "scheme = { columns = \"single\", layers = 9, advection = \"semi_lagrangian\" }",
                                   "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]"}),
-                        {inflow + " } }", walls[1], open_sides[0], "grid.periodic = [\"y\"]"}};
+                        {inflow + " } }", walls[1], open_sides[0], "grid.periodic = [\"y\"]"},
+                        {of_level_set}};
     const Lines flows{"flow = { name = \"constant\", value = [1, 0] }", "flow = { name = \"rotation\", centre = [0, 0], rate = 1 }",
                       "flow = { name = \"single_vortex\", period = 1 }"};
     said["transport"] = {
@@ -188,7 +197,7 @@ std::map<std::string, Said> everything() {
                   "}",
                   "scheme = { tolerance = 0.1, max_iterations = 9, backend = \"threads\" }",
                   "effects.artificial_pressure = { k = 1, dq = 0.1 }"}),
-        all(probes("density"), Lines{walls[1], at_the_wall}, refused_by_particles)};
+        all(probes("density"), Lines{walls[1], at_the_wall}, refused_by_particles), of_surfaces};
     said["sph"] = {
         liquid,
         all(of_the_run, particles, solids, particle_velocities, of_the_surface, Lines{walls[0], at_the_wall}, open_sides,
@@ -197,7 +206,7 @@ std::map<std::string, Said> everything() {
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
                   "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
                   "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
-        all(probes("density"), refused_by_particles)};
+        all(probes("density"), refused_by_particles), of_surfaces};
     const std::string of_input = std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/", asc = of_input + "hill.asc",
                       pgm = of_input + "hill.pgm";
     const std::string hill = "terrain = { kind = ";
