@@ -60,6 +60,7 @@ Reconstruction::Reconstruction(const Options& options, const scene::Scene& scene
       hi_(lo_ + scene.vec<3>("grid.size")),
       solids_(scene.root().tables("solids")),
       field_(options.method) {
+    if (!scene.has("grid.periodic")) return;  // a study of walls alone
     const geometry::Sides<3> sides(scene);
     for (int a = 0; a < 3; ++a) periodic_[static_cast<std::size_t>(a)] = sides.periodic(a);
 }

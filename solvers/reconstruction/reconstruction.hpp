@@ -24,6 +24,7 @@ public:
     const SurfaceMesh& mesh() const { return mesh_; }
     const Samples& samples() const { return samples_; }
     const Passes& passes() const { return passes_; }
+    Passes& passes() { return passes_; }
     std::size_t bytes() const;
 
 private:

@@ -249,6 +249,13 @@ std::map<std::string, Said> everything() {
                   "waves = \"basin\"\nliquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]" + falls + "]"}),
         {at_the_wall},
         {sea + "spread = 2, " + wind + "\"pierson_moskowitz\", wind = 0.8 } }" + falls + ", 0]"}};
+    said["reconstruction"] = {
+        {},
+        {},
+        {},
+        all(of_surfaces, Lines{of_surfaces[0] + "\ntitle = \"a\"\ngrid.origin = [0, 0, 0]\njitter = 0.1\ntime.dt = 0.5",
+                               of_surfaces[0] + "\ntime.max_dt = 0.5\ntime.guard = \"off\"\noutput.every = 0.5\noutput.fields = []\n" +
+                                   "output.faces = true\noutput.precision = \"single\"\noutput.compression = \"none\""})};
     return said;
 }
 
