@@ -9,6 +9,7 @@
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
+#include "reconstruction/reconstruction.hpp"
 #include "sim/foretold.hpp"
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
@@ -45,6 +46,8 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
                           : compression == "lz4" ? output::Compression::lz4
                                                  : output::Compression::zlib;
     options.solid = sim::solid_cells(scene);
+    if (const std::shared_ptr<reconstruction::Reconstruction> maker = reconstruction::reconstruction_of(scene))
+        options.surface = [maker](const FieldSet& fields, real t) -> const SurfaceMesh& { return maker->make(fields, t); };
     return options;
 }
 

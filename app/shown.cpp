@@ -40,6 +40,9 @@ void add_all(std::vector<Shown>& list, const scene::SolverKind& kind, const scen
 std::vector<std::pair<std::string, std::string>> studies_of(const std::string& solver) {
     const std::string head = "solver = \"" + solver + "\"\ndim = 3\ngrid = { cells = [8, 8, 8], size = [1, 1, 1] }\ntime = { end = 1.0 }\n";
     if (solver == "poisson") return {{head + "problem = \"N3\"\n", ""}};
+    if (solver == "reconstruction")
+        return {
+            {head + "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [0.5, 0.5, 0.5] } ]\noutput.surface = \"zhu_bridson\"\n", ""}};
     if (solver == "phase_diagram")
         return {{"solver = \"" + solver +
                      "\"\ndim = 2\ngrid = { cells = [8, 8], size = [400, 8], origin = [200, 0] }\ntime = { end = 1.0 }\n" +

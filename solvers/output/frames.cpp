@@ -73,6 +73,7 @@ void Frames::write(const FieldSet& fields, real t) {
         for (int axis = 0; axis < fields.grid.dim; ++axis)
             write_piece(std::string("faces_") + "xyz"[axis], ".vti", face_image_bytes(fields, axis, t, options_));
     for (const auto& set : particle_sets(fields)) write_piece(set, ".vtp", particle_bytes(fields, set, t, options_));
+    if (options_.surface) write_piece("liquid_surface", ".vtp", surface_bytes(options_.surface(fields, t), t, options_));
     times_.push_back(t);
     write_series();
 }

@@ -11,6 +11,10 @@
 #include <string_view>
 #include <vector>
 
+namespace weir {
+struct SurfaceMesh;
+}
+
 namespace weir::output {
 
 enum class Compression { none, zlib, lz4 };
@@ -22,6 +26,8 @@ struct FrameOptions {
     bool single_precision = false;
     /// 1 for each cell that a solid takes at a time: ParaView draws nothing there. Empty: there are no solids.
     std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t)> solid = {};
+    /// The liquid's surface at a time, written as liquid_surface.pvd. Empty: the scene names none.
+    std::function<const SurfaceMesh&(const FieldSet& fields, real t)> surface = {};
 };
 
 /// Whether this build can write frames at all (WEIR_VTK).

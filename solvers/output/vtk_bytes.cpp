@@ -195,6 +195,26 @@ std::string particle_bytes(const FieldSet& fields, const std::string& set, real 
     return bytes_of<vtkXMLPolyDataWriter>(data, options);
 }
 
+std::string surface_bytes(const SurfaceMesh& mesh, real t, const FrameOptions& options) {
+    const auto vectors = [&](const char* name, const std::vector<Vec<3>>& list) {
+        return make_array(options, name, list.size(), 3, [&](std::size_t i, int c) { return list[i][c]; });
+    };
+    vtkNew<vtkPolyData> data;
+    vtkNew<vtkPoints> points;
+    points->SetData(vectors("position", mesh.points));
+    data->SetPoints(points);
+    vtkNew<vtkCellArray> triangles;
+    triangles->AllocateExact(static_cast<vtkIdType>(mesh.corners.size()), static_cast<vtkIdType>(3 * mesh.corners.size()));
+    for (const auto& corners : mesh.corners) triangles->InsertNextCell({corners[0], corners[1], corners[2]});
+    data->SetPolys(triangles);
+    data->GetPointData()->SetNormals(vectors("Normals", mesh.normals));
+    if (!mesh.velocity.empty()) data->GetPointData()->AddArray(vectors("velocity", mesh.velocity));
+    data->GetPointData()->AddArray(
+        make_array(options, "thickness", mesh.thickness.size(), 1, [&](std::size_t i, int) { return mesh.thickness[i]; }));
+    stamp(*data, t);
+    return bytes_of<vtkXMLPolyDataWriter>(data, options);
+}
+
 #else
 
 namespace {
@@ -205,6 +225,7 @@ bool can_write_frames() { return false; }
 std::string image_bytes(const FieldSet&, real, const FrameOptions&) { without_vtk(); }
 std::string face_image_bytes(const FieldSet&, int, real, const FrameOptions&) { without_vtk(); }
 std::string particle_bytes(const FieldSet&, const std::string&, real, const FrameOptions&) { without_vtk(); }
+std::string surface_bytes(const SurfaceMesh&, real, const FrameOptions&) { without_vtk(); }
 
 #endif
 

@@ -1,6 +1,7 @@
 // Fields as the bytes of VTK's XML files. The only place that knows VTK's writers; without WEIR_VTK each function throws BadInput.
 #pragma once
 #include "core/solver.hpp"
+#include "core/surface_mesh.hpp"
 #include "output/frames.hpp"
 
 #include <string>
@@ -13,6 +14,8 @@ std::string image_bytes(const FieldSet& fields, real t, const FrameOptions& opti
 std::string face_image_bytes(const FieldSet& fields, int axis, real t, const FrameOptions& options);
 /// One particle set: vertices at "position", and its other fields.
 std::string particle_bytes(const FieldSet& fields, const std::string& set, real t, const FrameOptions& options);
+/// Triangles with "Normals", "velocity" where it is known, and "thickness" at their corners.
+std::string surface_bytes(const SurfaceMesh& mesh, real t, const FrameOptions& options);
 
 /// Whether `options` choose this field.
 bool chosen(const FrameOptions& options, const FieldView& field);

@@ -1,6 +1,7 @@
 #include "particles/kind.hpp"
 
 #include "particles/heat.hpp"
+#include "scene/surface_keys.hpp"
 
 namespace weir::particles {
 
@@ -11,6 +12,7 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
     own.keys.push_back(std::move(initial));
     own.keys.push_back(sinks_key());
     for (scene::Key& key : heat_keys()) own.keys.push_back(std::move(key));
+    own.keys.push_back(scene::surface_key_of_particles());
     const auto shared = effect_schemas();
     for (const char* key : {"time.stop_when_steady", "sides.*.smoke", "sides.*.profile", "emitters.smoke", "initial.smoke"})
         own.without.push_back(key);

@@ -79,7 +79,7 @@ void list_keys(const std::vector<Key>& keys, const std::string& schema, std::vec
 /// Keys of the run itself rather than of the solver: who writes frames reads them, after the start.
 bool is_read_by_writers(const std::string& path) {
     const auto known = {"title", "solver", "dim", "output.fields", "output.faces", "output.precision", "output.compression"};
-    return std::find(known.begin(), known.end(), path) != known.end();
+    return std::find(known.begin(), known.end(), path) != known.end() || path.starts_with("output.surface");
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "studies/kinds.hpp"
 
 #include "matter/substance.hpp"
+#include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/kind.hpp"
 #include "studies/phase_diagram.hpp"
 #include "studies/poisson_problem.hpp"
+#include "studies/reconstruction_study.hpp"
 #include "studies/transport.hpp"
 
 namespace weir::studies {
@@ -42,6 +44,19 @@ scene::SolverKind phase_diagram_kind() {
     schema.keys = {matter::substance_key(), PhaseDiagram::samples_key()};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
     return {schema, [](const scene::Scene& scene) { return std::make_unique<PhaseDiagram>(scene); }};
+}
+
+scene::SolverKind reconstruction_kind() {
+    Key output = scene::surface_key_of_particles();
+    output.keys[0].required = true;
+    output.keys[0].example = "output.surface = \"zhu_bridson\"";
+    scene::SolverSchema schema;
+    schema.name = "reconstruction";
+    schema.doc = "Particles on a lattice that nothing moves, and the surface around them: to measure reconstructions.";
+    schema.dims = {3};
+    schema.keys = {output, ReconstructionStudy::jitter_key()};
+    schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial", "probes"};
+    return {schema, [](const scene::Scene& scene) { return std::make_unique<ReconstructionStudy>(scene); }};
 }
 
 }  // namespace weir::studies

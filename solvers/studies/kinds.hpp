@@ -4,8 +4,9 @@
 
 namespace weir::studies {
 
-scene::SolverKind transport_kind();      // "transport": advection through a prescribed flow
-scene::SolverKind poisson_kind();        // "poisson": one pressure problem
-scene::SolverKind phase_diagram_kind();  // "phase_diagram": what a substance is, by temperature and pressure
+scene::SolverKind transport_kind();       // "transport": advection through a prescribed flow
+scene::SolverKind poisson_kind();         // "poisson": one pressure problem
+scene::SolverKind phase_diagram_kind();   // "phase_diagram": what a substance is, by temperature and pressure
+scene::SolverKind reconstruction_kind();  // "reconstruction": the surface around particles
 
 }  // namespace weir::studies

@@ -1,5 +1,6 @@
 #include "tallcell/kind.hpp"
 
+#include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/kind.hpp"
 #include "tallcell/solver.hpp"
@@ -71,7 +72,8 @@ scene::SolverKind kind() {
     schema.dims = {2, 3};
     schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0, .max = 3.0}}},
                    scheme_keys(),
-                   initial_keys()};
+                   initial_keys(),
+                   scene::surface_key_of_level_set(false)};
     schema.effects = schemas_of(body_forces());
     schema.effects.push_back(surface::volume_control());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};

@@ -14,27 +14,26 @@ const EffectKinds& body_forces() {
 
 std::vector<scene::Variant> effect_schemas() {
     std::vector<scene::Variant> list = schemas_of(body_forces());
-    const std::vector<scene::Variant> own{
-        {"surface_tension",
-         "p = sigma kappa on the surface (ghost-fluid jump).",
-         {{.name = "sigma",
-           .type = Type::number,
-           .doc = "Surface tension.",
-           .unit = "N/m",
-           .required = true,
-           .min = 0,
-           .min_open = true,
-           .steerable = true}},
-         {"sigma"}},
-        {"viscosity",
-         "Friction inside the liquid, with fluid.viscosity; none on the free surface.",
-         {{.name = "scheme",
-           .type = Type::choice,
-           .doc = "In time.",
-           .fallback = std::string("crank-nicolson"),
-           .choices = {"crank-nicolson", "implicit"}}},
-         {"fluid.viscosity"}},
-        surface::volume_control()};
+    const std::vector<scene::Variant> own{{"surface_tension",
+                                           "p = sigma kappa on the surface (ghost-fluid jump).",
+                                           {{.name = "sigma",
+                                             .type = Type::number,
+                                             .doc = "Surface tension.",
+                                             .unit = "N/m",
+                                             .required = true,
+                                             .min = 0,
+                                             .min_open = true,
+                                             .steerable = true}},
+                                           {"sigma"}},
+                                          {"viscosity",
+                                           "Friction inside the liquid, with fluid.viscosity; none on the free surface.",
+                                           {{.name = "scheme",
+                                             .type = Type::choice,
+                                             .doc = "In time.",
+                                             .fallback = std::string("crank-nicolson"),
+                                             .choices = {"crank-nicolson", "implicit"}}},
+                                           {"fluid.viscosity"}},
+                                          surface::volume_control()};
     list.insert(list.end(), own.begin(), own.end());
     list.push_back(geometry::hand_schema());
     return list;

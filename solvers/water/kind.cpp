@@ -1,6 +1,7 @@
 // What a scene may say to the solver "mac_water".
 #include "staggered/kind.hpp"
 #include "matter/heat.hpp"
+#include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
@@ -65,7 +66,8 @@ scene::SolverKind kind() {
                    rigid::bodies_key(),
                    rigid::probe_key(),
                    scheme_keys(),
-                   initial_keys()};
+                   initial_keys(),
+                   scene::surface_key_of_level_set(true)};
     Key sides{.name = "sides", .type = Type::table};
     for (const char* axis : {"x", "y", "z"})
         for (const char* end : {"_min", "_max"}) {

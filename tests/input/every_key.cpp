@@ -41,6 +41,11 @@ std::vector<std::string> probes(const std::string& field) {
 }
 const std::vector<std::string> of_the_surface{"probes = [ { name = \"a\", kind = \"gauge\", at = [0.5, 0.5] } ]",
                                               "probes = [ { name = \"a\", kind = \"front\", axis = \"x\" } ]"};
+const std::string in_space = "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [0.5, 0.5, 0.5] } ]\noutput.surface = ";
+const std::vector<std::string> of_surfaces{in_space + "{ method = \"zhu_bridson\", cell = 0.5 }",
+                                           in_space + "{ method = \"anisotropic\", cell = 0.5 }",
+                                           in_space + "{ method = \"density\", cell = 0.5, smoothing = 3 }"};
+const std::string of_level_set = in_space + "\"level_set\"";
 const std::string at_the_wall = "probes = [ { name = \"a\", kind = \"wall_pressure\", at = [0.0, 0.4] } ]";
 const std::vector<std::string> solids{
     "solids = [ { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9], slip = \"free\", motion = { kind = \"constant\", velocity = [0.1, "
@@ -157,7 +162,7 @@ std::map<std::string, Said> everything() {
                   "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
                   "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
                   "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"}),
-        endless_bodies};
+        endless_bodies, all(of_surfaces, Lines{of_level_set})};
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
                             Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",
@@ -165,7 +170,8 @@ std::map<std::string, Said> everything() {
                                   "scheme.poisson = { tolerance = 1e-6, max_iterations = 100, fixed = false }",
                                   "scheme = { columns = \"single\", layers = 9, advection = \"semi_lagrangian\" }",
                                   "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]"}),
-                        {inflow + " } }", walls[1], open_sides[0], "grid.periodic = [\"y\"]"}};
+                        {inflow + " } }", walls[1], open_sides[0], "grid.periodic = [\"y\"]"},
+                        {of_level_set}};
     const Lines flows{"flow = { name = \"constant\", value = [1, 0] }", "flow = { name = \"rotation\", centre = [0, 0], rate = 1 }",
                       "flow = { name = \"single_vortex\", period = 1 }"};
     said["transport"] = {
@@ -229,7 +235,8 @@ std::map<std::string, Said> everything() {
                   "effects.artificial_pressure = { k = 1, dq = 0.1 }"}),
         all(probes("density"),
             Lines{walls[1], at_the_wall, wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
-            refused_by_particles, no_heat)};
+            refused_by_particles, no_heat),
+        of_surfaces};
     said["sph"] = {
         liquid,
         all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall}, open_sides,
@@ -241,7 +248,7 @@ std::map<std::string, Said> everything() {
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
                   "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
                   "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
-        all(probes("density"), refused_by_particles, no_heat)};
+        all(probes("density"), refused_by_particles, no_heat), of_surfaces};
     const std::string of_input = std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/", asc = of_input + "hill.asc",
                       pgm = of_input + "hill.pgm";
     const std::string hill = "terrain = { kind = ";
@@ -284,6 +291,13 @@ std::map<std::string, Said> everything() {
                   "waves = \"basin\"\nliquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]" + falls + "]"}),
         {at_the_wall},
         {sea + "spread = 2, " + wind + "\"pierson_moskowitz\", wind = 0.8 } }" + falls + ", 0]"}};
+    said["reconstruction"] = {
+        {},
+        {},
+        {},
+        all(of_surfaces, Lines{of_surfaces[0] + "\ntitle = \"a\"\ngrid.origin = [0, 0, 0]\njitter = 0.1\ntime.dt = 0.5",
+                               of_surfaces[0] + "\ntime.max_dt = 0.5\ntime.guard = \"off\"\noutput.every = 0.5\noutput.fields = []\n" +
+                                   "output.faces = true\noutput.precision = \"single\"\noutput.compression = \"none\""})};
     return said;
 }
 

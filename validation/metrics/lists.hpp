@@ -22,5 +22,6 @@ std::vector<Metric> pond_metrics();
 std::vector<Metric> substance_metrics();
 std::vector<Metric> melting_metrics();
 std::vector<Metric> melting_convection_metrics();
+std::vector<Metric> surface_metrics();
 
 }  // namespace weir::validation

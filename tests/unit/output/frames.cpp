@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/read_frame.hpp"
+#include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
 #include "sim/solid_cells.hpp"
 #include "support/fake_solver.hpp"
@@ -127,6 +128,39 @@ TEST("markers are vertices at their positions") {
     const auto& position = fields.find("markers", "position")->data;
     ASSERT_EQ(markers->GetNumberOfVerts(), 10);
     for (vtkIdType i = 0; i < 10; ++i) EXPECT_EQ(markers->GetPoint(i)[1], position[1][static_cast<std::size_t>(i)]);
+}
+
+TEST("a surface is written as triangles with normals, velocity and thickness, a file a frame, and only where one is named") {
+    const auto scene = [](const std::string& more) {
+        return weir::scene::parse(
+            "solver = \"pbf\"\ndim = 3\ngrid = { cells = [8, 8, 8], size = [1, 1, 1] }\ntime = { end = 1, dt = 0.001 }\n"
+            "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [0.5, 0.5, 0.5] } ]\n" +
+                more,
+            "test.toml", weir::sim::schemas());
+    };
+    weir::Simulation simulation(scene("output.surface = \"zhu_bridson\"\n"));
+    const std::shared_ptr<weir::reconstruction::Reconstruction> maker = weir::reconstruction::reconstruction_of(simulation.scene());
+    weir::output::FrameOptions options;
+    options.surface = [maker](const weir::FieldSet& fields, real t) -> const weir::SurfaceMesh& { return maker->make(fields, t); };
+    TemporaryFolder folder, plain;
+    Frames frames(folder, options), without(plain, {});
+    frames.write(simulation.fields(), 0), without.write(simulation.fields(), 0);
+    simulation.step();
+    frames.write(simulation.fields(), simulation.time());
+    EXPECT_TRUE(fs::exists(folder.path() / "liquid_surface.pvd"));
+    EXPECT_FALSE(fs::exists(plain.path() / "liquid_surface.pvd"));
+    const auto data = weir::test::read_particles(folder.path() / "frames/liquid_surface_000001.vtp");
+    const auto& mesh = maker->mesh();
+    ASSERT_EQ(static_cast<std::size_t>(data->GetNumberOfPolys()), mesh.corners.size());
+    ASSERT_EQ(static_cast<std::size_t>(data->GetNumberOfPoints()), mesh.points.size());
+    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+        for (int a = 0; a < 3; ++a) {
+            const auto at = static_cast<std::size_t>(i);
+            EXPECT_EQ(data->GetPoint(i)[a], mesh.points[at][a]);
+            EXPECT_EQ(data->GetPointData()->GetNormals()->GetComponent(i, a), mesh.normals[at][a]);
+            EXPECT_EQ(data->GetPointData()->GetArray("velocity")->GetComponent(i, a), mesh.velocity[at][a]);
+            EXPECT_EQ(data->GetPointData()->GetArray("thickness")->GetTuple1(i), mesh.thickness[at]);
+        }
 }
 
 TEST("every compression reads back the same numbers; single precision halves them") {

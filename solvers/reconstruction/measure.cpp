@@ -1,0 +1,57 @@
+#include "reconstruction/measure.hpp"
+
+#include "reconstruction/triangle.hpp"
+
+#include <algorithm>
+
+namespace weir::reconstruction {
+
+real volume(const SurfaceMesh& mesh) {
+    if (mesh.points.empty()) return 0;
+    const Vec<3> from = mesh.points.front();  // near the surface: less is lost to rounding than from the origin
+    real six = 0;
+    for (const auto& t : mesh.corners) six += dot(corner(mesh, t, 0) - from, cross(corner(mesh, t, 1) - from, corner(mesh, t, 2) - from));
+    return six / 6;
+}
+
+real area(const SurfaceMesh& mesh) {
+    real sum = 0;
+    for (const auto& t : mesh.corners) sum += 0.5 * norm(area_vector(mesh, t));
+    return sum;
+}
+
+real smallest_triangle(const SurfaceMesh& mesh) {
+    real least = infinity;
+    for (const auto& t : mesh.corners) least = std::min(least, 0.5 * norm(area_vector(mesh, t)));
+    return least;
+}
+
+Topology topology(const SurfaceMesh& mesh) {
+    // each directed side once; a closed, oriented surface has each of them once, and its reverse once
+    std::vector<std::pair<int, int>> sides;
+    sides.reserve(3 * mesh.corners.size());
+    std::vector<char> used(mesh.points.size(), 0);
+    for (const auto& t : mesh.corners)
+        for (std::size_t c = 0; c < 3; ++c) {
+            sides.emplace_back(t[c], t[(c + 1) % 3]);
+            used[static_cast<std::size_t>(t[c])] = 1;
+        }
+    std::sort(sides.begin(), sides.end());
+    Topology found;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const std::pair<int, int> back{sides[i].second, sides[i].first};
+        const auto [first, last] = std::equal_range(sides.begin(), sides.end(), back);
+        const bool again = i > 0 && sides[i] == sides[i - 1];
+        if (again) continue;
+        const bool twice = i + 1 < sides.size() && sides[i + 1] == sides[i];
+        const bool met = first != last;
+        if (sides[i].first < sides[i].second || !met) ++found.edges;
+        if ((twice || last - first != 1) && (sides[i].first < sides[i].second || !met)) ++found.open_edges;
+    }
+    found.unused_points = std::count(used.begin(), used.end(), 0);
+    found.euler =
+        static_cast<std::int64_t>(mesh.points.size()) - found.unused_points - found.edges + static_cast<std::int64_t>(mesh.corners.size());
+    return found;
+}
+
+}  // namespace weir::reconstruction

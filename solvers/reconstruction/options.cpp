@@ -1,0 +1,25 @@
+#include "reconstruction/options.hpp"
+
+#include <stdexcept>
+
+namespace weir::reconstruction {
+
+Method method_named(std::string_view name) {
+    if (name == "level_set") return Method::level_set;
+    if (name == "zhu_bridson") return Method::zhu_bridson;
+    if (name == "anisotropic") return Method::anisotropic;
+    if (name == "density") return Method::density;
+    throw std::logic_error("no surface is made by \"" + std::string(name) + "\"");
+}
+
+std::optional<Options> options_of(const scene::Scene& scene) {
+    if (scene.dim() != 3 || !scene.has("output.surface")) return std::nullopt;
+    Options options;
+    const scene::Table& said = scene.root().table("output.surface");
+    options.method = method_named(said.text("method"));
+    options.cell = said.number_or("cell", 1);
+    if (said.has("smoothing")) options.smoothing = static_cast<int>(said.integer("smoothing"));
+    return options;
+}
+
+}  // namespace weir::reconstruction

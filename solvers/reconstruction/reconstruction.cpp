@@ -1,0 +1,229 @@
+#include "reconstruction/reconstruction.hpp"
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "geometry/sides.hpp"
+#include "reconstruction/contour.hpp"
+#include "reconstruction/finish.hpp"
+#include "reconstruction/prepare.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::reconstruction {
+
+namespace {
+
+/// Others near that make a particle one of many: a lattice has 12.5 (Loeschner et al. 2023 take 13).
+constexpr real crowd = 13;
+/// Markers of a grid along an edge of a cell.
+constexpr real markers_a_cell = 2;
+
+/// 0 at 0, 1 at 1, with two derivatives of zero at both (Loeschner et al. 2023, section 3.2).
+real smoother_step(real s) { return s * s * s * (s * (6 * s - 15) + 10); }
+
+const FieldView* particles_of(const FieldSet& fields) {
+    const FieldView* markers = fields.find(marker_set_name, "position");
+    return markers ? markers : fields.find(particle_set_name, "position");
+}
+
+/// A component of a velocity on faces or in cells, trilinear.
+real velocity_at(const FieldView& field, const GridView& grid, std::size_t component, const Vec<3>& x) {
+    std::array<std::size_t, 3> low{}, n{};
+    std::array<real, 3> part{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const bool face = field.where == Where::face && a == component;
+        n[a] = static_cast<std::size_t>(grid.cells[a]) + face;
+        const real index = std::clamp((x[a] - grid.origin[a]) / grid.spacing[a] - (face ? 0 : 0.5), 0.0, real(n[a] - 1));
+        low[a] = std::min(static_cast<std::size_t>(index), n[a] - std::min<std::size_t>(n[a], 2));
+        part[a] = index - real(low[a]);
+    }
+    real sum = 0;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        std::array<std::size_t, 3> I{};
+        real weight = 1;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t up = corner >> a & 1;
+            I[a] = std::min(low[a] + up, n[a] - 1);
+            weight *= up ? part[a] : 1 - part[a];
+        }
+        if (weight > 0) sum += weight * field.data[component][I[0] + n[0] * (I[1] + n[1] * I[2])];
+    }
+    return sum;
+}
+
+}  // namespace
+
+Reconstruction::Reconstruction(const Options& options, const scene::Scene& scene)
+    : options_(options),
+      lo_(scene.vec<3>("grid.origin")),
+      hi_(lo_ + scene.vec<3>("grid.size")),
+      solids_(scene.root().tables("solids")),
+      field_(options.method) {
+    if (!scene.has("grid.periodic")) return;  // a study of walls alone
+    const geometry::Sides<3> sides(scene);
+    for (int a = 0; a < 3; ++a) periodic_[static_cast<std::size_t>(a)] = sides.periodic(a);
+}
+
+std::unique_ptr<Reconstruction> reconstruction_of(const scene::Scene& scene) {
+    const auto options = options_of(scene);
+    if (options && !can_contour()) throw BadInput("output.surface: this weir was built without VTK (WEIR_VTK=OFF) and makes no surfaces");
+    return options ? std::make_unique<Reconstruction>(*options, scene) : nullptr;
+}
+
+const SurfaceMesh& Reconstruction::make(const FieldSet& fields, real t) {
+    mesh_.points.clear(), mesh_.corners.clear(), mesh_.velocity.clear();
+    solids_.set_time(t);
+    if (options_.method == Method::level_set)
+        from_level_set(fields);
+    else
+        from_particles(fields);
+    return mesh_;
+}
+
+void Reconstruction::from_level_set(const FieldSet& fields) {
+    const FieldView* phi = fields.find(level_set_name);
+    if (!phi) throw BadInput("there is no level set to take the surface of");
+    const GridView& grid = fields.grid;
+    {
+        const auto timed = passes_.time("field");
+        for (std::size_t a = 0; a < 3; ++a) {
+            samples_.n[a] = grid.cells[a] + 2;
+            samples_.spacing[a] = grid.spacing[a];
+            samples_.first[a] = grid.origin[a] - 0.5 * grid.spacing[a];
+        }
+        samples_.unit = std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
+        samples_.depth.resize(samples_.linear(0, 0, samples_.n[2]));
+        const auto inside = [](int i, int n) { return static_cast<std::size_t>(std::clamp(i - 1, 0, n - 1)); };
+        parallel_for(0, samples_.n[2], [&](int k) {
+            for (int j = 0; j < samples_.n[1]; ++j)
+                for (int i = 0; i < samples_.n[0]; ++i) {
+                    const std::size_t from =
+                        inside(i, grid.cells[0]) +
+                        static_cast<std::size_t>(grid.cells[0]) *
+                            (inside(j, grid.cells[1]) + static_cast<std::size_t>(grid.cells[1]) * inside(k, grid.cells[2]));
+                    samples_.depth[samples_.linear(i, j, k)] =
+                        static_cast<float>(std::clamp(-phi->data[0][from] / samples_.unit, -1.0, 1.0));
+                }
+        });
+    }
+    make_contour(0);
+    add_velocity(fields);
+}
+
+void Reconstruction::from_particles(const FieldSet& fields) {
+    const FieldView* position = particles_of(fields);
+    if (!position) throw BadInput("there are no particles to make a surface of");
+    const bool markers = position->set == marker_set_name;
+    {
+        const auto timed = passes_.time("particles");
+        gather(*position, fields.grid.spacing[0] / (markers ? markers_a_cell : 1));
+    }
+    if (cloud_.count() == 0) {
+        mesh_.normals.clear(), mesh_.thickness.clear();
+        return;
+    }
+    {
+        const auto timed = passes_.time("field");
+        lay_samples();
+        field_.compute(cloud_, samples_);
+    }
+    make_contour(0);
+    add_velocity(fields);
+}
+
+/// The particles, and images of those near a side: the liquid goes on beyond a wall, or repeats, so that its surface meets the side as it
+/// would meet more liquid.
+void Reconstruction::gather(const FieldView& position, real spacing) {
+    cloud_.spacing = spacing;
+    cloud_.own = static_cast<int>(position.data[0].size());
+    for (std::size_t a = 0; a < 3; ++a) cloud_.x[a].assign(position.data[a].begin(), position.data[a].end());
+    cloud_.source.clear();
+    for (std::size_t a = 0; a < 3; ++a) add_images(a);
+}
+
+void Reconstruction::add_images(std::size_t axis) {
+    const real band = (reach + options_.cell) * cloud_.spacing;
+    const int count = cloud_.count();
+    const auto put = [&](int i, real x) {
+        for (std::size_t a = 0; a < 3; ++a) cloud_.x[a].push_back(a == axis ? x : cloud_.x[a][static_cast<std::size_t>(i)]);
+        cloud_.source.push_back(cloud_.particle(i));
+    };
+    for (int i = 0; i < count; ++i) {
+        const real x = cloud_.x[axis][static_cast<std::size_t>(i)], size = hi_[axis] - lo_[axis];
+        if (x - lo_[axis] < band && x >= lo_[axis]) put(i, periodic_[axis] ? x + size : 2 * lo_[axis] - x);
+        if (hi_[axis] - x < band && x <= hi_[axis]) put(i, periodic_[axis] ? x - size : 2 * hi_[axis] - x);
+    }
+}
+
+/// Sides lie midway between samples where the domain is a whole number of cells wide. The ends of the lattice are outside.
+void Reconstruction::lay_samples() {
+    samples_.unit = cloud_.spacing;
+    const real step = options_.cell * cloud_.spacing;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto [least, most] = std::minmax_element(cloud_.x[a].begin(), cloud_.x[a].begin() + cloud_.own);
+        const real beyond = 1.5 * cloud_.spacing;  // no surface is farther from all particles: a plane's is half a spacing away
+        const auto number = [&](real x) { return std::floor((x - lo_[a]) / step - 0.5); };
+        const real first = number(std::max(lo_[a], *least - beyond));
+        const real last = number(std::min(hi_[a], *most + beyond)) + 1;
+        samples_.spacing[a] = step;
+        samples_.first[a] = lo_[a] + (first + 0.5) * step;
+        samples_.n[a] = std::max(2, static_cast<int>(last - first) + 1);
+    }
+}
+
+void Reconstruction::make_contour(real) {
+    {
+        const auto timed = passes_.time("prepare");
+        keep_out_of(samples_, solids_);
+        keep_inside(samples_, lo_, hi_);
+        avoid_zero(samples_);
+    }
+    {
+        const auto timed = passes_.time("contour");
+        contour(samples_, mesh_);
+    }
+    if (options_.method == Method::density && options_.smoothing > 0) smooth_by_crowding();
+    const auto timed = passes_.time("normals and thickness");
+    add_normals(mesh_);
+    add_thickness(mesh_, samples_);
+}
+
+/// Many particles near: smooth. Few: a drop or a film keeps its shape.
+void Reconstruction::smooth_by_crowding() {
+    const auto timed = passes_.time("smooth");
+    std::vector<real> weight(mesh_.points.size());
+    parallel_for(0, static_cast<int>(weight.size()), [&](int p) {
+        const auto at = static_cast<std::size_t>(p);
+        bool at_side = false;  // its points stay where they are
+        for (int a = 0; a < 3; ++a)
+            at_side = at_side || std::min(mesh_.points[at][a] - lo_[a], hi_[a] - mesh_.points[at][a]) < 1e-3 * samples_.unit;
+        weight[at] = at_side ? 0 : smoother_step(std::min(1.0, field_.crowding_at(mesh_.points[at]) / crowd));
+    });
+    smooth(mesh_, weight, options_.smoothing);
+}
+
+void Reconstruction::add_velocity(const FieldSet& fields) {
+    const auto timed = passes_.time("velocity");
+    const FieldView* position = options_.method == Method::level_set ? nullptr : particles_of(fields);
+    const FieldView* v = position ? fields.find(position->set, "velocity") : fields.find("", "velocity");
+    const bool on_grid = v && v->where != Where::particle;
+    if (!v && position && fields.find("", "velocity")) v = fields.find("", "velocity");
+    if (!v || v->data.size() < 3) return;
+    mesh_.velocity.resize(mesh_.points.size());
+    parallel_for(0, static_cast<int>(mesh_.points.size()), [&](int p) {
+        const auto at = static_cast<std::size_t>(p);
+        if (on_grid)
+            for (std::size_t a = 0; a < 3; ++a) mesh_.velocity[at][a] = velocity_at(*v, fields.grid, a, mesh_.points[at]);
+        else
+            mesh_.velocity[at] = field_.velocity_at(mesh_.points[at], {v->data[0], v->data[1], v->data[2]});
+    });
+}
+
+std::size_t Reconstruction::bytes() const {
+    return 3 * cloud_.x[0].capacity() * sizeof(real) + cloud_.source.capacity() * sizeof(int) + field_.bytes() +
+           samples_.depth.capacity() * sizeof(float) + 3 * mesh_.points.capacity() * sizeof(Vec<3>) +
+           mesh_.corners.capacity() * sizeof(mesh_.corners[0]) + mesh_.thickness.capacity() * sizeof(real);
+}
+
+}  // namespace weir::reconstruction

@@ -1,0 +1,56 @@
+#include "scene/surface_keys.hpp"
+
+namespace weir::scene {
+
+namespace {
+
+Key surface_cell_key() {
+    return {.name = "cell",
+            .type = Type::number,
+            .doc = "Distance between the samples whose zero is the surface, in particle spacings.",
+            .fallback = 1.0,
+            .min = 0.25,
+            .max = 2};
+}
+
+/// Passes of weighted smoothing that take the bumps of single particles out of samples one spacing apart.
+constexpr std::int64_t usual_smoothing = 5;
+
+std::vector<Variant> surfaces_of_particles() {
+    return {{"zhu_bridson", "Distance to the weighted mean of the particles near (Zhu & Bridson 2005).", {surface_cell_key()}},
+            {"anisotropic", "Kernels stretched along the surface, flat across it (Yu & Turk 2013).", {surface_cell_key()}},
+            {"density",
+             "A level of the particles' density, and the mesh smoothed where particles are many (Loeschner et al. 2023).",
+             {surface_cell_key(),
+              {.name = "smoothing",
+               .type = Type::integer,
+               .doc = "Passes over the mesh; none with 0.",
+               .fallback = usual_smoothing,
+               .min = 0,
+               .max = 1000}}}};
+}
+
+Key output_with(std::vector<Variant> methods) {
+    return {.name = "output",
+            .type = Type::table,
+            .keys = {{.name = "surface",
+                      .type = Type::table,
+                      .doc = "Write the liquid's surface as triangles beside the frames (liquid_surface.pvd), with normals, velocity and "
+                             "thickness of the liquid below. It is closed: at walls, solids and open sides too.",
+                      .selector = "method",
+                      .variants = std::move(methods),
+                      .only_dim = 3}}};
+}
+
+}  // namespace
+
+Key surface_key_of_particles() { return output_with(surfaces_of_particles()); }
+
+Key surface_key_of_level_set(bool markers) {
+    std::vector<Variant> methods;
+    if (markers) methods = surfaces_of_particles();
+    methods.insert(methods.begin(), {"level_set", "The zero of the level set, on the cells of the grid.", {}});
+    return output_with(std::move(methods));
+}
+
+}  // namespace weir::scene

@@ -1,0 +1,37 @@
+// Solver "reconstruction": particles on a lattice, or near one, that nothing moves. A step makes the surface around them, so that studies
+// can measure it, and price it.
+#pragma once
+#include "core/solver.hpp"
+#include "reconstruction/reconstruction.hpp"
+#include "scene/scene.hpp"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace weir::studies {
+
+class ReconstructionStudy final : public Solver {
+public:
+    explicit ReconstructionStudy(const scene::Scene& scene);
+    static scene::Key jitter_key();
+
+    StepReport step(real dt) override;
+    real advised_dt() const override { return infinity; }
+    FieldSet fields() const override;
+    std::vector<Integral> integrals() const override;
+    real time() const override { return time_; }
+    void save(Checkpoint& to) const override { to.put_value("time", time_); }
+    void restore(const Checkpoint& from) override { time_ = from.get_value<real>("time"); }
+    const Passes& passes() const override { return maker_->passes(); }
+    Passes& passes() override { return maker_->passes(); }
+    std::size_t bytes() const override;
+
+private:
+    GridView grid_;
+    std::array<std::vector<real>, 3> x_;
+    std::unique_ptr<reconstruction::Reconstruction> maker_;
+    real time_ = 0;
+};
+
+}  // namespace weir::studies
