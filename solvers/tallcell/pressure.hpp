@@ -207,4 +207,16 @@ private:
     poisson::Report nothing_to_do_;
 };
 
+template <int D>
+template <class Single, class Tall>
+void TallPressure<D>::visit(const MacState<D>& state, int h, int column, int end, Single&& single, Tall&& run) const {
+    const int lower = layout_.lower(column, h), axis = layout_.axes[at(h)];
+    if (lower < 0 || lower == column) return;
+    const Line face = line(state.u[axis], column);
+    const real* open = state.solid.any() ? state.solid.open[at(axis)].data() : nullptr;
+    visit_faces(
+        knots_, lower, column, end, [&](int row) { return !open || open[face(row)] == 1; },
+        [&](int row, const Row& l, const Row& r) { single(face(row), row, l, r); }, run);
+}
+
 }  // namespace weir::tallcell

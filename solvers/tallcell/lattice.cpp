@@ -1,0 +1,427 @@
+// Between the lattice and the unknowns of TallPressure: moments over rows, what they flow together to, and back to every row. Columns
+// beside one another in a line are looked at together as long as they have the same runs and elements.
+#include "tallcell/pressure.hpp"
+
+#include <algorithm>
+
+namespace weir::tallcell {
+
+/// max f(block) over all columns; those of a block are beside one another along x, if that is no vertical axis.
+template <int D>
+template <class F>
+real TallPressure<D>::largest_of_blocks(F&& f) const {
+    const int n = layout_.n[0], size = layout_.axes[0] == 0 ? block_columns : 1, a_line = (n + size - 1) / size;
+    return ordered_max(a_line * layout_.n[1], [&](int i) {
+        const int x = i % a_line * size;
+        return f(Block{i / a_line * n + x, std::min(size, n - x)});
+    });
+}
+
+/// Upwards through the runs along horizontal axis h of a block's columns: together(first, run, places) as long as all of its columns from
+/// the first that has a face have the same, places[i] being that of column i; then one(column, place) for the others.
+template <int D>
+template <class Together, class One>
+void TallPressure<D>::for_each_run(int h, const Block& block, Together&& together, One&& one) const {
+    const auto& runs = runs_[at(h)];
+    std::array<int, block_columns> place{}, end{};
+    for (int i = 0; i < block.count; ++i)
+        place[at(i)] = run_start_[at(h)][at(block.column + i)], end[at(i)] = run_start_[at(h)][at(block.column + i) + 1];
+    const int first = layout_.lower(block.column, h) < 0 ? 1 : 0;
+    const auto alike = [&] {
+        for (int i = first; i < block.count; ++i)
+            if (place[at(i)] == end[at(i)] || runs[at(place[at(i)])].row != runs[at(place[at(first)])].row ||
+                runs[at(place[at(i)])].count != runs[at(place[at(first)])].count)
+                return false;
+        return first < block.count;
+    };
+    while (alike()) {
+        together(first, runs[at(place[at(first)])], place);
+        for (int i = first; i < block.count; ++i) ++place[at(i)];
+    }
+    for (int i = 0; i < block.count; ++i)
+        for (; place[at(i)] < end[at(i)]; ++place[at(i)]) one(block.column + i, place[at(i)]);
+}
+
+/// The same of elements longer than one: together(row, length, places), one(column, knot).
+template <int D>
+template <class Together, class One>
+void TallPressure<D>::for_each_element(const Block& block, Together&& together, One&& one) const {
+    std::array<int, block_columns> knot{}, end{};
+    for (int i = 0; i < block.count; ++i)
+        knot[at(i)] = knots_.start[at(block.column + i)], end[at(i)] = knots_.start[at(block.column + i) + 1];
+    const auto alike = [&] {
+        for (int i = 0; i < block.count; ++i)
+            if (knot[at(i)] == end[at(i)] || knots_.length[at(knot[at(i)])] < 2 || knots_.row[at(knot[at(i)])] != knots_.row[at(knot[0])] ||
+                knots_.length[at(knot[at(i)])] != knots_.length[at(knot[0])])
+                return false;
+        return true;
+    };
+    while (alike()) {
+        together(knots_.row[at(knot[0])], knots_.length[at(knot[0])], knot);
+        for (int i = 0; i < block.count; ++i) ++knot[at(i)];
+    }
+    for (int i = 0; i < block.count; ++i)
+        for (; knot[at(i)] < end[at(i)]; ++knot[at(i)])
+            if (knots_.length[at(knot[at(i)])] > 1) one(block.column + i, knot[at(i)]);
+}
+
+template <int D>
+void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
+    using Sums = std::array<real, at(block_columns)>;
+    std::fill(mean_.begin(), mean_.end(), 0.0);
+    largest_of_blocks([&](const Block& block) {
+        for (int h = 0; h < D - 1; ++h) {
+            const auto& u = state.u[layout_.axes[at(h)]];
+            const auto together = [&](int first, const Run& run, const auto& place) {
+                const Line face = line(u, block.column);
+                Sums sum{}, lever{};
+                const real c = 0.5 * (run.count - 1), spread = run.count > 1 ? run.spread() : 1;
+                for (int j = 0; j < run.count; ++j) {
+                    const real* values = u.data() + face(run.row + j);
+#pragma omp simd
+                    for (int i = first; i < block.count; ++i) {
+                        sum[at(i)] += values[i];
+                        lever[at(i)] += (j - c) * values[i];
+                    }
+                }
+                for (int i = first; i < block.count; ++i) {
+                    const real mean = sum[at(i)] / run.count, slope = lever[at(i)] / (run.count * spread);
+                    w_[at(h)][at(place[at(i)])] = {mean - slope, mean + slope};
+                }
+            };
+            for_each_run(h, block, together, [&](int column, int i) {
+                const Line face = line(u, column);
+                const Run& run = runs_[at(h)][at(i)];
+                w_[at(h)][at(i)] = moments(run.row, run.count, [&](int row) { return u[face(row)]; });
+            });
+        }
+        const auto& v = state.u[layout_.up];
+        const auto together = [&](int row, int length, const auto& knot) {
+            const Line face = line(v, block.column);
+            Sums sum{};
+            for (int j = 1; j <= length; ++j) {
+                const real* values = v.data() + face(row + j);
+#pragma omp simd
+                for (int i = 0; i < block.count; ++i) sum[at(i)] += values[i];
+            }
+            for (int i = 0; i < block.count; ++i) mean_[at(knot[at(i)])] = sum[at(i)] / length;
+        };
+        for_each_element(block, together, [&](int column, int i) {
+            const Line face = line(v, column);
+            real sum = 0;
+            for (int j = 1; j <= knots_.length[at(i)]; ++j) sum += v[face(knots_.row[at(i)] + j)];
+            mean_[at(i)] = sum / knots_.length[at(i)];
+        });
+        return 0.0;
+    });
+}
+
+template <int D>
+void TallPressure<D>::change_runs(const RunChanges<D>& by) {
+    parallel_for(0, layout_.columns(), [&](int c) {
+        for (int h = 0; h < D - 1; ++h)
+            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
+                const Pair& change = by[at(layout_.axes[at(h)])][at(i)];
+                w_[at(h)][at(i)].minus += change.minus, w_[at(h)][at(i)].plus += change.plus;
+            }
+        for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) {
+            const Pair& change = by[at(layout_.up)][at(i)];
+            if (knots_.length[at(i)] > 1) mean_[at(i)] += 0.5 * (change.minus + change.plus);
+        }
+    });
+}
+
+template <int D>
+typename TallPressure<D>::Sides TallPressure<D>::sides_of(const MacState<D>& state, const Block& block) const {
+    Sides sides{};
+    for (int h = 0; h < D - 1; ++h) {
+        const int axis = layout_.axes[at(h)];
+        const Line lower = line(state.u[axis], block.column);
+        Line upper = lower;
+        upper.first += static_cast<std::size_t>(state.u[axis].stride(axis));  // walls are at rest: they count for nothing
+        if (layout_.periodic[at(h)]) upper = line(state.u[axis], layout_.upper(block.column, h));
+        sides.side[at(2 * h)] = {lower, state.u[axis].data(), frame_.inv_h[axis]};
+        sides.side[at(2 * h + 1)] = {upper, state.u[axis].data(), -frame_.inv_h[axis]};
+    }
+    const int x = block.column % layout_.n[0];
+    const bool joint = layout_.periodic[0] && (x == 0 || x + block.count == layout_.n[0]);
+    sides.side_by_side = layout_.axes[0] == 0 && !joint && !state.solid.any();
+    return sides;
+}
+
+/// f(knot, what flows into its cell over h) for the knots of a block above all elements: there each is the lattice's cell.
+template <int D>
+template <class F>
+void TallPressure<D>::inflow_above_elements(const MacState<D>& state, const Block& block, const Sides& sides, F&& f) const {
+    const Line vertical = line(state.u[layout_.up], block.column);
+    const real inv_h = frame_.inv_h[layout_.up];
+    const real* v = state.u[layout_.up].data();
+    std::array<int, block_columns> knot{}, end{};
+    int row = layout_.rows;
+    for (int i = 0; i < block.count; ++i) {
+        knot[at(i)] = knots_.start[at(block.column + i)], end[at(i)] = knots_.start[at(block.column + i) + 1];
+        while (knot[at(i)] < end[at(i)] && knots_.row[at(knot[at(i)])] < elements_end_) ++knot[at(i)];
+        if (knot[at(i)] < end[at(i)]) row = std::min(row, knots_.row[at(knot[at(i)])]);
+    }
+    std::array<real, at(block_columns)> inflow{};
+    for (bool any = true; any && row < layout_.rows; ++row) {
+        const real *below = v + vertical(row), *above = v + vertical(row + 1);
+#pragma omp simd
+        for (int i = 0; i < block.count; ++i) inflow[at(i)] = (below[i] - above[i]) * inv_h;
+        for (int s = 0; s < faces(); ++s) {
+            const auto& side = sides.side[at(s)];
+            const real* values = side.values + side.line(row);
+#pragma omp simd
+            for (int i = 0; i < block.count; ++i) inflow[at(i)] += side.into * values[i];
+        }
+        any = false;
+        for (int i = 0; i < block.count; ++i) {
+            if (knot[at(i)] == end[at(i)]) continue;
+            any = true;
+            if (knots_.row[at(knot[at(i)])] == row) f(knot[at(i)]++, inflow[at(i)]);
+        }
+    }
+}
+
+template <int D>
+void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real>& b) const {
+    largest_of_blocks([&](const Block& block) {
+        const Sides sides = sides_of(state, block);
+        for (int c = block.column; c < block.column + block.count; ++c)
+            weak_divergence(state, c, sides.side_by_side ? elements_end_ : layout_.rows, b);
+        if (sides.side_by_side) inflow_above_elements(state, block, sides, [&](int knot, real inflow) { b[at(knot)] = inflow; });
+        return 0.0;
+    });
+}
+
+/// Of a column below row `end`.
+template <int D>
+void TallPressure<D>::weak_divergence(const MacState<D>& state, int c, int end, std::vector<real>& b) const {
+    const Knots& knots = knots_;
+    const Line vertical = line(state.u[layout_.up], c);
+    const real inv_h = frame_.inv_h[layout_.up];
+    for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1] && knots.row[at(i)] < end; ++i) {
+        const int row = knots.row[at(i)], length = knots.length[at(i)], first = knots.start[at(c)];
+        const int under = i > first ? knots.length[at(i) - 1] : 0;
+        const real below = under > 1 ? mean_[at(i) - 1] : flux(state, layout_.up, vertical(row));
+        const real above = length > 1 ? mean_[at(i)] : flux(state, layout_.up, vertical(row + 1));
+        b[at(i)] = (below - above) * inv_h;
+    }
+    for (int f = 0; f < faces(); ++f) {
+        const bool own_is_lower = f % 2 == 1;
+        const int h = f / 2, axis = layout_.axes[at(h)], owner = own_is_lower ? layout_.upper(c, h) : c;
+        if (owner < 0) continue;
+        const real into = (own_is_lower ? -1 : 1) * frame_.inv_h[axis];
+        int next = run_start_[at(h)][at(owner)];
+        visit(
+            state, h, owner, end,
+            [&](std::size_t face, int, const Row& l, const Row& r) {
+                const Row& own = own_is_lower ? l : r;
+                if (!own.wet) return;
+                const real inflow = into * flux(state, axis, face);
+                b[at(own.knot)] += (1 - own.share) * inflow;
+                if (own.share > 0) b[at(own.knot) + 1] += own.share * inflow;
+            },
+            [&](const Run& run) {
+                const Pair& w = w_[at(h)][at(next++)];
+                const int own = own_is_lower ? run.lower : run.upper;
+                const auto add = [&](real y, real u) {
+                    const real share = (y - knots.row[at(own)]) / knots.length[at(own)], inflow = 0.5 * run.count * into * u;
+                    b[at(own)] += (1 - share) * inflow;
+                    b[at(own) + 1] += share * inflow;
+                };
+                add(run.middle() - run.spread(), w.minus);
+                add(run.middle() + run.spread(), w.plus);
+            });
+    }
+}
+
+template <int D>
+void TallPressure<D>::spread(MacState<D>& state, real dt) {
+    fastest_run_ = 0;
+    for (int h = 0; h < D - 1; ++h)
+        fastest_run_ = std::max(fastest_run_, largest_of_blocks([&](const Block& block) { return spread_runs(state, h, block); }));
+    const real vertical = largest_of_blocks([&](const Block& block) { return rebuild(state, block); });
+    fastest_run_ = std::isnan(vertical) ? vertical : std::max(fastest_run_, vertical);
+    fastest_run_below_ = floor_;
+    const real scale = state.rho / dt;
+    largest_of_blocks([&](const Block& block) {
+        spread_pressure(state, block, scale);
+        return 0.0;
+    });
+}
+
+/// Answers the largest |u|/h in them.
+template <int D>
+real TallPressure<D>::spread_runs(MacState<D>& state, int h, const Block& block) const {
+    auto& u = state.u[layout_.axes[at(h)]];
+    std::array<real, at(block_columns)> mean{}, slope{};
+    real fastest = 0;
+    const auto reaches = [&](const Run& run, real m, real by) {  // a linear function is largest at an end
+        fastest = std::max(fastest, std::abs(m) + std::abs(by) * 0.5 * (run.count - 1));
+    };
+    const auto together = [&](int first, const Run& run, const auto& place) {
+        const Line face = line(u, block.column);
+        const real spread = run.count > 1 ? run.spread() : 1, c = 0.5 * (run.count - 1);
+        for (int i = first; i < block.count; ++i) {
+            const Pair& w = w_[at(h)][at(place[at(i)])];
+            mean[at(i)] = 0.5 * (w.minus + w.plus), slope[at(i)] = 0.5 * (w.plus - w.minus) / spread;
+            reaches(run, mean[at(i)], slope[at(i)]);
+        }
+        for (int j = 0; j < run.count; ++j) {
+            real* values = u.data() + face(run.row + j);
+#pragma omp simd
+            for (int i = first; i < block.count; ++i) values[i] = mean[at(i)] + slope[at(i)] * (j - c);
+        }
+    };
+    for_each_run(h, block, together, [&](int column, int i) {
+        const Line face = line(u, column);
+        const Run& run = runs_[at(h)][at(i)];
+        const Pair& w = w_[at(h)][at(i)];
+        reaches(run, 0.5 * (w.minus + w.plus), run.count > 1 ? 0.5 * (w.plus - w.minus) / run.spread() : 0);
+        spread_rows(run.row, run.count, w, [&](int row, real value) { u[face(row)] = value; });
+    });
+    return fastest * frame_.inv_h[layout_.axes[at(h)]];
+}
+
+/// v_{j+1} = v_j − what leaves cell j through its sides, from the bottom of each element to its top. The two weak equations of the element
+/// say that its top cell then has what flows through its own top face, and that the mean of v is the stored one. Answers the largest |v|/h.
+template <int D>
+real TallPressure<D>::rebuild(MacState<D>& state, const Block& block) const {
+    const int up = layout_.up;
+    auto& v = state.u[up];
+    const Sides sides = sides_of(state, block);
+    std::array<real, at(block_columns)> above{};
+    real fastest = 0;
+    const auto together = [&](int row, int length, const auto&) {
+        const Line face = line(v, block.column);
+        for (int i = 0; i < block.count; ++i) above[at(i)] = v[face(row) + at(i)];
+        for (int j = row; j < row + length; ++j) {
+            for (int s = 0; s < faces(); ++s) {
+                const auto& side = sides.side[at(s)];
+                const real *values = side.values + side.line(j), into = frame_.h[up] * side.into;
+#pragma omp simd
+                for (int i = 0; i < block.count; ++i) above[at(i)] += into * values[i];
+            }
+            real* to = v.data() + face(j + 1);
+#pragma omp simd reduction(max : fastest)
+            for (int i = 0; i < block.count; ++i) {
+                to[i] = above[at(i)];
+                fastest = std::max(fastest, std::abs(above[at(i)]));
+            }
+        }
+        for (int i = 0; i < block.count; ++i)
+            if (std::isnan(above[at(i)])) fastest = above[at(i)];
+    };
+    const auto one = [&](int column, int i) {
+        const Line face = line(v, column);
+        std::array<Line, 4> sideways{};
+        std::array<real, 4> into{};
+        for (int f = 0; f < faces(); ++f) {
+            const int owner = f % 2 == 1 ? layout_.upper(column, f / 2) : column, axis = layout_.axes[at(f / 2)];
+            if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
+            sideways[at(f)] = line(state.u[axis], owner);
+            into[at(f)] = (f % 2 == 1 ? -1 : 1) * frame_.h[up] * frame_.inv_h[axis];
+        }
+        const int first = knots_.row[at(i)];
+        real here = flux(state, up, face(first));
+        for (int row = first; row < first + knots_.length[at(i)]; ++row) {
+            for (int f = 0; f < faces(); ++f)
+                if (into[at(f)] != 0) here += into[at(f)] * flux(state, layout_.axes[at(f / 2)], sideways[at(f)](row));
+            v[face(row + 1)] = here;
+            if (!(std::abs(here) <= fastest)) fastest = std::abs(here);
+        }
+    };
+    if (sides.side_by_side)
+        for_each_element(block, together, one);
+    else
+        for (int c = block.column; c < block.column + block.count; ++c)
+            for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i)
+                if (knots_.length[at(i)] > 1) one(c, i);
+    return fastest * frame_.inv_h[up];
+}
+
+/// Interpolated in elements, 0 outside the liquid.
+template <int D>
+void TallPressure<D>::spread_pressure(MacState<D>& state, const Block& block, real scale) const {
+    std::array<int, block_columns> row{};  // up to which each column is done
+    const auto fill = [&](int column, int i) {
+        const Line cell = line(state.p, column);
+        int& done = row[at(column - block.column)];
+        for (; done < knots_.row[at(i)]; ++done) state.p[cell(done)] = 0;
+        const int length = std::max(1, knots_.length[at(i)]);
+        const real here = scale * q_[at(i)], change = length > 1 ? (scale * q_[at(i) + 1] - here) / length : 0;
+        for (int j = 0; j < length; ++j) state.p[cell(done++)] = here + j * change;
+    };
+    std::array<real, at(block_columns)> here{}, change{};
+    std::array<int, block_columns> next{};
+    for (int i = 0; i < block.count; ++i) next[at(i)] = knots_.start[at(block.column + i)];
+    const auto together = [&](int first, int length, const auto& knot) {
+        for (int i = 0; i < block.count; ++i) {
+            while (next[at(i)] < knot[at(i)]) fill(block.column + i, next[at(i)]++);
+            for (const Line cell = line(state.p, block.column + i); row[at(i)] < first; ++row[at(i)]) state.p[cell(row[at(i)])] = 0;
+            here[at(i)] = scale * q_[at(knot[at(i)])], change[at(i)] = (scale * q_[at(knot[at(i)]) + 1] - here[at(i)]) / length;
+            row[at(i)] = first + length, ++next[at(i)];
+        }
+        const Line cell = line(state.p, block.column);
+        for (int j = 0; j < length; ++j) {
+            real* values = state.p.data() + cell(first + j);
+#pragma omp simd
+            for (int i = 0; i < block.count; ++i) values[i] = here[at(i)] + j * change[at(i)];
+        }
+    };
+    for_each_element(block, together, [](int, int) {});
+    for (int i = 0; i < block.count; ++i) {
+        const int column = block.column + i;
+        while (next[at(i)] < knots_.start[at(column) + 1]) fill(column, next[at(i)]++);
+        for (const Line cell = line(state.p, column); row[at(i)] < layout_.rows; ++row[at(i)]) state.p[cell(row[at(i)])] = 0;
+    }
+}
+
+template <int D>
+real TallPressure<D>::max_divergence(const MacState<D>& state) const {
+    return largest_of_blocks([&](const Block& block) {
+        const Sides sides = sides_of(state, block);
+        real largest = 0;
+        const auto see = [&](real divergence) {
+            if (!(std::abs(divergence) <= largest)) largest = std::abs(divergence);
+        };
+        for (int c = block.column; c < block.column + block.count; ++c)
+            see(largest_divergence(state, c, sides.side_by_side ? elements_end_ : layout_.rows));
+        if (sides.side_by_side) inflow_above_elements(state, block, sides, [&](int, real inflow) { see(inflow); });
+        return largest;
+    });
+}
+
+/// Of the cells of a column that are knots, below row `end`.
+template <int D>
+real TallPressure<D>::largest_divergence(const MacState<D>& state, int c, int end) const {
+    const int up = layout_.up;
+    const Line vertical = line(state.u[up], c);
+    real largest = 0;
+    for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1] && knots_.row[at(i)] < end; ++i) {
+        const int row = knots_.row[at(i)];
+        real sum = (flux(state, up, vertical(row + 1)) - flux(state, up, vertical(row))) * frame_.inv_h[up];
+        for (int f = 0; f < faces(); ++f) {
+            const int owner = f % 2 == 1 ? layout_.upper(c, f / 2) : c;
+            if (owner < 0 || layout_.lower(owner, f / 2) < 0) continue;
+            const int axis = layout_.axes[at(f / 2)];
+            sum += (f % 2 == 1 ? 1 : -1) * frame_.inv_h[axis] * flux(state, axis, line(state.u[axis], owner)(row));
+        }
+        if (!(std::abs(sum) <= largest)) largest = std::abs(sum);
+        if (std::isnan(largest)) break;
+    }
+    return largest;
+}
+
+#define WEIR_INSTANTIATE(D)                                                                               \
+    template void TallPressure<D>::restrict_velocity(const MacState<D>& state);                           \
+    template void TallPressure<D>::change_runs(const RunChanges<D>& by);                                  \
+    template void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real>& b) const; \
+    template void TallPressure<D>::spread(MacState<D>& state, real dt);                                   \
+    template real TallPressure<D>::max_divergence(const MacState<D>& state) const;
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::tallcell
