@@ -117,10 +117,21 @@ std::string left_out(const scene::Scene& scene, const scene::SolverSchema& schem
 
 }  // namespace
 
+namespace {
+
+/// What is wrong with the scene, or must be known of it, as it starts.
+std::string concern_text(const Solver& solver) {
+    const std::string concern = solver.concern();
+    return concern.empty() ? "" : "  note        " + concern + "\n";
+}
+
+}  // namespace
+
 std::string explain(Simulation& simulation) {
     const scene::Scene& scene = simulation.scene();
     const scene::SolverSchema& schema = sim::kind_named(scene.solver()).schema;
-    const std::string before = called_for(scene, schema) + fields_text(simulation);  // as the scene starts
+    const std::string before =
+        called_for(scene, schema) + concern_text(simulation.solver()) + fields_text(simulation);  // as the scene starts
     return before + passes_text(simulation) + left_out(scene, schema);
 }
 

@@ -70,6 +70,7 @@ public:
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
         log_.set_solver_bytes(simulation.solver().bytes());
+        log_.set_warnings(simulation.warnings());
         if (restarted) log_.resume(simulation.steps());
         write_log("running");  // where the disk fills later, there is a file that can still say so
     }

@@ -100,6 +100,7 @@ void RunLog::write() const {
     status.resize(std::max(status.size(), status_room), ' ');
     std::string text =
         head_ + status_key + status + ",\n \"series\": " + json(series_).dump() + ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);
+    if (!warnings_.empty()) text += ",\n \"warnings\": " + json(warnings_).dump();
     json measured = json::object();
     for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);
     if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();

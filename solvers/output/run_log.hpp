@@ -22,6 +22,8 @@ public:
     /// The state of the run: "running", "finished", "interrupted at step 7", "failed: ...".
     void set_status(const std::string& status) { status_ = status; }
     void set_series(std::vector<std::string> files) { series_ = std::move(files); }
+    /// What was said of the run while it ran (Simulation::warnings).
+    void set_warnings(std::vector<std::string> warnings) { warnings_ = std::move(warnings); }
     void set_solver_bytes(std::size_t bytes) { solver_bytes_ = bytes; }
     /// What was measured of the finished run, by name. Numbers that are not finite are left out.
     void set_measured(std::map<std::string, double> values) { measured_ = std::move(values); }
@@ -40,6 +42,7 @@ private:
     std::vector<double> seconds_before_;  // of each pass, when the last step was added
     std::string status_ = "running";
     std::vector<std::string> series_;
+    std::vector<std::string> warnings_;
     std::size_t solver_bytes_ = 0;
     std::map<std::string, double> measured_;
 };

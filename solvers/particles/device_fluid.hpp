@@ -111,6 +111,10 @@ public:
     void finish(real dt);
     /// Heat over dt, between particles where a has them.
     void conduct(Heat<D>& heat, real dt);
+    /// What is frozen does not move: it has no velocity, and is predicted and corrected to where it is.
+    void hold();
+    void hold_prediction();
+    void hold_places();
     /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory; what has crossed a side is
     /// taken back or out.
     void end_step();

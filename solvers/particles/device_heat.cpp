@@ -32,6 +32,26 @@ void DeviceFluid<D>::feed(Heat<D>& heat, real dt) {
 }
 
 template <int D>
+void DeviceFluid<D>::hold() {
+    if (!effects_.heat || count() == 0) return;
+    if (device_is_old_) upload();
+    effects_.heat->set_frozen(static_cast<int>(reduce("count_frozen", {count(), heat_states_, enthalpy, parts_}).sum));
+    if (effects_.heat->frozen() > 0) run("hold", {count(), stride_, heat_states_, enthalpy, v});
+}
+
+template <int D>
+void DeviceFluid<D>::hold_prediction() {
+    hold();
+    if (effects_.heat && effects_.heat->frozen() > 0) run("hold_prediction", {count(), stride_, heat_states_, enthalpy, x, x_star});
+}
+
+template <int D>
+void DeviceFluid<D>::hold_places() {
+    if (effects_.heat && effects_.heat->frozen() > 0)
+        run("hold_places", {count(), stride_, state_params, heat_states_, order, enthalpy, x, a});
+}
+
+template <int D>
 void DeviceFluid<D>::conduct(Heat<D>& heat, real dt) {
     if (count() == 0) return;
     feed(heat, dt);
@@ -50,6 +70,12 @@ template std::string text_of<2>(const std::vector<Heat<2>::Heater>&);
 template std::string text_of<3>(const std::vector<Heat<3>::Heater>&);
 template void DeviceFluid<2>::feed(Heat<2>&, real);
 template void DeviceFluid<3>::feed(Heat<3>&, real);
+template void DeviceFluid<2>::hold();
+template void DeviceFluid<3>::hold();
+template void DeviceFluid<2>::hold_prediction();
+template void DeviceFluid<3>::hold_prediction();
+template void DeviceFluid<2>::hold_places();
+template void DeviceFluid<3>::hold_places();
 template void DeviceFluid<2>::conduct(Heat<2>&, real);
 template void DeviceFluid<3>::conduct(Heat<3>&, real);
 

@@ -64,6 +64,7 @@ void DeviceFluid<D>::pass_time(real dt) {
 template <int D>
 void DeviceFluid<D>::meet_solids() {
     if (solid_) run("meet_solids", {count(), state_params, wall_params, poses, a, near_solid, terms});
+    hold_places();
 }
 
 template <int D>

@@ -10,6 +10,7 @@ template <int D>
 class DeviceSolver : public ParticleSolver<D> {
 public:
     bool checks_itself() const final { return true; }
+    std::string concern() const final { return this->heat_ ? this->heat_->concern() : std::string(); }
     real time() const final { return fluid_.time(); }
     std::size_t bytes() const final { return fluid_.bytes(); }
     std::vector<EffectPlan> effects() const final { return fluid_.effects(); }
@@ -22,6 +23,7 @@ protected:
     DeviceSolver(const Scheme& scheme, const Fluid<D>& start, const DeviceEffects<D>& effects, const DeviceSetup& own)
         : fluid_(start, effects, with_scheme(own, scheme, start.domain)) {
         this->heat_ = effects.heat;
+        if (this->heat_) this->heat_->count_frozen(start);
     }
     const Fluid<D>& state() const final { return fluid_.host(); }
     const Fluid<D>& setting() const final { return fluid_.setting(); }

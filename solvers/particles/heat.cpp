@@ -77,6 +77,17 @@ int Heat<D>::parts(real dt) {
 }
 
 template <int D>
+int Heat<D>::count_frozen(const Fluid<D>& fluid) {
+    return frozen_ = static_cast<int>(
+               block_sum(fluid.count(), [&](int i) { return frozen(fluid.enthalpy[static_cast<std::size_t>(i)]) ? 1.0 : 0.0; }));
+}
+
+template <int D>
+std::string Heat<D>::concern() const {
+    return frozen_ > 0 ? std::to_string(frozen_) + " particles are frozen: they are held where they are, ice neither floats nor sinks" : "";
+}
+
+template <int D>
 void Heat<D>::feed(Fluid<D>& fluid, real dt) {
     for (const Heater& heater : heaters_) {
         const real joules = heater.gives(fluid.time - dt, dt);

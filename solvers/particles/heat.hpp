@@ -58,6 +58,14 @@ public:
     /// The largest step of explicit conduction [s].
     real stable_dt() const { return stable_dt_; }
 
+    /// More than half frozen: held in place.
+    bool frozen(real h) const { return heat_melted(h, &states_) < 0.5; }
+    /// How many are at the moment.
+    int count_frozen(const Fluid<D>& fluid);
+    void set_frozen(int count) { frozen_ = count; }
+    int frozen() const { return frozen_; }
+    std::string concern() const;
+
     real theta(real h) const { return heat_theta(h, 0, &states_); }
 
     /// A heater at work in (time, time + dt]: what it gives in that [J].
@@ -109,7 +117,8 @@ private:
     real spacing_, rho0_;
     bool held_ = false;
     real stable_dt_ = infinity;
-    int parts_ = 0;  // of the last step
+    int parts_ = 0;   // of the last step
+    int frozen_ = 0;  // particles
     std::vector<Heater> heaters_;
     std::vector<Flux> fluxes_;
     real added_ = 0;                                  // [J]; in 2D a metre

@@ -69,7 +69,10 @@ template <int D>
 class HostSolver : public ParticleSolver<D> {
 public:
     StepLimit stable_dt() const final { return this->stable_at(speed_); }
-    std::string concern() const final { return this->concern_at(speed_); }
+    std::string concern() const final {
+        const std::string concern = this->concern_at(speed_);
+        return concern.empty() && this->heat_ ? this->heat_->concern() : concern;
+    }
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
     Hand* hand() const final { return hand_.get(); }

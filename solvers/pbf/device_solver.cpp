@@ -55,6 +55,7 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     update(dt, std::max(dt, last_dt_));  // 20-21, 23-24
     last_dt_ = dt;
     fluid_.finish(dt);  // 22
+    fluid_.hold();
     this->conduct(dt);  // only where a substance is named
     const real speed = fluid_.max_speed();
     const Reduced c = find_compression();

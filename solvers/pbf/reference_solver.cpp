@@ -51,7 +51,8 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
     const real slow = std::max(dt, last_dt_);
     if (options_.warm_start > 0)
         for (std::size_t i = 0; i < multiplier_.size(); ++i) fluid_.carried[i] = multiplier_[i] / (slow * slow);
-    update(dt, slow);   // 20-21, 23-24
+    update(dt, slow);  // 20-21, 23-24
+    this->hold();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
     const real speed = speed_ = fluid_.max_speed();
@@ -76,7 +77,7 @@ void ReferencePbfSolver<D>::predict(real dt) {
         fluid_.domain.solids.set_time(fluid_.time);
         predicted_.clear(), x_star_.clear();
         for (int i = 0; i < fluid_.count(); ++i) {
-            Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * fluid_.gravity);
+            Fluid<D>::put(fluid_.v, i, this->held(static_cast<std::size_t>(i)) ? Vec<D>{} : fluid_.velocity(i) + dt * fluid_.gravity);
             predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
             x_star_.push_back(particles::point_of(predicted_.back() - fluid_.domain.centre()));
         }
@@ -114,6 +115,8 @@ void ReferencePbfSolver<D>::correct() {
     const Vec<D> centre = fluid_.domain.centre();
     if (!fluid_.domain.solids.empty())
         for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x), fluid_.clamps) - centre);
+    for (std::size_t i = 0; i < x_star_.size(); ++i)
+        if (this->held(i)) x_star_[i] = particles::point_of(predicted_[i] - centre);
 }
 
 /// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone. slow: see PbfSolver.

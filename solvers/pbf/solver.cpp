@@ -21,6 +21,7 @@ template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     this->pour_and_drain(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
+    this->hold();       // what is frozen
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
     warm_start(dt);
@@ -35,7 +36,8 @@ StepReport PbfSolver<D>::step(real dt) {
     keep_multipliers(slow);
     update(dt, slow);                                   // 20-21, 23-24
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
-    this->conduct(dt);                                  // only where a substance is named
+    this->hold();
+    this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = compression();
@@ -45,7 +47,7 @@ StepReport PbfSolver<D>::step(real dt) {
 
 template <int D>
 void PbfSolver<D>::stay() {
-    predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
+    this->hold(), predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
 }
 
 template <int D>
@@ -145,9 +147,21 @@ void PbfSolver<D>::correct() {
     if (tally.count > 0) fluid_.clamps.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
 }
 
+/// What is frozen stays where the list found it.
+template <int D>
+void PbfSolver<D>::hold_places() {
+    if (!this->heat_ || this->heat_->frozen() == 0) return;
+    float* x = pairs_.a();
+    pairs_.each([&](int k) {
+        if (this->held(pairs_.owner(k)))
+            for (int a = 0; a < 3; ++a) x[4 * k + a] = pairs_.found_at(k, a);
+    });
+}
+
 template <int D>
 void PbfSolver<D>::collide() {
     solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
+    hold_places();
     pairs_.refresh_images(pairs_.a(), true);
 }
 

@@ -29,6 +29,7 @@ private:
     void find_lambdas();
     void correct();
     void collide();
+    void hold_places();
     void update(real dt, real slow) override;
     Compression compression() const override;
     particles::PbfPass pass(const float* from, float* to);

@@ -64,9 +64,11 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     find_pressures();                            // eq. 12
     find_forces();                               // eq. 10 and 14
     kick(dt);
+    fluid_.hold();                                   // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     fluid_.finish(dt);  // XSPH, vorticity
+    fluid_.hold();
     this->conduct(dt);  // only where a substance is named
     const real speed = fluid_.max_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.density, fluid_.parts()});

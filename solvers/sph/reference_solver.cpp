@@ -53,6 +53,7 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     find_neighbours();
     find_densities();                                // eq. 3 and 12
     kick(dt);                                        // eq. 10 and 14
+    this->hold();                                    // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(fluid_, dt);
     this->conduct(dt);  // only where a substance is named

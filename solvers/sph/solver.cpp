@@ -51,10 +51,12 @@ StepReport SphSolver<D>::step(real dt) {
     find_forces();                                     // eq. 10 and 14
     effects_.apply(Stage::force, flow_, dt, passes_);  // gravity and other fields
     kick(dt);
+    this->hold();                                    // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
-    this->conduct(dt);                                  // only where a substance is named
+    this->hold();
+    this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = particles::compression_of(fluid_, rho_rest_);
     this->end_step();

@@ -150,6 +150,34 @@ TEST_IN_2D_AND_3D("a run with heat repeats to the last bit, through a change of 
     });
 }
 
+TEST_IN_2D_AND_3D("what is frozen stays where it is to the bit and the rest moves; the reference holds the same particles") {
+    NEEDS_BACKEND;
+    const std::string falls = "effects.gravity.g = " + test::list<D>(3, -9.81, 0) + "\n";
+    const auto run = [&](auto here, auto there, const char* name, const std::string& scheme) {
+        typename decltype(here)::type solver(test::heat_scene<D>(name, test::backend, falls, scheme));
+        typename decltype(there)::type reference(test::heat_scene<D>(name, "reference", falls, scheme));
+        test::shake(solver.fluid(), 0.1), test::shake(reference.fluid(), 0.1);
+        const Fluid<D> before = reference.fluid();
+        solver.step(0.002), reference.step(0.002);
+        const Fluid<D>& a = solver.fluid();
+        const Fluid<D>& b = reference.fluid();
+        int held = 0, moved = 0;
+        for (int i = 0; i < before.count(); ++i) {
+            const bool frozen = before.enthalpy[static_cast<std::size_t>(i)] < -15000;  // half of the latent heat below the liquid at 300 K
+            EXPECT_LE(norm(a.position(i) - b.position(i)), 2e-5) << name;
+            EXPECT_EQ(frozen, a.position(i) == before.position(i)) << name;
+            ++(frozen ? held : moved);
+        }
+        EXPECT_GT(held, before.count() / 10);
+        EXPECT_GT(moved, before.count() / 10);
+        EXPECT_NE(solver.concern().find("frozen"), std::string::npos) << name;
+    };
+    run(std::type_identity<test::Sph<D>>{}, std::type_identity<sph::ReferenceSphSolver<D>>{}, "sph",
+        "kernel = \"cubic\", support = 2.0, density = \"summation\"");
+    run(std::type_identity<test::Pbf<D>>{}, std::type_identity<pbf::ReferencePbfSolver<D>>{}, "pbf",
+        "kernel = \"cubic\", support = 2.0, settle = 0");
+}
+
 TEST("an emitter lets in particles of its temperature, on every backend") {
     NEEDS_BACKEND;
     const std::string jet =

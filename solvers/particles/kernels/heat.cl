@@ -69,6 +69,39 @@ __kernel void warm(int count, double dt, __global const int* order, __global con
     if (k < count) enthalpy[order[k]] += dt * warming[k];
 }
 
+WEIR_FN int is_frozen(double h, __constant HeatStates* s) { return heat_melted(h, s) < 0.5; }
+
+__kernel void count_frozen(int count, __constant HeatStates* s, __global const double* enthalpy, __global double* parts) {
+    __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
+    double sum = 0;
+    for (int i = get_global_id(0); i < count; i += get_global_size(0)) sum += is_frozen(enthalpy[i], s);
+    reduce_parts(0, sum, largests, sums, parts);
+}
+
+/* What is frozen does not move. */
+__kernel void hold(int count, int stride, __constant HeatStates* s, __global const double* enthalpy, __global double* v) {
+    const int i = get_global_id(0);
+    if (i >= count || !is_frozen(enthalpy[i], s)) return;
+    for (int a = 0; a < WEIR_DIM; ++a) v[(size_t)a * stride + i] = 0;
+}
+__kernel void hold_prediction(int count, int stride, __constant HeatStates* s, __global const double* enthalpy, __global const double* x,
+                              __global double* x_star) {
+    const int i = get_global_id(0);
+    if (i >= count || !is_frozen(enthalpy[i], s)) return;
+    for (int a = 0; a < WEIR_DIM; ++a) x_star[(size_t)a * stride + i] = x[(size_t)a * stride + i];
+}
+__kernel void hold_places(int count, int stride, __constant StateParams* p, __constant HeatStates* s, __global const int* order,
+                          __global const double* enthalpy, __global const double* x, __global float4* at) {
+    const int k = get_global_id(0);
+    if (k >= count || !is_frozen(enthalpy[order[k]], s)) return;
+    const int i = order[k];
+    at[k].x = (float)(x[i] - p->centre[0]);
+    at[k].y = (float)(x[(size_t)stride + i] - p->centre[1]);
+#if WEIR_DIM == 3
+    at[k].z = (float)(x[(size_t)2 * stride + i] - p->centre[2]);
+#endif
+}
+
 /* Largest and sum. */
 __kernel void sum_numbers(int count, __global const double* numbers, __global double* parts) {
     __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
