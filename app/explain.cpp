@@ -24,7 +24,7 @@ std::string called_for(const scene::Scene& scene, const scene::SolverSchema& sch
     for (const auto& effect : schema.effects)
         if (scene.effect(effect.name)) effects.push_back(effect.name);
     text += fmt::format("\n  effects     {}\n", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
-    for (const char* list : {"liquid", "solids", "emitters", "sinks", "probes"})
+    for (const char* list : {"liquid", "solids", "bodies", "emitters", "sinks", "probes"})
         if (scene.has(list) && !scene.root().tables(list).empty())
             text += fmt::format("  {:10}  {}\n", list, scene.root().tables(list).size());
     return text;

@@ -70,6 +70,9 @@ std::vector<Shown> shown_by(const scene::SolverKind& kind) {
                 "grid.cells = [n, 1, m]");
     const std::string solids = plain.source() + "solids = [ { shape = \"box\", min = [0.3, 0, 0.3], max = [0.7, 0.7, 0.7] } ]\n";
     if (!scene::is_without(kind.schema, "solids")) add_all(list, kind, scene::parse(solids, plain.file(), {kind.schema}), "solids");
+    const std::string bodies =
+        plain.source() + "bodies = [ { shape = \"sphere\", centre = [0.5, 0.5, 0.5], radius = 0.2, density = 1.0 } ]\n";
+    if (scene::find_key(kind.schema.keys, "bodies")) add_all(list, kind, scene::parse(bodies, plain.file(), {kind.schema}), "bodies");
     for (const scene::Variant& effect : kind.schema.effects)
         add_all(list, kind, validation::scene_with(kind, dim, cells, {effect.name}, validation::negligible), "effects." + effect.name);
     return list;

@@ -74,6 +74,17 @@ Key probe_key() {
 
 namespace {
 
+/// The axis of a turn, as long as its angle, at most half a turn.
+Vec<3> rotation_vector(const Orientation& q) {
+    const Vec<3> v{{q[1], q[2], q[3]}};
+    const real sine = norm(v), half = std::atan2(sine, std::abs(q[0]));
+    return sine > 0 ? ((q[0] < 0 ? -2 : 2) * half / sine) * v : Vec<3>{};
+}
+Orientation orientation_of(const Vec<3>& rotation) {
+    const real angle = norm(rotation), scale = angle > 0 ? std::sin(0.5 * angle) / angle : 0;
+    return {std::cos(0.5 * angle), scale * rotation[0], scale * rotation[1], scale * rotation[2]};
+}
+
 std::string path_of(std::size_t number) { return "bodies[" + std::to_string(number) + "]"; }
 
 std::vector<double> spin_of(const scene::Scene& scene, const scene::Table& table, const std::string& path) {
@@ -202,7 +213,10 @@ void Bodies<D>::recall(const std::function<real(const char*, std::size_t, std::s
     for (std::size_t b = 0; b < count(); ++b) {
         Body<D>& body = list_[b];
         for (std::size_t a = 0; a < D; ++a) body.at[a] = value("position", a, b), body.velocity[a] = value("velocity", a, b);
-        for (std::size_t k = 0; k < (D == 2 ? 1 : 4); ++k) body.orientation[k] = value(D == 2 ? "angle" : "orientation", k, b);
+        if (D == 2)
+            body.orientation[0] = value("angle", 0, b);
+        else
+            body.orientation = orientation_of({{value("rotation", 0, b), value("rotation", 1, b), value("rotation", 2, b)}});
     }
 }
 
@@ -242,7 +256,7 @@ real Bodies<D>::max_rate(real h) const {
 template <int D>
 void Bodies<D>::show(FieldSet& set) const {
     if (empty()) return;
-    constexpr std::size_t n = freedoms<D>, turns = n - D, angles = D == 2 ? 1 : 4;
+    constexpr std::size_t n = freedoms<D>, turns = n - D, angles = D == 2 ? 1 : 3;
     shown_.assign(D + 2 * n + angles, std::vector<real>(count()));
     std::size_t at = 0;
     const auto add = [&](const char* name, const char* unit, std::size_t components, auto&& value) {
@@ -255,7 +269,8 @@ void Bodies<D>::show(FieldSet& set) const {
     };
     add("position", "m", D, [](const Body<D>& b, std::size_t k) { return b.at[k]; });
     add("velocity", "m/s", D, [](const Body<D>& b, std::size_t k) { return b.velocity[k]; });
-    add(D == 2 ? "angle" : "orientation", D == 2 ? "rad" : "", angles, [](const Body<D>& b, std::size_t k) { return b.orientation[k]; });
+    add(D == 2 ? "angle" : "rotation", "rad", angles,
+        [](const Body<D>& b, std::size_t k) { return D == 2 ? b.orientation[k] : rotation_vector(b.orientation)[k]; });
     add("spin", "rad/s", turns, [](const Body<D>& b, std::size_t k) { return b.velocity[D + k]; });
     add("force", D == 2 ? "N/m" : "N", D, [](const Body<D>& b, std::size_t k) { return b.force[k]; });
     add("torque", D == 2 ? "N" : "N m", turns, [](const Body<D>& b, std::size_t k) { return b.force[D + k]; });

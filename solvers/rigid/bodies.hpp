@@ -12,7 +12,7 @@
 namespace weir::rigid {
 
 /// The name of the set of points by which solvers show their bodies, one a body: position of the centre of mass, velocity, angle (2D) or
-/// orientation (3D, a quaternion), spin, and what the fluid does to it.
+/// rotation (3D, its axis as long as its angle), spin, and what the fluid does to it.
 inline constexpr const char* body_set_name = "bodies";
 
 /// What solvers that carry bodies add to their keys: the bodies, and the probe that follows one.

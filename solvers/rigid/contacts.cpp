@@ -312,6 +312,14 @@ void Contacts<D>::resolve(std::vector<Body<D>>& bodies, const Mobility& mobility
         }
 }
 
+template <int D>
+void Contacts<D>::mark(std::vector<Body<D>>& bodies) const {
+    for (const Contact& c : list_) {
+        bodies[c.body].touches = true;
+        if (c.other >= 0) bodies[static_cast<std::size_t>(c.other)].touches = true;
+    }
+}
+
 template void dry_mobility(const std::vector<Body<2>>&, Mobility&);
 template void dry_mobility(const std::vector<Body<3>>&, Mobility&);
 template class Contacts<2>;

@@ -47,6 +47,8 @@ public:
     void find(const std::vector<Body<D>>& bodies, const Surroundings<D>& around);
     bool empty() const { return list_.empty(); }
     std::size_t count() const { return list_.size(); }
+    /// Marks the bodies of all pairs that were found as touched.
+    void mark(std::vector<Body<D>>& bodies) const;
     /// Changes the velocities so that over a time dt no gap closes further than to nothing, with the restitution and friction of both
     /// sides. Marks the bodies that are touched.
     void resolve(std::vector<Body<D>>& bodies, const Mobility& mobility, std::vector<real>& velocities, real dt, real gravity);

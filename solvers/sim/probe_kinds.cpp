@@ -128,9 +128,7 @@ public:
             if (field.set != rigid::body_set_name) continue;
             names_.push_back(field.name);
             for (int c = 0; c < field.components(); ++c)
-                columns_.push_back(column(field.name == "orientation" ? std::string("orientation_") + "wxyz"[c]
-                                                                      : component_name(field.name, field.components(), c),
-                                          field.unit));
+                columns_.push_back(column(component_name(field.name, field.components(), c), field.unit));
         }
     }
     void describe(ProbeSeries& series) const override { series.columns = columns_; }

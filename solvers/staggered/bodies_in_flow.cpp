@@ -59,6 +59,10 @@ template <int D>
 void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solids) {
     find_cuts(s, solids);
     for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].wet = wet_part(s, i);
+    rigid::Surroundings<D> around = bodies_.surroundings(solids.solids());
+    around.reach = 1e-3 * norm(h_);
+    contacts_.find(bodies_.all(), around);
+    contacts_.mark(bodies_.all());  // what stands on something does not fall to begin with
 }
 
 template <int D>
