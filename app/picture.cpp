@@ -1,9 +1,9 @@
 // weir picture RESULT: one frame, or a row of frames, of a finished (or running) run as PNG.
 #include "app/commands.hpp"
-#include "app/picture/sea.hpp"
-#include "app/picture/view.hpp"
+#include "app/picture/draw.hpp"
 #include "app/run_folder.hpp"
 #include "core/error.hpp"
+#include "output/read_frame.hpp"
 
 #include <cmath>
 #include <memory>
@@ -13,10 +13,10 @@ namespace weir::app {
 namespace {
 
 struct PictureArguments {
-    std::string result, field, out;
-    double time = -1, range = 0;
-    int size = 900, sheet = 1;
-    bool grid = false;
+    std::string result, out;
+    double time = -1;
+    int sheet = 1;
+    picture::Wish wish;
 };
 
 /// One frame, or `sheet` frames evenly spread over the run's times.
@@ -43,18 +43,8 @@ int draw(const PictureArguments& arguments) {
     const std::filesystem::path folder = arguments.result;
     const scene::Scene scene = scene_of_run(folder);
     std::vector<picture::Canvas> pictures;
-    for (const std::size_t number : frames_of(output::frame_times(folder), arguments)) {
-        auto frame = output::read_frame(folder, number, scene.dim());
-        picture::particles_as_markers(frame, scene);
-        if (arguments.field.empty() || arguments.field == "water") picture::level_set_as_markers(frame);
-        if (arguments.grid && scene.dim() != 2) throw BadInput("the grid is drawn in pictures of 2D runs");
-        const std::string field = arguments.field.empty() ? picture::best_field(frame) : arguments.field;
-        const bool columns = picture::is_of_columns(frame);
-        if (field == "water" && !columns && !frame.particles.count("markers") && !picture::has_sea(frame))
-            throw BadInput("this run has no markers, and no surface, to draw as water");
-        const picture::View view{scene, frame, field, arguments.size, arguments.range, arguments.grid};
-        pictures.push_back(columns ? picture::draw_columns(view) : scene.dim() == 2 ? picture::draw_2d(view) : picture::draw_3d(view));
-    }
+    for (const std::size_t number : frames_of(output::frame_times(folder), arguments))
+        pictures.push_back(picture::draw_frame(folder, scene, number, arguments.wish));
     const std::filesystem::path out = arguments.out.empty() ? folder / "picture.png" : std::filesystem::path(arguments.out);
     row_of(pictures).write(out);
     std::printf("%s\n", out.c_str());
@@ -67,14 +57,17 @@ void add_picture(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<PictureArguments>();
     CLI::App* picture = app.add_subcommand("picture", "Draw a frame of a run as PNG");
     picture->add_option("result", arguments->result, "Output folder of a run")->required();
-    picture->add_option("--field", arguments->field,
+    picture->add_option("--field", arguments->wish.field,
                         "smoke, speed, vorticity (2D), temperature, pressure, ..., or water (default: what the run is about)");
     picture->add_option("--time", arguments->time, "Time of the frame [s] (default: the last)");
     picture->add_option("--sheet", arguments->sheet, "Draw so many frames side by side, from the first to --time")
         ->check(CLI::Range(1, 20));
-    picture->add_option("--range", arguments->range, "Value of the brightest colour (default: the frame's own)");
-    picture->add_option("--size", arguments->size, "Pixels of the longer side")->check(CLI::Range(32, 8192));
-    picture->add_flag("--grid", arguments->grid, "Draw the cells that hold liquid, tall ones as they are (2D)");
+    picture->add_option("--range", arguments->wish.range, "Value of the brightest colour (default: the frame's own)");
+    picture->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
+        ->check(CLI::Range(32, 8192));
+    picture->add_flag("--grid", arguments->wish.grid, "Draw the cells that hold liquid, tall ones as they are (2D)");
+    picture->add_flag("--quality", arguments->wish.quality,
+                      "As a camera would see it: bent and mirrored light, a sky, a floor (3D; 16 to 9)");
     picture->add_option("--out", arguments->out, "File to write (default: RESULT/picture.png)");
     picture->callback([arguments, &exit_code] { exit_code = draw(*arguments); });
 }
