@@ -4,6 +4,7 @@
 #   run SCENE [...]     simulate a scene, or a case by its name
 #   view RESULT         the frames of a run in a window
 #   picture RESULT      the frames of a run as a PNG
+#   movie RESULT        the frames of a run as a film
 #   validate [...]      the claims of the cases
 #   cost [...]          error against computing time; --plan SCENE: what a scene will cost
 #   plan CASE [...]     which setting to take: --budget 16ms --error 2%
@@ -21,11 +22,12 @@ set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 
 weir_needs=(g++ cmake ninja-build git libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev opencl-headers
-            ocl-icd-opencl-dev libgsl-dev libmuparser-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev)
+            ocl-icd-opencl-dev libgsl-dev libmuparser-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev libembree-dev)
 figures_need=(gnuplot-nox)
 python_needs=(python3-dev pybind11-dev python3-numpy)
 docs_need=(mkdocs libjs-katex)
-tests_need=(ccache libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
+films_need=(ffmpeg)
+tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
             python3-pytest python3-matplotlib)
 
 install_missing() { # PACKAGE...
@@ -102,6 +104,8 @@ case "${1:-}" in
         install_missing "${weir_needs[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     validate | cost | stability | report)
         install_missing "${weir_needs[@]}" "${figures_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
+    movie)
+        install_missing "${weir_needs[@]}" "${films_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     view) install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec "$here/build/release/weir" "$@" ;;
     python) build_python ;;
     docs) install_missing "${docs_need[@]}" && python3 "$here/docs/site/make.py" "$here/build/docs" ;;

@@ -3,6 +3,7 @@
 #include "app/picture/draw.hpp"
 #include "app/run_folder.hpp"
 #include "core/error.hpp"
+#include "output/read_frame.hpp"
 
 #include <cmath>
 #include <memory>
@@ -12,10 +13,10 @@ namespace weir::app {
 namespace {
 
 struct PictureArguments {
-    std::string result, field, out;
-    double time = -1, range = 0;
-    int size = 900, sheet = 1;
-    bool grid = false;
+    std::string result, out;
+    double time = -1;
+    int sheet = 1;
+    picture::Wish wish;
 };
 
 /// One frame, or `sheet` frames evenly spread over the run's times.
@@ -43,9 +44,7 @@ int draw(const PictureArguments& arguments) {
     const scene::Scene scene = scene_of_run(folder);
     std::vector<picture::Canvas> pictures;
     for (const std::size_t number : frames_of(output::frame_times(folder), arguments))
-        pictures.push_back(
-            picture::draw(scene, output::read_frame(folder, number, scene.dim()),
-                          {.field = arguments.field, .size = arguments.size, .range = arguments.range, .grid = arguments.grid}));
+        pictures.push_back(picture::draw_frame(folder, scene, number, arguments.wish));
     const std::filesystem::path out = arguments.out.empty() ? folder / "picture.png" : std::filesystem::path(arguments.out);
     row_of(pictures).write(out);
     std::printf("%s\n", out.c_str());
@@ -58,14 +57,17 @@ void add_picture(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<PictureArguments>();
     CLI::App* picture = app.add_subcommand("picture", "Draw a frame of a run as PNG");
     picture->add_option("result", arguments->result, "Output folder of a run")->required();
-    picture->add_option("--field", arguments->field,
+    picture->add_option("--field", arguments->wish.field,
                         "smoke, speed, vorticity (2D), temperature, pressure, ..., or water (default: what the run is about)");
     picture->add_option("--time", arguments->time, "Time of the frame [s] (default: the last)");
     picture->add_option("--sheet", arguments->sheet, "Draw so many frames side by side, from the first to --time")
         ->check(CLI::Range(1, 20));
-    picture->add_option("--range", arguments->range, "Value of the brightest colour (default: the frame's own)");
-    picture->add_option("--size", arguments->size, "Pixels of the longer side")->check(CLI::Range(32, 8192));
-    picture->add_flag("--grid", arguments->grid, "Draw the cells that hold liquid, tall ones as they are (2D)");
+    picture->add_option("--range", arguments->wish.range, "Value of the brightest colour (default: the frame's own)");
+    picture->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
+        ->check(CLI::Range(32, 8192));
+    picture->add_flag("--grid", arguments->wish.grid, "Draw the cells that hold liquid, tall ones as they are (2D)");
+    picture->add_flag("--quality", arguments->wish.quality,
+                      "As a camera would see it: bent and mirrored light, a sky, a floor (3D; 16 to 9)");
     picture->add_option("--out", arguments->out, "File to write (default: RESULT/picture.png)");
     picture->callback([arguments, &exit_code] { exit_code = draw(*arguments); });
 }

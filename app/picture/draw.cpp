@@ -1,21 +1,42 @@
 #include "app/picture/draw.hpp"
 
+#include "app/picture/quality.hpp"
 #include "app/picture/sea.hpp"
 #include "app/picture/view.hpp"
 #include "core/error.hpp"
 
 namespace weir::picture {
 
-Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wishes& wishes) {
+namespace {
+
+constexpr int usual_size = 900, usual_size_of_quality = 1280;
+
+/// Refused where there is nothing that rays pass through.
+Canvas draw_with_rays(const View& view, bool columns) {
+    if (columns || view.scene.dim() != 3) throw BadInput("--quality draws liquids and smoke in 3D");
+    if (view.field == "water" && view.frame.particles.count("markers") == 0)
+        throw BadInput("--quality draws water from its level set or its particles; this run has only heights of its surface");
+    return draw_quality(view);
+}
+
+}  // namespace
+
+Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish) {
     particles_as_markers(frame, scene);
-    if (wishes.field.empty() || wishes.field == "water") level_set_as_markers(frame);
-    if (wishes.grid && scene.dim() != 2) throw BadInput("the grid is drawn in pictures of 2D runs");
-    const std::string field = wishes.field.empty() ? best_field(frame) : wishes.field;
+    if (wish.field.empty() || wish.field == "water") level_set_as_markers(frame);
+    if (wish.grid && scene.dim() != 2) throw BadInput("the grid is drawn in pictures of 2D runs");
+    const std::string field = wish.field.empty() ? best_field(frame) : wish.field;
     const bool columns = is_of_columns(frame);
     if (field == "water" && !columns && !frame.particles.count("markers") && !has_sea(frame))
         throw BadInput("this run has no markers, and no surface, to draw as water");
-    const View view{scene, frame, field, wishes.size, wishes.range, wishes.grid};
+    const int size = wish.size > 0 ? wish.size : wish.quality ? usual_size_of_quality : usual_size;
+    const View view{scene, frame, field, size, wish.range, wish.grid};
+    if (wish.quality) return draw_with_rays(view, columns);
     return columns ? draw_columns(view) : scene.dim() == 2 ? draw_2d(view) : draw_3d(view);
+}
+
+Canvas draw_frame(const std::filesystem::path& folder, const scene::Scene& scene, std::size_t number, const Wish& wish) {
+    return draw(scene, output::read_frame(folder, number, scene.dim()), wish);
 }
 
 }  // namespace weir::picture

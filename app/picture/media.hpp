@@ -4,12 +4,16 @@
 
 namespace weir::picture {
 
+class Surroundings;
+
 /// One light, single scattering: what a ray collects is the light that reaches each point through the smoke, times what is scattered
 /// there, times what survives to the eye (Kajiya & Von Herzen 1984).
 class Smoke {
 public:
-    explicit Smoke(const View& view);
+    explicit Smoke(const View& view, const Vec<3>& towards_light = Stage::light());
     Colour look(const Ray& ray, const Stage& stage) const;
+    /// In daylight, brighter smoke on a floor that it shades.
+    Colour look_among(const Ray& ray, const Surroundings& around) const;
     const Box& box() const { return density_.box; }
 
 private:

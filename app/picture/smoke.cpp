@@ -1,4 +1,5 @@
 #include "app/picture/media.hpp"
+#include "app/picture/quality.hpp"
 #include "core/parallel.hpp"
 
 namespace weir::picture {
@@ -21,7 +22,8 @@ real dense_value(std::vector<real> values) {
 
 }  // namespace
 
-Smoke::Smoke(const View& view) : density_(volume_of(view.frame.grid, scalar_field(view.frame, view.field))), light_(density_) {
+Smoke::Smoke(const View& view, const Vec<3>& towards_light)
+    : density_(volume_of(view.frame.grid, scalar_field(view.frame, view.field))), light_(density_) {
     const GridView& grid = view.frame.grid;
     step_ = 0.5 * std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
     const real dense = view.range > 0 ? view.range : dense_value(density_.values);
@@ -34,7 +36,7 @@ Smoke::Smoke(const View& view) : density_(volume_of(view.frame.grid, scalar_fiel
     parallel_for(0, n[2], [&](int k) {
         for (int j = 0; j < n[1]; ++j)
             for (int i = 0; i < n[0]; ++i) {
-                const Ray to_light{density_.lattice.position({i, j, k}), Stage::light()};
+                const Ray to_light{density_.lattice.position({i, j, k}), towards_light};
                 real depth = 0;
                 const auto span = density_.box.span(to_light);
                 for (real s = step_; span && s < span->second; s += 2 * step_) depth += 2 * step_ * density_.at(to_light.at(s));
@@ -64,6 +66,31 @@ Colour Smoke::look(const Ray& ray, const Stage& stage) const {
             through *= 1 - stopped;
         }
     return collected + through * behind.colour;
+}
+
+Colour Smoke::look_among(const Ray& ray, const Surroundings& around) const {
+    const Surroundings::Hit behind = around.first(ray);
+    Colour share{};
+    if (behind.lit) {
+        const Vec<3> x = ray.at(behind.distance);
+        real depth = 0;  // of the smoke between there and the sun
+        const Ray to_sun{x, Surroundings::to_sun()};
+        if (const auto span = density_.box.span(to_sun))
+            for (real s = span->first + step_; s < span->second; s += 2 * step_) depth += 2 * step_ * density_.at(to_sun.at(s));
+        if (!around.in_shadow(x)) share = std::exp(-depth) * Colour{{1, 1, 1}};
+    }
+    Colour collected{};
+    real through = 1;
+    if (const auto span = density_.box.span(ray))
+        for (real s = span->first + 0.5 * step_; s < std::min(span->second, behind.distance) && through > 0.005; s += step_) {
+            const Vec<3> x = ray.at(s);
+            const real sigma = density_.at(x);
+            if (sigma <= 0) continue;
+            const real stopped = 1 - std::exp(-sigma * step_);
+            collected += (through * stopped) * (0.42 * hex(0x9fb4cc) + (0.36 * light_at(x)) * Surroundings::sun());
+            through *= 1 - stopped;
+        }
+    return collected + through * around.shade(behind, ray, share);
 }
 
 }  // namespace weir::picture

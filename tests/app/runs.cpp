@@ -57,6 +57,57 @@ TEST("two threads give the same bytes as one: every frame, every series, every p
     }
 }
 
+/// A drop of particles in space, and its surface.
+const fs::path& drop_run() {
+    static TemporaryFolder folder;
+    static const fs::path out = folder.path() / "drop";
+    if (fs::exists(out)) return out;
+    std::ofstream(folder.path() / "drop.toml")
+        << "solver = \"pbf\"\ndim = 3\ngrid = { cells = [16, 16, 16], size = [1, 1, 1] }\ntime = { end = 0.02, dt = 0.005 }\n"
+           "liquid = [ { shape = \"sphere\", centre = [0.5, 0.4, 0.5], radius = 0.3 } ]\neffects = { gravity = { g = [0, -9.81, 0] } }\n"
+           "output = { every = 0.01, surface = \"anisotropic\" }\n";
+    run({"run", folder.path() / "drop.toml", "--out", out, "--threads", "1"}, folder.path() / "drop.log");
+    return out;
+}
+
+TEST("a picture by rays has the same bytes on one thread as on three, and is no picture without rays") {
+    if (!WEIR_RAYS) GTEST_SKIP() << "built without Embree";
+    TemporaryFolder folder;
+    const auto draw = [&](const char* threads, const std::string& name, bool quality) {
+        setenv("OMP_NUM_THREADS", threads, 1);
+        std::vector<std::string> words{"picture", drop_run(), "--size", "160", "--out", folder.path() / name};
+        if (quality) words.push_back("--quality");
+        run(words, folder.path() / "log");
+        return text_of(folder.path() / name);
+    };
+    const std::string one = draw("1", "one.png", true);
+    EXPECT_GT(one.size(), 2000u);
+    EXPECT_TRUE(one == draw("3", "three.png", true));
+    setenv("OMP_NUM_THREADS", "1", 1);
+    EXPECT_FALSE(one == draw("1", "plain.png", false));
+}
+
+TEST("a film has its poster beside it, MP4 and WebM; without ffmpeg and with another ending it is told what is missing") {
+    TemporaryFolder folder;
+    const std::string path = getenv("PATH");
+    setenv("PATH", "/nowhere", 1);
+    Process without({"movie", drop_run(), "--out", folder.path() / "a.mp4"}, folder.path() / "log");
+    setenv("PATH", path.c_str(), 1);
+    EXPECT_EQ(without.wait(), 2);
+    EXPECT_NE(without.said().find("needs ffmpeg"), std::string::npos) << without.said();
+    if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
+    Process gif({"movie", drop_run(), "--out", folder.path() / "a.gif"}, folder.path() / "log");
+    EXPECT_EQ(gif.wait(), 2);
+    for (const std::string name : {"film.mp4", "film.webm"}) {
+        run({"movie", drop_run(), "--size", "96", "--out", folder.path() / name}, folder.path() / "log");
+        const std::string bytes = text_of(folder.path() / name);
+        EXPECT_TRUE(bytes.find(name == "film.mp4" ? "ftyp" : "webm") < 64) << name;
+        EXPECT_TRUE(fs::exists(folder.path() / "film.png"));
+        EXPECT_FALSE(fs::exists(folder.path() / (name + ".frames")));  // the pictures are gone
+        fs::remove(folder.path() / "film.png");
+    }
+}
+
 TEST("Ctrl-C ends a run with its frame, exit 130 and a checkpoint; --restart then yields the bytes of the uninterrupted run") {
     for (const auto& name : scene_names) {
         TemporaryFolder folder;

@@ -1,0 +1,151 @@
+// weir movie RESULT: every frame of a run as a picture, and the pictures as a film by ffmpeg, with a poster beside it.
+#include "app/commands.hpp"
+#include "app/picture/draw.hpp"
+#include "app/run_folder.hpp"
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/read_frame.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace weir::app {
+
+namespace {
+
+struct MovieArguments {
+    std::string result, out;
+    picture::Wish wish;
+    int rate = 0;
+    bool quiet = false;
+};
+
+/// Whether a program of this name stands on the PATH.
+bool has_program(const char* name) {
+    const char* path = std::getenv("PATH");
+    std::string list = path ? path : "";
+    for (std::size_t from = 0; from <= list.size();) {
+        const std::size_t end = std::min(list.find(':', from), list.size());
+        if (access((list.substr(from, end - from) + "/" + name).c_str(), X_OK) == 0) return true;
+        from = end + 1;
+    }
+    return false;
+}
+
+/// Runs it with what it says hidden; throws with its exit code where it fails.
+void run_program(const std::vector<std::string>& words) {
+    std::vector<char*> argv;
+    for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+        execvp(argv[0], argv.data());
+        _exit(127);
+    }
+    int status = 0;
+    if (child < 0 || waitpid(child, &status, 0) != child) throw OutputError("cannot start " + words[0]);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        throw OutputError(words[0] + " failed" + (WIFEXITED(status) ? " with exit code " + std::to_string(WEXITSTATUS(status)) : ""));
+}
+
+/// VP9 for .webm, H.264 for everything else; both as every browser plays them, in even sizes.
+std::vector<std::string> encoder(const std::filesystem::path& pictures, int rate, const std::filesystem::path& film) {
+    std::vector<std::string> words{"ffmpeg",
+                                   "-nostdin",
+                                   "-loglevel",
+                                   "error",
+                                   "-y",
+                                   "-framerate",
+                                   std::to_string(rate),
+                                   "-i",
+                                   (pictures / "%06d.png").string(),
+                                   "-vf",
+                                   "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                   "-pix_fmt",
+                                   "yuv420p"};
+    const std::vector<std::string> vp9{"-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0"};
+    const std::vector<std::string> h264{"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"};
+    const auto& codec = film.extension() == ".webm" ? vp9 : h264;
+    words.insert(words.end(), codec.begin(), codec.end());
+    words.push_back(film.string());
+    return words;
+}
+
+/// As fast as the water itself where that is a film at all: between 10 and 30 frames a second.
+int usual_rate(const std::vector<real>& times) {
+    const real interval = times.size() > 1 ? (times.back() - times.front()) / real(times.size() - 1) : 0;
+    return interval > 0 ? static_cast<int>(std::clamp(1 / interval, 10.0, 30.0)) : 10;
+}
+
+/// The pictures of a film in the making, gone when it is made or has failed.
+struct Pictures {
+    std::filesystem::path folder;
+    explicit Pictures(std::filesystem::path path) : folder(std::move(path)) { std::filesystem::create_directories(folder); }
+    std::filesystem::path file(std::size_t frame) const {
+        char name[32];
+        std::snprintf(name, sizeof name, "%06zu.png", frame);
+        return folder / name;
+    }
+    ~Pictures() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder, ignored);
+    }
+};
+
+void show(std::size_t done, std::size_t all, bool quiet) {
+    if (quiet || !isatty(STDERR_FILENO)) return;
+    constexpr int width = 30;
+    const int filled = static_cast<int>(width * done / all);
+    std::fprintf(stderr, "\r[%s%s] %zu of %zu frames", std::string(static_cast<std::size_t>(filled), '#').c_str(),
+                 std::string(static_cast<std::size_t>(width - filled), '.').c_str(), done, all);
+    if (done == all) std::fprintf(stderr, "\n");
+}
+
+int film(const MovieArguments& arguments) {
+    if (!has_program("ffmpeg"))
+        throw BadInput("weir movie needs ffmpeg, which is not on the PATH: install it (Debian, Ubuntu: apt install ffmpeg)");
+    const std::filesystem::path folder = arguments.result;
+    const scene::Scene scene = scene_of_run(folder);
+    const std::vector<real> times = output::frame_times(folder);
+    const std::filesystem::path out = arguments.out.empty() ? folder / "movie.mp4" : std::filesystem::path(arguments.out);
+    if (out.extension() != ".mp4" && out.extension() != ".webm") throw BadInput("--out " + out.string() + ": a film is an .mp4 or a .webm");
+    output::require_writable(out.has_parent_path() ? out.parent_path() : ".");
+    const Pictures pictures(out.string() + ".frames");
+    for (std::size_t frame = 0; frame < times.size(); ++frame) {
+        show(frame, times.size(), arguments.quiet);
+        picture::draw_frame(folder, scene, frame, arguments.wish).write(pictures.file(frame));
+    }
+    show(times.size(), times.size(), arguments.quiet);
+    run_program(encoder(pictures.folder, arguments.rate > 0 ? arguments.rate : usual_rate(times), out));
+    // the poster: two thirds through, when most is going on
+    std::filesystem::path poster = out;
+    poster.replace_extension(".png");
+    std::filesystem::copy_file(pictures.file(2 * (times.size() - 1) / 3), poster, std::filesystem::copy_options::overwrite_existing);
+    std::printf("%s\n%s\n", out.c_str(), poster.c_str());
+    return exit_success;
+}
+
+}  // namespace
+
+void add_movie(CLI::App& app, int& exit_code) {
+    auto arguments = std::make_shared<MovieArguments>();
+    CLI::App* movie = app.add_subcommand("movie", "All frames of a run as a film (MP4 or WebM, by ffmpeg), and a poster");
+    movie->add_option("result", arguments->result, "Output folder of a run")->required();
+    movie->add_option("--out", arguments->out, "File to write: .mp4 or .webm (default: RESULT/movie.mp4); the poster beside it");
+    movie->add_option("--field", arguments->wish.field, "What is shown, as weir picture");
+    movie->add_option("--range", arguments->wish.range, "Value of the brightest colour (default: each frame's own)");
+    movie->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
+        ->check(CLI::Range(32, 8192));
+    movie->add_flag("--quality", arguments->wish.quality, "As a camera would see it, as weir picture --quality");
+    movie->add_option("--rate", arguments->rate, "Frames a second (default: the run's own speed, from 10 to 30)")
+        ->check(CLI::Range(1, 120));
+    movie->add_flag("--quiet", arguments->quiet, "No progress bar");
+    movie->callback([arguments, &exit_code] { exit_code = film(*arguments); });
+}
+
+}  // namespace weir::app
