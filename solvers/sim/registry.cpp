@@ -14,9 +14,17 @@
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {
-        flow::kind(), water::kind(),    studies::transport_kind(), studies::poisson_kind(), pbf::kind(),
-        sph::kind(),  tallcell::kind(), heightfield::kind(),       waves::kind(),           studies::phase_diagram_kind()};
+    static const std::vector<scene::SolverKind> kinds = {flow::kind(),
+                                                         water::kind(),
+                                                         studies::transport_kind(),
+                                                         studies::poisson_kind(),
+                                                         pbf::kind(),
+                                                         sph::kind(),
+                                                         tallcell::kind(),
+                                                         heightfield::kind(),
+                                                         waves::kind(),
+                                                         studies::phase_diagram_kind(),
+                                                         studies::closed_vessel_kind()};
     return kinds;
 }
 

@@ -3,6 +3,7 @@
 #include "matter/substance.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/kind.hpp"
+#include "studies/closed_vessel.hpp"
 #include "studies/phase_diagram.hpp"
 #include "studies/poisson_problem.hpp"
 #include "studies/transport.hpp"
@@ -42,6 +43,16 @@ scene::SolverKind phase_diagram_kind() {
     schema.keys = {matter::substance_key(), PhaseDiagram::samples_key()};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
     return {schema, [](const scene::Scene& scene) { return std::make_unique<PhaseDiagram>(scene); }};
+}
+
+scene::SolverKind closed_vessel_kind() {
+    scene::SolverSchema schema;
+    schema.name = "closed_vessel";
+    schema.doc = "Water and its vapour in a rigid vessel, without flow: the gas has one pressure, and comes to that of saturation.";
+    schema.dims = {2};
+    schema.keys = ClosedVessel::keys();
+    schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
+    return {schema, [](const scene::Scene& scene) { return std::make_unique<ClosedVessel>(scene); }};
 }
 
 }  // namespace weir::studies
