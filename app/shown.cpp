@@ -48,6 +48,10 @@ std::vector<std::pair<std::string, std::string>> studies_of(const std::string& s
                      "\"\ndim = 2\ngrid = { cells = [8, 8], size = [400, 8], origin = [200, 0] }\ntime = { end = 1.0 }\n" +
                      "substance = \"water\"\nsamples = { temperature = [300], pressure = [1e5] }\n",
                  ""}};
+    if (solver == "closed_vessel")
+        return {{"solver = \"" + solver + "\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 1.0 }\n" +
+                     "substance = \"water\"\nvessel = { volume = 1, mass = 10, temperature = 300, transfer = 1e-5 }\n",
+                 ""}};
     const std::string flow = head + "flow = { name = \"constant\", value = [0, 0, 0] }\n";
     const std::string ball = " = { name = \"ball\", centre = [0.5, 0.5, 0.5], radius = 0.2, value = 1.0, outside = 0.0 }\n";
     return {{flow + "initial.tracer" + ball, "initial.tracer"}, {flow + "initial.temperature" + ball, "initial.temperature"}};

@@ -30,9 +30,10 @@ std::vector<Key> Heat<D>::keys() {
                        "the step to about rho c h^2/(6 dim k).",
                    .fallback = std::string("stages"),
                    .choices = {"stages", "explicit"}},
-                  {.name = "gravity",
+                  {.name = "lift",
                    .type = Type::number,
-                   .doc = "Lifts the melt along y by as much lighter as it is than at its melting point, by the substance's expansion.",
+                   .doc = "Gravity that lifts the melt along y by as much lighter as it is than at its melting point, by the substance's "
+                          "expansion.",
                    .unit = "m/s^2",
                    .fallback = 0.0},
                   {.name = "drag",
@@ -55,14 +56,14 @@ template <int D>
 Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
     : substance_(matter::substance_of(scene)),
       melting_(matter::melting_of(scene, "mac")),
-      gravity_(scene.number("heat.gravity")),
+      gravity_(scene.number("heat.lift")),
       cfl_(scene.number("time.cfl")),
       drag_(scene.number("heat.drag")),
       explicit_(scene.text("heat.conduction") == "explicit"),
       beside_flow_(scheme_of(scene) == Scheme::conservative) {
     if (gravity_ != 0) lightness_.emplace(scene);
     if (const auto* buoyancy = scene.effect("buoyancy"); buoyancy && gravity_ != 0 && buoyancy->number("beta") != 0)
-        scene.refuse("effects.buoyancy.beta", "heat.gravity lifts the melt by the substance's own expansion already", "one of them");
+        scene.refuse("effects.buoyancy.beta", "heat.lift lifts the melt by the substance's own expansion already", "one of them");
     if (scene.effect("cooling"))
         scene.refuse("effects.cooling", "cooling changes a temperature, and here heat is what is kept",
                      "heaters with a negative power, or sides with a temperature");

@@ -24,7 +24,8 @@ const std::vector<scene::SolverKind>& registry() {
                                                          heightfield::kind(),
                                                          waves::kind(),
                                                          studies::phase_diagram_kind(),
-                                                         studies::reconstruction_kind()};
+                                                         studies::reconstruction_kind(),
+                                                         studies::closed_vessel_kind()};
     return kinds;
 }
 

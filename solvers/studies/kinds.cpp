@@ -4,6 +4,7 @@
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/kind.hpp"
+#include "studies/closed_vessel.hpp"
 #include "studies/phase_diagram.hpp"
 #include "studies/poisson_problem.hpp"
 #include "studies/reconstruction_study.hpp"
@@ -57,6 +58,16 @@ scene::SolverKind reconstruction_kind() {
     schema.keys = {output, ReconstructionStudy::jitter_key()};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial", "probes"};
     return {schema, [](const scene::Scene& scene) { return std::make_unique<ReconstructionStudy>(scene); }};
+}
+
+scene::SolverKind closed_vessel_kind() {
+    scene::SolverSchema schema;
+    schema.name = "closed_vessel";
+    schema.doc = "Water and its vapour in a rigid vessel, without flow: the gas has one pressure, and comes to that of saturation.";
+    schema.dims = {2};
+    schema.keys = ClosedVessel::keys();
+    schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
+    return {schema, [](const scene::Scene& scene) { return std::make_unique<ClosedVessel>(scene); }};
 }
 
 }  // namespace weir::studies

@@ -197,7 +197,7 @@ std::map<std::string, Said> everything() {
         "conductivity = 0.6 }, vapour = { heat_capacity = 2000, conductivity = 0.02 } }"};
     for (const std::string& line :
          {"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }\n" + std::string(),
-          wax + "heat = { pressure = 2e3, conduction = \"explicit\", drag = 1e5, gravity = 1 }",
+          wax + "heat = { pressure = 2e3, conduction = \"explicit\", drag = 1e5, lift = 1 }",
           wax + "heat.ambient = { temperature = 310 }\nsides.x_min = { kind = \"wall\", exchange = 5 }",
           wax + "heat.ambient = { keyframes = [ { t = 0, temperature = 310, pressure = 2e3 }, { t = 1, temperature = 320, pressure = 3e3 } "
                 "] }",
@@ -205,6 +205,18 @@ std::map<std::string, Said> everything() {
           wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"})
         said["mac"].lines.push_back(line);
     for (const std::string& line : fluids) said["mac"].refused.push_back(line);
+    for (const std::string& line :
+         {"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }\n" + std::string(),
+          wax + "heat = { pressure = 2e3, drag = 1e5, evaporation = 1e-7, vapour_pressure = 1500 }",
+          wax + "heat = { pressure = 2e3, ambient = { temperature = 310 }, surface_exchange = 10 }\nsides.x_min = { kind = \"wall\", "
+                "exchange = 5 }",
+          wax + "heat.ambient = { keyframes = [ { t = 0, temperature = 310, pressure = 2e3 }, { t = 1, temperature = 320, pressure = 3e3 } "
+                "] }",
+          wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }", wax + "sides.x_min = { kind = \"wall\", temperature = 305 }",
+          wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"})
+        said["mac_water"].lines.push_back(line);
+    for (const std::string& line : fluids) said["mac_water"].refused.push_back(line);
+    for (const std::string& line : of_field("temperature", true)) said["mac_water"].refused.push_back(line);  // of no substance
     Lines of_heat{"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }",
                   wax + "heat.pressure = 2e3",
                   wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }",
@@ -225,6 +237,17 @@ std::map<std::string, Said> everything() {
                       " }",
                   fluids[0], fluids[1]}),
         all(of_the_surface, Lines{at_the_wall})};
+    const std::string vessel = "vessel = { volume = 2, mass = 10, temperature = 300, transfer = 1e-5";
+    said["closed_vessel"] = {
+        {"substance = \"water\"", vessel + " }"},
+        all(of_the_run, probes("liquid"),
+            Lines{vessel + ", vapour = 0.1 }", vessel + ", exchange = 10 }\nheat.ambient.temperature = 310",
+                  vessel + " }\nheat = { ambient = { keyframes = [ { t = 0, temperature = 310, pressure = 2e5 } ] } }",
+                  vessel + " }\nheat.pressure = 2e5"}),
+        all(of_the_surface, Lines{at_the_wall},
+            Lines{"substance = { name = \"own\", triple = [300, 1000], critical = [700, 2e6], fusion = 2e5, vaporisation = 1e6, " + states +
+                      " }",
+                  fluids[0], fluids[1]})};
     said["pbf"] = {
         liquid,
         all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,

@@ -23,5 +23,6 @@ std::vector<Metric> substance_metrics();
 std::vector<Metric> melting_metrics();
 std::vector<Metric> melting_convection_metrics();
 std::vector<Metric> surface_metrics();
+std::vector<Metric> vessel_metrics();
 
 }  // namespace weir::validation

@@ -67,7 +67,7 @@ real diffusivity_of(const scene::Scene& scene) {
 
 REFERENCE(heated_cavity) {
     const real lift = scene.effect("buoyancy") ? scene.number("effects.buoyancy.beta")
-                                               : scene.number("heat.gravity") * scene.number("substance.liquid.expansion");
+                                               : scene.number("heat.lift") * scene.number("substance.liquid.expansion");
     const real hot = scene.number("sides.x_min.temperature"), cold = scene.number("sides.x_max.temperature");
     const real L = scene.vec<2>("grid.size")[0], alpha = diffusivity_of(scene);
     const real Ra = lift * (hot - cold) * L * L * L / (scene.number("fluid.viscosity") * alpha);

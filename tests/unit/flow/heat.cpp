@@ -167,7 +167,7 @@ TEST("a liquid is lighter than where it melts by the integral of its expansion, 
 
 TEST_IN_2D_AND_3D("melt that is warmer rises, and ice does not") {
     set_threads(1);
-    std::string expanding = stirred(D, "heat = { pressure = 1e5, gravity = 10.0 }\n");
+    std::string expanding = stirred(D, "heat = { pressure = 1e5, lift = 10.0 }\n");
     expanding.replace(expanding.find("conductivity = 0.6"), 18, "conductivity = 0.6, expansion = 3e-4");
     std::string beta = stirred(D);
     const std::string effect = ", buoyancy = { beta = 3e-3, ambient = 300.0 }";

@@ -88,6 +88,7 @@ TEST("memory is foretold within a tenth for every pressure method, and for the s
     expect_foretold(read("zalesak", {{"grid.cells", "[500, 500]"}, {"time.dt", "1e-4"}}), "transport");
     expect_foretold(read("poisson_mms", {{"grid.cells", "[500, 500]"}}), "poisson");
     expect_foretold(read("phase_diagram", {{"grid.cells", "[500, 500]"}}), "phase_diagram");
+    expect_foretold(read("closed_vessel", {{"grid.cells", "[500, 500]"}}), "closed_vessel");
 }
 
 TEST("liquid that a small copy would not see is foretold: a film of two cells, a drop, a pool with a solid in it") {
