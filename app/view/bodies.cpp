@@ -1,4 +1,5 @@
 // What the viewer's stage shows in space: clouds of a 3D grid's field, the scene's solids, the outline of the domain.
+#include "app/view/solid_mesh.hpp"
 #include "app/view/stage.hpp"
 #include "geometry/solids.hpp"
 
@@ -6,8 +7,8 @@
 #include <vtkClipDataSet.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkContourFilter.h>
-#include <vtkDataSetMapper.h>
 #include <vtkFloatArray.h>
+#include <vtkGeometryFilter.h>
 #include <vtkImageData.h>
 #include <vtkLookupTable.h>
 #include <vtkOutlineSource.h>
@@ -52,31 +53,39 @@ vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, real time, co
 
 }  // namespace
 
-void Stage::add_solids(real time) {
-    const bool flat = dim() == 2;
-    const real longest = std::max({domain_[1] - domain_[0], domain_[3] - domain_[2], domain_[5] - domain_[4]});
-    const real step = std::max(0.5 * cell_, longest / (flat ? 600 : 160));
-    const auto image = flat ? distances<2>(scene_, time, domain_, step) : distances<3>(scene_, time, domain_, step);
-    if (!image) return;
-    vtkNew<vtkDataSetMapper> mapper;
-    if (flat) {
-        vtkNew<vtkClipDataSet> inside;
-        inside->SetInputData(image);
-        inside->SetValue(0);
-        inside->InsideOutOn();
-        mapper->SetInputConnection(inside->GetOutputPort());
-    } else {
+vtkSmartPointer<vtkPolyData> solid_mesh(const scene::Scene& scene, real time, const std::array<real, 6>& box, real cell) {
+    const bool flat = scene.dim() == 2;
+    const real longest = std::max({box[1] - box[0], box[3] - box[2], box[5] - box[4]});
+    const real step = std::max(0.5 * cell, longest / (flat ? 600 : 160));
+    const auto image = flat ? distances<2>(scene, time, box, step) : distances<3>(scene, time, box, step);
+    if (!image) return nullptr;
+    if (!flat) {
         vtkNew<vtkContourFilter> surface;
         surface->SetInputData(image);
         surface->SetValue(0, 0);
-        mapper->SetInputConnection(surface->GetOutputPort());
+        surface->Update();
+        return surface->GetOutput();
     }
+    vtkNew<vtkClipDataSet> inside;
+    inside->SetInputData(image);
+    inside->SetValue(0);
+    inside->InsideOutOn();
+    vtkNew<vtkGeometryFilter> sheet;
+    sheet->SetInputConnection(inside->GetOutputPort());
+    sheet->Update();
+    return sheet->GetOutput();
+}
+
+void Stage::add_solids(real time) {
+    const auto mesh = solid_mesh(scene_, time, domain_, cell_);
+    if (!mesh) return;
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(mesh);
     mapper->ScalarVisibilityOff();
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.55, 0.57, 0.61);
-    if (flat) actor->GetProperty()->LightingOff(), actor->SetPosition(0, 0, cell_);  // in front of markers
-    mapper->Update();
+    if (dim() == 2) actor->GetProperty()->LightingOff(), actor->SetPosition(0, 0, cell_);  // in front of markers
     add(actor.Get());
 }
 

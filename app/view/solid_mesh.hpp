@@ -1,0 +1,15 @@
+// The solids of a scene as a mesh: their surface (3D), or the area that they cover (2D).
+#pragma once
+#include "scene/scene.hpp"
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include <array>
+
+namespace weir::view {
+
+/// At `time`, in the box x0 x1 y0 y1 z0 z1 of cells of this width [m]; null where there are none.
+vtkSmartPointer<vtkPolyData> solid_mesh(const scene::Scene& scene, real time, const std::array<real, 6>& box, real cell);
+
+}  // namespace weir::view
