@@ -7,6 +7,7 @@
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
+#include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkFloatArray.h>
 #include <vtkImageActor.h>
 #include <vtkImageData.h>
@@ -23,7 +24,6 @@
 #include <vtkRegularPolygonSource.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
-#include <vtkSmartVolumeMapper.h>
 #include <vtkSphereSource.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
@@ -175,8 +175,11 @@ void Scenery::set_cloud(const Snapshot& s) {
         cloud_->SetSpacing(h(0), h(1), h(2));
         cloud_->SetOrigin(domain_[0] + 0.5 * h(0), domain_[2] + 0.5 * h(1), domain_[4] + 0.5 * h(2));
         cloud_->GetPointData()->SetScalars(cloud_values_);
-        vtkNew<vtkSmartVolumeMapper> mapper;
+        vtkNew<vtkFixedPointVolumeRayCastMapper> mapper;  // on the processor: as quick as a GPU's shader is slow without one
         mapper->SetInputData(cloud_);
+        mapper->AutoAdjustSampleDistancesOff();
+        mapper->SetImageSampleDistance(3);
+        mapper->SetSampleDistance(static_cast<float>(cell_));
         volume_->SetMapper(mapper);
     }
     cloud_values_->SetNumberOfTuples(static_cast<vtkIdType>(s.of_cells.size()));
@@ -256,14 +259,14 @@ void Scenery::add_brush() {
     } else {
         vtkNew<vtkSphereSource> ball;
         ball->SetRadius(1);
-        ball->SetThetaResolution(16);
-        ball->SetPhiResolution(9);
+        ball->SetThetaResolution(10);
+        ball->SetPhiResolution(6);
         mapper->SetInputConnection(ball->GetOutputPort());
         brush_->GetProperty()->SetRepresentationToWireframe();
     }
     brush_->SetMapper(mapper);
     brush_->GetProperty()->LightingOff();
-    brush_->GetProperty()->SetLineWidth(2);
+    brush_->GetProperty()->SetLineWidth(dim() == 2 ? 2 : 1);
     brush_->VisibilityOff();
     brush_->UseBoundsOff();
     renderer_->AddActor(brush_);
@@ -292,6 +295,10 @@ void Scenery::add_texts() {
         style->ItalicOff();
         style->ShadowOff();
         style->BoldOff();
+    }
+    for (auto* text : {figures_->GetTextProperty(), help_->GetTextProperty()}) {  // over whatever colour lies behind them
+        text->SetBackgroundColor(const_cast<double*>(paper.data()));
+        text->SetBackgroundOpacity(0.7);
     }
     figures_->SetPosition(12, 10);
     help_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
@@ -358,7 +365,8 @@ void Scenery::look_at_all() {
     camera->SetParallelProjection(flat);
     camera->SetPosition(middle(0) + (flat ? 0 : 0.45), middle(1) + (flat ? 0 : 0.42), middle(2) + 1);
     renderer_->ResetCamera(domain_.data());
-    if (flat) camera->Zoom(1.2);
+    const bool wide = domain_[1] - domain_[0] > 1.6 * (domain_[3] - domain_[2]);
+    if (flat && !wide) camera->Zoom(1.2);  // room is left for a turn that a flat picture does not take, and for the scale
 }
 
 }  // namespace weir::live
