@@ -98,8 +98,8 @@ bool RunLog::overwrite_status(const std::string& status) const {
 void RunLog::write() const {
     std::string status = json(status_).dump();
     status.resize(std::max(status.size(), status_room), ' ');
-    std::string text = head_ + status_key + status + ",\n \"series\": " + json(series_).dump() +
-                       ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);
+    std::string text =
+        head_ + status_key + status + ",\n \"series\": " + json(series_).dump() + ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);
     json measured = json::object();
     for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);
     if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();

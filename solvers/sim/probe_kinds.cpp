@@ -168,7 +168,9 @@ private:
         return std::make_unique<IntegralProbe>(name, std::move(columns));
     }
     std::unique_ptr<ProbeKind> wall_pressure() const {
-        if (!fields_.find("pressure")) scene_.refuse(path_ + ".kind", "solver \"" + scene_.solver() + "\" has no pressure");
+        const FieldView* on_grid = fields_.find("", "pressure");
+        if (!(on_grid ? on_grid->where == Where::cell : fields_.find(particle_set_name, "pressure") != nullptr))
+            scene_.refuse(path_ + ".kind", "solver \"" + scene_.solver() + "\" has no pressure beside walls");
         const Vec<3> at = inside("at");
         if (fields_.grid.dim == 2) return std::make_unique<WallPressure<2>>(scene_, Vec<2>{{at[0], at[1]}});
         return std::make_unique<WallPressure<3>>(scene_, at);

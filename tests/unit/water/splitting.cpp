@@ -92,7 +92,7 @@ TEST("a film's steady speed is of first order in the step: theta g dt is added t
 // The surface moves with the velocity of before and the pressure is of the surface of after: a leapfrog whose velocity starts half a step
 // late. Read half a step later its error is of second order; on its own clock it lags, at first order.
 TEST("a standing wave lags half a step, and is of second order but for that") {
-    set_threads(1);  // threads would only wait for one another on so few cells
+    set_threads(1);                            // threads would only wait for one another on so few cells
     constexpr real omega = 7.836, time = 0.2;  // ω² = g k tanh(k d); a quarter of a period, where the lag is seen best
     for (const char* transfer : {"grid", "flip", "apic"}) {
         const real coarse = amplitude(transfer, time, 16), middle = amplitude(transfer, time, 32), fine = amplitude(transfer, time, 64);
