@@ -253,6 +253,25 @@ TEST("in 3D the hand acts in the plane of the camera's focus, and the session re
     play.expect_replay(file);
 }
 
+TEST("solvers without a hand have sessions too, and files beside their scene are found from where the session is kept") {
+    TemporaryFolder folder;
+    fs::create_directories(folder.path() / "scene");
+    fs::copy(std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/hill.asc", folder.path() / "scene" / "hill.asc");
+    const auto scene = written(folder.path() / "scene" / "scene.toml",
+                               "solver = \"heightfield\"\ndim = 2\ngrid = { cells = [16, 1], size = [1, 1] }\ntime = { end = 1.0 }\n"
+                               "terrain = { kind = \"asc\", file = \"hill.asc\", corner = [0, 0], nodata = 0 }\n"
+                               "initial.surface = \"0.5 + 0.1*x\"\neffects.gravity.g = [0, -9.81]\n");
+    live::Session session(live::endless(scene, {}), folder.path() / "out" / "kept");
+    EXPECT_FALSE(session.has_hand());
+    for (int s = 0; s < 5; ++s) session.step();
+    session.steer({"effects.gravity.g", "[0, -5]"});
+    for (int s = 0; s < 5; ++s) session.step();
+    Simulation replay(session.finish());
+    while (!replay.finished()) replay.step();
+    EXPECT_EQ(replay.steps(), session.simulation().steps());
+    EXPECT_TRUE(state_of(replay) == state_of(session.simulation()));
+}
+
 TEST("the window plays by its own clock and closes on q") {
     Play play("solver = \"pbf\"\n" + pool);
     struct Closer {
