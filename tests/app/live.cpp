@@ -301,4 +301,16 @@ TEST("without a display, and without a scene, it says so and exits with 2") {
     EXPECT_NE(blind.said().find("no display to draw on: DISPLAY is not set"), std::string::npos) << blind.said();
 }
 
+TEST("--bench measures a scene for so long and tells what a frame spends; the report's scenes stand beside the cases") {
+    TemporaryFolder folder;
+    Process bench({"live", written(folder.path() / "scene.toml", smoke), "--bench", "1s", "--width", "320", "--height", "200"},
+                  folder.path() / "log");
+    ASSERT_EQ(bench.wait(), 0) << bench.said();
+    for (const char* part : {"frames/s", "step [ms]", "copy [ms]", "draw [ms]", "real time", "scene.toml"})
+        EXPECT_NE(bench.said().find(part), std::string::npos) << bench.said();
+    Process wrong({"live", "--bench", "soon"}, folder.path() / "log");
+    EXPECT_EQ(wrong.wait(), 2);
+    EXPECT_NE(wrong.said().find("--bench soon: how long, such as 10s"), std::string::npos) << wrong.said();
+}
+
 }  // namespace
