@@ -8,6 +8,7 @@ void add_run(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);
 void add_movie(CLI::App& app, int& exit_code);
 void add_view(CLI::App& app, int& exit_code);
+void add_live(CLI::App& app, int& exit_code);
 void add_describe(CLI::App& app, int& exit_code);
 void add_list(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);

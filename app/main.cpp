@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
     weir::app::add_picture(app, exit_code);
     weir::app::add_movie(app, exit_code);
     weir::app::add_view(app, exit_code);
+    weir::app::add_live(app, exit_code);
     weir::app::add_list(app, exit_code);
     weir::app::add_describe(app, exit_code);
     try {

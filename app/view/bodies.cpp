@@ -1,13 +1,13 @@
 // What the viewer's stage shows in space: clouds of a 3D grid's field, the scene's solids, the outline of the domain.
-#include "rigid/bodies.hpp"
+#include "app/view/solid_mesh.hpp"
 #include "app/view/stage.hpp"
 
 #include <vtkActor.h>
 #include <vtkClipDataSet.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkContourFilter.h>
-#include <vtkDataSetMapper.h>
 #include <vtkFloatArray.h>
+#include <vtkGeometryFilter.h>
 #include <vtkImageData.h>
 #include <vtkLookupTable.h>
 #include <vtkOutlineSource.h>
@@ -29,15 +29,11 @@ namespace {
 
 /// Signed distance to the solids [m] on a lattice of `step` [m] over the box.
 template <int D>
-vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, const Frame& frame, const std::array<real, 6>& box, real step) {
+vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, real time, const PoseOf& pose, const std::array<real, 6>& box,
+                                        real step) {
     rigid::ShownSolids<D> shown(scene);
     if (shown.empty()) return nullptr;
-    const geometry::Solids<D>& solids = shown.at(frame.time, [&](const char* field, std::size_t component, std::size_t body) {
-        vtkPolyData* points = frame.particles.at(rigid::body_set_name);
-        const auto point = static_cast<vtkIdType>(body);
-        if (std::string_view(field) == "position") return points->GetPoint(point)[component];
-        return points->GetPointData()->GetArray(field)->GetComponent(point, static_cast<int>(component));
-    });
+    const geometry::Solids<D>& solids = shown.at(time, pose);
     auto image = vtkSmartPointer<vtkImageData>::New();
     std::array<int, 3> n{1, 1, 1};
     for (std::size_t a = 0; a < D; ++a) n[a] = 1 + static_cast<int>(std::ceil((box[2 * a + 1] - box[2 * a]) / step - 1e-9));
@@ -57,31 +53,46 @@ vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, const Frame& 
 
 }  // namespace
 
-void Stage::add_solids(const Frame& frame) {
-    const bool flat = dim() == 2;
-    const real longest = std::max({domain_[1] - domain_[0], domain_[3] - domain_[2], domain_[5] - domain_[4]});
-    const real step = std::max(0.5 * cell_, longest / (flat ? 600 : 160));
-    const auto image = flat ? distances<2>(scene_, frame, domain_, step) : distances<3>(scene_, frame, domain_, step);
-    if (!image) return;
-    vtkNew<vtkDataSetMapper> mapper;
-    if (flat) {
-        vtkNew<vtkClipDataSet> inside;
-        inside->SetInputData(image);
-        inside->SetValue(0);
-        inside->InsideOutOn();
-        mapper->SetInputConnection(inside->GetOutputPort());
-    } else {
+vtkSmartPointer<vtkPolyData> solid_mesh(const scene::Scene& scene, real time, const PoseOf& pose, const std::array<real, 6>& box,
+                                        real cell) {
+    const bool flat = scene.dim() == 2;
+    const real longest = std::max({box[1] - box[0], box[3] - box[2], box[5] - box[4]});
+    const real step = std::max(0.5 * cell, longest / (flat ? 600 : 160));
+    const auto image = flat ? distances<2>(scene, time, pose, box, step) : distances<3>(scene, time, pose, box, step);
+    if (!image) return nullptr;
+    if (!flat) {
         vtkNew<vtkContourFilter> surface;
         surface->SetInputData(image);
         surface->SetValue(0, 0);
-        mapper->SetInputConnection(surface->GetOutputPort());
+        surface->Update();
+        return surface->GetOutput();
     }
+    vtkNew<vtkClipDataSet> inside;
+    inside->SetInputData(image);
+    inside->SetValue(0);
+    inside->InsideOutOn();
+    vtkNew<vtkGeometryFilter> sheet;
+    sheet->SetInputConnection(inside->GetOutputPort());
+    sheet->Update();
+    return sheet->GetOutput();
+}
+
+void Stage::add_solids(const Frame& frame) {
+    const PoseOf pose = [&](const char* field, std::size_t component, std::size_t body) {
+        vtkPolyData* points = frame.particles.at(rigid::body_set_name);
+        const auto point = static_cast<vtkIdType>(body);
+        if (std::string_view(field) == "position") return points->GetPoint(point)[component];
+        return points->GetPointData()->GetArray(field)->GetComponent(point, static_cast<int>(component));
+    };
+    const auto mesh = solid_mesh(scene_, frame.time, pose, domain_, cell_);
+    if (!mesh) return;
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(mesh);
     mapper->ScalarVisibilityOff();
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.55, 0.57, 0.61);
-    if (flat) actor->GetProperty()->LightingOff(), actor->SetPosition(0, 0, cell_);  // in front of markers
-    mapper->Update();
+    if (dim() == 2) actor->GetProperty()->LightingOff(), actor->SetPosition(0, 0, cell_);  // in front of markers
     add(actor.Get());
 }
 

@@ -9,14 +9,14 @@
 
 namespace weir::view {
 
-void need_display() {
+void need_display(const std::string& program) {
     if (Display* display = XOpenDisplay(nullptr)) {
         XCloseDisplay(display);
         return;
     }
     const char* name = std::getenv("DISPLAY");
     throw BadInput("no display to draw on: DISPLAY is " + (name && *name ? '"' + std::string(name) + '"' : "not set") +
-                   "; on a machine without a screen: xvfb-run -a weir view ... (Debian: apt-get install xvfb xauth)");
+                   "; on a machine without a screen: xvfb-run -a " + program + " ... (Debian: apt-get install xvfb xauth)");
 }
 
 }  // namespace weir::view

@@ -61,6 +61,12 @@ std::vector<TimedChange> changes_of(const Table& root) {
     return list;
 }
 
+double end_after(double end, const std::vector<TimedChange>& changes, std::size_t next) {
+    for (; next < changes.size() && changes[next].time < end; ++next)
+        if (changes[next].what.key == "time.end") end = std::stod(changes[next].what.value);
+    return end;
+}
+
 std::string why_not_steerable(const Table& root, const SolverSchema& solver, std::string_view path) {
     const auto keys = keys_of(solver);
     const Key* key = key_at(keys, path);

@@ -1,5 +1,7 @@
 #include "sim/foretold.hpp"
 
+#include "scene/steer.hpp"
+
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
 #include "sim/registry.hpp"
@@ -286,7 +288,8 @@ double available_memory() {
 
 ForetoldOutput foretell_output(const scene::Scene& scene, const Foretold& foretold) {
     const auto names = scene.root().texts("output.fields");
-    const double number = scene.text("output.precision") == "single" ? 4 : 8, end = scene.number("time.end");
+    const double number = scene.text("output.precision") == "single" ? 4 : 8;
+    const double end = scene::end_after(scene.number("time.end"), scene::changes_of(scene.root()));
     const double every = scene.root().number_or("output.every", infinity);
     ForetoldOutput output;
     output.frames = 1 + (every < end ? std::ceil(end / every - 1e-9) : 1);

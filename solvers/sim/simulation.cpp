@@ -124,6 +124,8 @@ void Simulation::steer(const scene::Override& change) {
     read_times();
 }
 
+real Simulation::end_time() const { return scene::end_after(end_, changes_, static_cast<std::size_t>(changed_)); }
+
 void Simulation::set(const scene::Override& change) { steer(change); }
 void Simulation::set(const std::string& key, real value) { steer({key, scene::number_text(value)}); }
 void Simulation::set(const std::string& key, std::span<const real> values) {
@@ -131,11 +133,12 @@ void Simulation::set(const std::string& key, std::span<const real> values) {
 }
 
 void Simulation::set_at(real time, const scene::Override& change) {
-    if (time < this->time() || (static_cast<std::size_t>(changed_) < changes_.size() && time < changes_.back().time))
-        throw BadInput(fmt::format("{} cannot change at {} s: the run is at {} s, and changes come in the order of time", change.key,
-                                   scene::number_text(time), scene::number_text(this->time())));
+    if (time < this->time())
+        throw BadInput(fmt::format("{} cannot change at {} s: the run is at {} s", change.key, scene::number_text(time),
+                                   scene::number_text(this->time())));
     scene_.steered(change, {kind_.schema});  // refuses what it would then
-    changes_.push_back({time, change});
+    const auto later = [](real t, const scene::TimedChange& other) { return t < other.time; };
+    changes_.insert(std::upper_bound(changes_.begin() + changed_, changes_.end(), time, later), {time, change});
 }
 
 /// Those that are due.

@@ -47,8 +47,7 @@ public:
     void set(const scene::Override& change);
     void set(const std::string& key, real value);
     void set(const std::string& key, std::span<const real> values);
-    /// The same at a time that is not over yet and not before that of a change which waits: steps meet it exactly, as if the scene had
-    /// named it in its `changes`.
+    /// The same at a time that is not over yet: steps meet it exactly, as if the scene had named it in its `changes`.
     void set_at(real time, const scene::Override& change);
     /// A time that no step up to now would have been cut for, had it been known that something happens there.
     real horizon() const { return time() + 2.5 * std::max(longest_dt_, uncut_dt()); }
@@ -61,7 +60,7 @@ public:
     real time() const { return solver_->time(); }  // [s]
     /// Time t [s] has come, but for rounding.
     bool reached(real t) const;
-    real end_time() const { return end_; }  // [s]
+    real end_time() const;  // as far as is known now [s]
     std::int64_t steps() const { return steps_; }
     /// Frames stand at 0, every output.every seconds, and at the end. frame() counts them from 0; it is the last one that was reached.
     bool at_frame() const { return at_frame_; }

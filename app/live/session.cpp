@@ -1,0 +1,116 @@
+#include "app/live/session.hpp"
+
+#include "geometry/hand.hpp"
+#include "output/atomic_file.hpp"
+#include "scene/names.hpp"
+#include "scene/steer.hpp"
+#include "sim/registry.hpp"
+
+#include <fmt/format.h>
+
+namespace weir::live {
+
+namespace {
+
+constexpr real no_end = 1e6;  // [s]: eleven days
+
+void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
+
+/// Whether the scene's solver has a hand, on the backend that the scene names.
+bool may_have_hand(const scene::Scene& scene) {
+    const auto& effects = sim::kind_named(scene.solver()).schema.effects;
+    const bool known = std::any_of(effects.begin(), effects.end(), [](const auto& effect) { return effect.name == "hand"; });
+    return known && scene.root().text_or("scheme.backend", "threads").starts_with("threads");
+}
+
+}  // namespace
+
+scene::Scene endless(const std::filesystem::path& path, std::vector<scene::Override> overrides) {
+    overrides.push_back({"time.end", scene::number_text(no_end)});
+    const auto scene = scene::read(path, sim::schemas(), overrides);
+    if (scene.effect("hand") || !may_have_hand(scene)) return scene;
+    overrides.push_back({"effects.hand.rate", "50"});
+    return scene::read(path, sim::schemas(), overrides);
+}
+
+Session::Session(scene::Scene scene, std::filesystem::path folder) : scene_(std::move(scene)), folder_(std::move(folder)) { reset(); }
+
+void Session::reset() { simulation_ = std::make_unique<Simulation>(scene_); }
+
+void Session::hand(HandKey key) {
+    Hand* hand = simulation_->solver().hand();
+    if (!hand) return;
+    key.time = simulation_->time();
+    auto& keys = hand->keys;
+    const auto next =
+        std::upper_bound(keys.begin(), keys.end(), key.time, [](real time, const HandKey& other) { return time < other.time; });
+    const bool first = next == keys.begin();
+    const HandKey before = first ? HandKey{} : *std::prev(next);
+    const bool same =
+        key.kind == before.kind && (key.kind == HandKind::off || (key.centre == before.centre && key.radius == before.radius &&
+                                                                  key.velocity == before.velocity && key.speed == before.speed));
+    if (same) return;
+    if (!first && before.time == key.time)
+        *std::prev(next) = key;
+    else
+        keys.insert(next, key);
+}
+
+std::string Session::text(const std::vector<scene::TimedChange>& more) const {
+    const scene::Place given{1, 1};
+    scene::Table root = scene_.root();
+    if (const Hand* hand = simulation_->solver().hand()) {
+        std::vector<scene::Table> frames;
+        for (const HandKey& key : hand->keys) frames.push_back(geometry::to_table(key, scene_.dim()));
+        root.find_table("effects.hand")->set("keyframes", std::move(frames), given);
+    }
+    if (root.has("terrain.file"))  // its path is from the scene's folder
+        root.find_table("terrain")->set(
+            "file",
+            std::filesystem::proximate(std::filesystem::path(scene_.file()).parent_path() / root.text("terrain.file"), folder_).string(),
+            given);
+    root.erase("changes");
+    std::string changes;
+    auto all = simulation_->changes();
+    all.insert(all.end(), more.begin(), more.end());
+    for (const auto& change : all)
+        changes += fmt::format("    {{ time = {}, key = \"{}\", value = {} }},\n", scene::number_text(change.time), change.what.key,
+                               change.what.value);
+    return "# What was done by hand, as a scene: `weir run` of it repeats it bit for bit.\n" + scene::to_scene_text(root) +
+           (changes.empty() ? "" : "changes = [\n" + changes + "]\n");
+}
+
+/// Some numbers of a solver may follow from time.end, such as the length of even steps: so it stays what it was, until it is changed.
+std::vector<scene::TimedChange> Session::ending() const {
+    if (simulation_->finished()) return {};
+    const real from = simulation_->horizon();
+    return {{from, {"time.end", scene::number_text(from + (from - simulation_->time()))}}};
+}
+
+std::filesystem::path Session::checkpoint() const {
+    Checkpoint checkpoint;
+    simulation_->save(checkpoint);
+    put_text(checkpoint, "sim.source", text(ending()));
+    put_text(checkpoint, "sim.file", (folder_ / "session.toml").string());
+    put_text(checkpoint, "sim.overrides", "");
+    std::filesystem::create_directories(folder_);
+    const auto file = folder_ / "checkpoint.weir";
+    checkpoint.write(file);
+    return file;
+}
+
+std::filesystem::path Session::finish() {
+    hand({});  // it lets go
+    for (const auto& end : ending()) simulation_->set_at(end.time, end.what);
+    try {
+        while (!simulation_->finished()) simulation_->step();
+    } catch (const NumericalFailure&) {
+        // the scene fails there as the session did
+    }
+    std::filesystem::create_directories(folder_);
+    const auto file = folder_ / "session.toml";
+    output::write_file(file, text());
+    return file;
+}
+
+}  // namespace weir::live

@@ -1,0 +1,40 @@
+// What a window shows of a moment: plain numbers, copied from a solver between two steps, so that it may step on while they are drawn.
+#pragma once
+#include "sim/simulation.hpp"
+
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace weir::live {
+
+struct Snapshot {
+    real time = 0;  // [s]
+    std::int64_t steps = 0;
+    StepReport report;
+    double factor = 0;                                   // simulated over real time
+    double step_ms = 0, transfer_ms = 0;                 // of the last step; of the last snapshot
+    std::vector<std::pair<std::string, double>> passes;  // ms a step, the longest first
+    bool paused = false;
+    std::string message;
+
+    std::string field;                // what colours show
+    std::vector<std::string> fields;  // that could
+    std::vector<float> points;        // of particles, x y z [m]
+    std::vector<float> of_points;     // the field there; empty: it has none there
+    std::array<int, 3> cells{0, 0, 0};
+    std::vector<float> of_cells;                                   // the field in cells, x fastest; empty: nothing of the grid is shown
+    std::map<std::string, std::vector<std::vector<real>>> bodies;  // fields of the set of bodies: their poses
+    std::vector<float> heights;                                    // of columns: their surface's y [m], x fastest
+};
+
+/// Fields by which a solver's state can be coloured; "speed" stands for a velocity.
+std::vector<std::string> field_names(const FieldSet& fields);
+/// The field that the scene is about: smoke, temperature, speed, or the first.
+std::string first_field(const FieldSet& fields);
+/// Points and values of the field; whatever does not have it is shown plain.
+void take_fields(const FieldSet& fields, const std::string& field, Snapshot& into);
+
+}  // namespace weir::live

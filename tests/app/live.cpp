@@ -1,0 +1,316 @@
+// weir live on a display without a screen: what mouse and keys do to the run, that the session which is kept repeats it bit for bit without
+// a window, and what is said where there is no display.
+#include "app/live/window.hpp"
+#include "app/process.hpp"
+#include "core/error.hpp"
+#include "sim/registry.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test.hpp"
+
+#include <vtkCommand.h>
+#include <vtkImageData.h>
+#include <vtkPNGReader.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace weir;
+using test::Process;
+using test::TemporaryFolder;
+
+const std::string falls = "effects.gravity.g = [0, -9.81]\nfluid.density = 1000\n";
+const std::string pool =
+    "dim = 2\ngrid = { cells = [24, 16], size = [1.5, 1] }\ntime = { end = 1.0, max_dt = 0.01 }\noutput.every = 0.05\n" + falls +
+    "liquid = [ { shape = \"box\", min = [0, 0], max = [1.5, 0.5] } ]\n";
+const std::string smoke =
+    "solver = \"mac\"\ndim = 2\ngrid = { cells = [24, 16], size = [1.5, 1] }\ntime = { end = 1.0, max_dt = 0.02 }\n"
+    "emitters = [ { shape = \"box\", min = [0.6, 0.1], max = [0.9, 0.3], velocity = [0, 0.5], smoke = 1 } ]\n" +
+    falls;
+
+fs::path written(const fs::path& file, const std::string& text) {
+    std::ofstream(file) << text;
+    return file;
+}
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+std::string state_of(const Simulation& simulation) {
+    TemporaryFolder folder;
+    Checkpoint state;
+    simulation.solver().save(state);
+    state.write(folder.path() / "a");
+    return bytes_of(folder.path() / "a");
+}
+real integral(const Simulation& simulation, const std::string& name) {
+    for (const auto& i : simulation.solver().integrals())
+        if (i.name == name) return i.value;
+    throw std::logic_error("no integral " + name);
+}
+
+/// A window on a session in a folder of its own.
+struct Play {
+    TemporaryFolder folder;
+    live::Session session;
+    live::Window window;
+
+    explicit Play(const std::string& scene, live::WindowOptions options = {})
+        : session(live::endless(written(folder.path() / "scene.toml", scene), {}), folder.path() / "out"),
+          window(session, sized(std::move(options))) {}
+    static live::WindowOptions sized(live::WindowOptions options) {
+        options.width = 480, options.height = 360;
+        return options;
+    }
+    /// As the window system tells of it.
+    void key(const char* name) {
+        window.interactor()->SetKeySym(name);
+        window.interactor()->InvokeEvent(vtkCommand::KeyPressEvent);
+    }
+    void mouse(unsigned long event, const Vec<3>& place) {
+        const auto at = window.pixel(place);
+        window.interactor()->SetEventInformation(at[0], at[1], 0, 0);
+        window.interactor()->InvokeEvent(event);
+    }
+    /// Looks every few milliseconds, as the window's timer does, until it is so; at most 20 s.
+    void until(const std::function<bool(const live::Snapshot&)>& so) {
+        for (int i = 0; i < 4000; ++i) {
+            window.interactor()->InvokeEvent(vtkCommand::TimerEvent);
+            if (so(window.shown())) return;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        FAIL() << "it did not come to that: t = " << window.shown().time << " s, " << window.shown().message;
+    }
+    void run_for(real simulated) {
+        const real end = window.shown().time + simulated;
+        until([&](const auto& s) { return s.time >= end; });
+    }
+    void drag(const Vec<3>& from, const Vec<3>& to) {
+        mouse(vtkCommand::LeftButtonPressEvent, from);
+        for (int i = 1; i <= 10; ++i) {
+            mouse(vtkCommand::MouseMoveEvent, from + 0.1 * i * (to - from));
+            run_for(0.01);
+        }
+        mouse(vtkCommand::LeftButtonReleaseEvent, to);
+    }
+    fs::path finish() {
+        window.stop();
+        return session.finish();
+    }
+    /// Repeats the session through the executable, from its file, and compares the last state.
+    void expect_replay(const fs::path& file) {
+        Simulation replay(file);
+        while (!replay.finished()) replay.step();
+        EXPECT_EQ(replay.time(), session.simulation().time());
+        EXPECT_EQ(replay.steps(), session.simulation().steps());
+        EXPECT_EQ(replay.frame(), session.simulation().frame());
+        EXPECT_TRUE(state_of(replay) == state_of(session.simulation())) << bytes_of(file);
+    }
+};
+
+TEST(
+    "a session of a pushing, pouring and draining hand, of gravity turned and of pauses repeats bit for bit, for every solver with a "
+    "hand") {
+    for (const std::string& scene : {"solver = \"pbf\"\n" + pool, "solver = \"sph\"\n" + pool, "solver = \"mac_water\"\n" + pool, smoke}) {
+        Play play(scene);
+        play.run_for(0.05);
+        play.drag({{0.3, 0.3, 0}}, {{0.9, 0.4, 0}});
+        play.key("space");
+        play.until([](const auto& s) { return s.paused; });
+        play.key("Down");
+        play.key("Down");
+        play.key("space");
+        play.run_for(0.05);
+        play.key("3");
+        play.drag({{0.3, 0.8, 0}}, {{0.4, 0.8, 0}});
+        play.key("4");
+        play.drag({{1.2, 0.2, 0}}, {{1.2, 0.3, 0}});
+        play.key("2");
+        play.drag({{0.7, 0.2, 0}}, {{0.8, 0.3, 0}});
+        play.run_for(0.05);
+        const auto file = play.finish();
+        const auto& simulation = play.session.simulation();
+        EXPECT_EQ(simulation.changes().size(), 3u) << scene;  // two of gravity, and the end
+        EXPECT_NEAR(simulation.scene().root().numbers("effects.gravity.g")[1], -9.81 * 1.21, 0.02) << scene;
+        EXPECT_NE(integral(simulation, "hand_impulse_x"), 0) << scene;
+        play.expect_replay(file);
+    }
+}
+
+TEST("the executable runs the session that was kept, to the same bytes; a checkpoint of it continues it") {
+    Play play("solver = \"pbf\"\n" + pool);
+    play.drag({{0.3, 0.3, 0}}, {{0.9, 0.4, 0}});
+    play.key("Up");
+    play.run_for(0.05);
+    play.key("s");
+    play.until([](const auto& s) { return s.message.find("is written") != std::string::npos; });
+    const auto file = play.finish();
+    const auto out = play.folder.path() / "replay";
+    Process run({"run", file, "--out", out, "--threads", "1", "--checkpoint-every", "1000000"}, play.folder.path() / "log");
+    ASSERT_EQ(run.wait(), 0) << run.said();
+    const auto checkpoint = Checkpoint::read(out / "checkpoint.weir");
+    Simulation replay(scene_of(checkpoint));
+    replay.restore(checkpoint);
+    EXPECT_TRUE(state_of(replay) == state_of(play.session.simulation()));
+    const auto saved = Checkpoint::read(play.session.folder() / "checkpoint.weir");
+    Simulation continued(scene_of(saved));
+    continued.restore(saved);
+    while (!continued.finished()) continued.step();
+    EXPECT_GT(continued.time(), 0.1);
+}
+
+TEST("a drag moves the water its way, and the hand takes hold only where it is pressed") {
+    Play play("solver = \"pbf\"\n" + pool);
+    play.mouse(vtkCommand::MouseMoveEvent, {{0.5, 0.3, 0}});
+    play.run_for(0.05);
+    play.drag({{0.4, 0.25, 0}}, {{1.0, 0.25, 0}});
+    play.finish();
+    EXPECT_GT(integral(play.session.simulation(), "hand_impulse_x"), 1);
+    ASSERT_FALSE(play.session.simulation().solver().hand()->keys.empty());
+    EXPECT_GT(play.session.simulation().solver().hand()->keys.front().time, 0.04);
+    EXPECT_EQ(play.session.simulation().solver().hand()->keys.back().kind, HandKind::off);
+}
+
+TEST("keys: space pauses, a full stop makes one step, r begins again, the wheel sizes the brush, c colours, p takes a picture, F1 tells") {
+    live::WindowOptions options;
+    options.paused = true;
+    Play play("solver = \"mac_water\"\n" + pool, options);
+    play.until([](const auto& s) { return s.paused; });
+    EXPECT_EQ(play.window.shown().steps, 0);
+    play.key("period");
+    play.until([](const auto& s) { return s.steps == 1; });
+    play.key("period");
+    play.until([](const auto& s) { return s.steps == 2; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    play.window.refresh();
+    EXPECT_EQ(play.window.shown().steps, 2) << "it is paused";
+    const real before = play.window.radius();
+    play.mouse(vtkCommand::MouseWheelForwardEvent, {{0.5, 0.5, 0}});
+    EXPECT_NEAR(play.window.radius(), 1.15 * before, 1e-12);
+    play.mouse(vtkCommand::MouseWheelBackwardEvent, {{0.5, 0.5, 0}});
+    EXPECT_NEAR(play.window.radius(), before, 1e-12);
+    EXPECT_EQ(play.window.shown().field, "speed");
+    play.key("c");
+    play.until([](const auto& s) { return s.field == "pressure"; });
+    EXPECT_FALSE(play.window.shown().of_cells.empty());
+    play.key("F1");
+    play.key("p");
+    ASSERT_TRUE(play.window.pictured());
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName(play.window.pictured()->c_str());
+    reader->Update();
+    EXPECT_EQ(reader->GetOutput()->GetDimensions()[0], 480);
+    play.key("r");
+    play.until([](const auto& s) { return s.steps == 0; });
+    play.key("2");
+    EXPECT_EQ(play.window.tool(), HandKind::pull);
+    play.key("x");
+}
+
+TEST("the right button moves the camera and never the fluid") {
+    Play play("solver = \"pbf\"\n" + pool);
+    const auto at = play.window.pixel({{0.5, 0.5, 0}});
+    play.mouse(vtkCommand::RightButtonPressEvent, {{0.5, 0.5, 0}});
+    play.window.interactor()->SetEventInformation(at[0] + 40, at[1] + 20, 0, 0);
+    play.window.interactor()->InvokeEvent(vtkCommand::MouseMoveEvent);
+    play.window.interactor()->InvokeEvent(vtkCommand::RightButtonReleaseEvent);
+    const auto now = play.window.pixel({{0.5, 0.5, 0}});
+    EXPECT_NEAR(now[0] - at[0], 40, 1);
+    EXPECT_NEAR(now[1] - at[1], 20, 1);
+    play.finish();
+    EXPECT_TRUE(play.session.simulation().solver().hand()->keys.empty());
+}
+
+TEST("a number is turned within what the schema allows, and no further") {
+    Play play("solver = \"pbf\"\nscheme = { iterations = 2 }\n" + pool);
+    live::Knobs knobs(play.session.scene());
+    while (knobs.chosen().key != "scheme.iterations") knobs.choose(1);
+    EXPECT_EQ(knobs.turn(-1)->value, "1");
+    EXPECT_FALSE(knobs.turn(-1));
+    while (knobs.chosen().key != "scheme.relaxation") knobs.choose(1);
+    for (int i = 0; i < 30; ++i) knobs.turn(1);
+    EXPECT_EQ(knobs.chosen().value(), 2);
+    for (int i = 0; i < 100; ++i) knobs.turn(-1);
+    EXPECT_GT(knobs.chosen().value(), 0);
+}
+
+TEST("in 3D the hand acts in the plane of the camera's focus, and the session repeats") {
+    Play play(
+        "solver = \"pbf\"\ndim = 3\ngrid = { cells = [12, 8, 8], size = [1.5, 1, 1] }\ntime = { end = 1.0, max_dt = 0.01 }\n"
+        "effects.gravity.g = [0, -9.81, 0]\nfluid.density = 1000\n"
+        "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [1.5, 0.5, 1] } ]\n");
+    play.drag({{0.5, 0.4, 0.5}}, {{1.0, 0.5, 0.5}});
+    const auto file = play.finish();
+    EXPECT_GT(integral(play.session.simulation(), "hand_impulse_x"), 1);
+    play.expect_replay(file);
+}
+
+TEST("solvers without a hand have sessions too, and files beside their scene are found from where the session is kept") {
+    TemporaryFolder folder;
+    fs::create_directories(folder.path() / "scene");
+    fs::copy(std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/hill.asc", folder.path() / "scene" / "hill.asc");
+    const auto scene = written(folder.path() / "scene" / "scene.toml",
+                               "solver = \"heightfield\"\ndim = 2\ngrid = { cells = [16, 1], size = [1, 1] }\ntime = { end = 1.0 }\n"
+                               "terrain = { kind = \"asc\", file = \"hill.asc\", corner = [0, 0], nodata = 0 }\n"
+                               "initial.surface = \"0.5 + 0.1*x\"\neffects.gravity.g = [0, -9.81]\n");
+    live::Session session(live::endless(scene, {}), folder.path() / "out" / "kept");
+    EXPECT_FALSE(session.has_hand());
+    for (int s = 0; s < 5; ++s) session.step();
+    session.steer({"effects.gravity.g", "[0, -5]"});
+    for (int s = 0; s < 5; ++s) session.step();
+    Simulation replay(session.finish());
+    while (!replay.finished()) replay.step();
+    EXPECT_EQ(replay.steps(), session.simulation().steps());
+    EXPECT_TRUE(state_of(replay) == state_of(session.simulation()));
+}
+
+TEST("the window plays by its own clock and closes on q") {
+    Play play("solver = \"pbf\"\n" + pool);
+    struct Closer {
+        Play& play;
+        void look() {
+            if (play.window.shown().time > 0.1) play.key("q");
+        }
+    } closer{play};
+    play.window.interactor()->AddObserver(vtkCommand::TimerEvent, &closer, &Closer::look);
+    play.window.interact();
+    EXPECT_GT(play.window.shown().time, 0.1);
+    EXPECT_GT(play.window.costs().frames, 2);
+    play.expect_replay(play.finish());
+}
+
+TEST("without a display, and without a scene, it says so and exits with 2") {
+    TemporaryFolder folder;
+    const std::string display = std::getenv("DISPLAY");
+    Process nothing({"live"}, folder.path() / "log");
+    EXPECT_EQ(nothing.wait(), 2);
+    EXPECT_NE(nothing.said().find("needs a scene"), std::string::npos) << nothing.said();
+    unsetenv("DISPLAY");
+    Process blind({"live", written(folder.path() / "scene.toml", smoke)}, folder.path() / "log");
+    const int code = blind.wait();
+    setenv("DISPLAY", display.c_str(), 1);
+    EXPECT_EQ(code, 2);
+    EXPECT_NE(blind.said().find("no display to draw on: DISPLAY is not set"), std::string::npos) << blind.said();
+}
+
+TEST("--bench measures a scene for so long and tells what a frame spends; the report's scenes stand beside the cases") {
+    TemporaryFolder folder;
+    Process bench({"live", written(folder.path() / "scene.toml", smoke), "--bench", "1s", "--width", "320", "--height", "200"},
+                  folder.path() / "log");
+    ASSERT_EQ(bench.wait(), 0) << bench.said();
+    for (const char* part : {"frames/s", "step [ms]", "copy [ms]", "draw [ms]", "real time", "scene.toml"})
+        EXPECT_NE(bench.said().find(part), std::string::npos) << bench.said();
+    Process wrong({"live", "--bench", "soon"}, folder.path() / "log");
+    EXPECT_EQ(wrong.wait(), 2);
+    EXPECT_NE(wrong.said().find("--bench soon: how long, such as 10s"), std::string::npos) << wrong.said();
+}
+
+}  // namespace
