@@ -84,8 +84,18 @@ std::vector<real> scalar_field(const output::FrameData& frame, const std::string
     if (name == "speed" && velocity != frame.cells.end()) return magnitude(velocity->second);
     if (name == "vorticity" && velocity != frame.cells.end() && frame.grid.dim == 2) return vorticity(frame.grid, velocity->second);
     std::string known = velocity != frame.cells.end() ? "speed" : "";
+    if (const auto markers = frame.particles.find("markers"); markers != frame.particles.end() && frame.grid.dim == 2)
+        for (const auto& [field, values] : markers->second)
+            if (values.size() == 1) known += (known.empty() ? "" : ", ") + field;
     for (const auto& [field, values] : frame.cells) known += (known.empty() ? "" : ", ") + field;
     throw BadInput("this frame has no field \"" + name + "\"; known: " + known);
+}
+
+const std::vector<real>* marker_field(const output::FrameData& frame, const std::string& name) {
+    const auto markers = frame.particles.find("markers");
+    if (markers == frame.particles.end()) return nullptr;
+    const auto found = markers->second.find(name);
+    return found != markers->second.end() && found->second.size() == 1 ? &found->second[0] : nullptr;
 }
 
 std::vector<real> marker_speeds(const output::FrameData& frame) {

@@ -38,12 +38,15 @@ real robust_max(std::vector<real> values) {
 /// Markers spread over pixels with a smooth kernel of one cell's radius: where their sum passes a threshold is water.
 struct Splats {
     std::vector<real> weight, speed;
-    real fastest = 1;
+    real slowest = 0, fastest = 1;
+    const char* colours = nullptr;  // of a field that the markers carry; null: of their speed
     Splats(const View& view, const Plane& plane)
         : weight(static_cast<std::size_t>(plane.width) * static_cast<std::size_t>(plane.height)), speed(weight.size()) {
         const auto& x = view.frame.particles.at("markers").at("position");
-        const auto speeds = marker_speeds(view.frame);
-        fastest = view.range > 0 ? view.range : robust_max(speeds);
+        const auto* field = marker_field(view.frame, view.field);
+        const auto speeds = field ? *field : marker_speeds(view.frame);
+        fastest = view.range > 0 ? view.range : field ? *std::max_element(speeds.begin(), speeds.end()) : robust_max(speeds);
+        if (field) slowest = *std::min_element(speeds.begin(), speeds.end()), colours = view.field == "temperature" ? "inferno" : "viridis";
         const real radius = view.frame.grid.spacing[0] / plane.metre;  // pixels
         for (std::size_t m = 0; m < speeds.size(); ++m)
             add((x[0][m] - plane.x0) / plane.metre, (plane.y1 - x[1][m]) / plane.metre, radius, speeds[m], plane);
@@ -65,7 +68,8 @@ struct Splats {
     Colour colour(std::size_t i) const {
         const Colour air = hex(0xf3f5f7);
         if (weight[i] < 0.5) return air;
-        const real s = speed[i] / weight[i] / fastest;
+        const real s = (speed[i] / weight[i] - slowest) / std::max(fastest - slowest, 1e-300);
+        if (colours) return mix(air, colour_of(colours, s), std::clamp((weight[i] - 0.5) / 0.3, 0.0, 1.0));
         const Colour water = colour_of("water", 0.08 + 0.8 * s);
         return mix(hex(0xdff1fb), water, std::clamp((weight[i] - 0.5) / 0.9, 0.0, 1.0));  // a light rim: the surface
     }
@@ -174,7 +178,7 @@ Canvas draw_2d(const View& view) {
     Canvas canvas(plane.width, plane.height);
     if (view.field == "water" && view.frame.particles.count("markers") == 0) {
         draw_below_line(view, plane, canvas);
-    } else if (view.field == "water") {
+    } else if (view.field == "water" || marker_field(view.frame, view.field)) {
         const Splats splats(view, plane);
         for (int y = 0; y < plane.height; ++y)
             for (int x = 0; x < plane.width; ++x)

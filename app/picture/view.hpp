@@ -34,6 +34,8 @@ std::string best_field(const output::FrameData& frame);
 std::vector<real> scalar_field(const output::FrameData& frame, const std::string& name);
 /// Speed of each marker: its own velocity, or the grid's at its place.
 std::vector<real> marker_speeds(const output::FrameData& frame);
+/// A number that each marker carries, by the name of its field; null where there is none.
+const std::vector<real>* marker_field(const output::FrameData& frame, const std::string& name);
 
 /// Whether the frame holds columns of water; they are drawn by what follows, whatever the dimension.
 bool is_of_columns(const output::FrameData& frame);

@@ -64,12 +64,12 @@ void DeviceFluid<D>::pass_time(real dt) {
 template <int D>
 void DeviceFluid<D>::meet_solids() {
     if (solid_) run("meet_solids", {count(), state_params, wall_params, poses, a, near_solid, terms});
-    hold_places();
 }
 
 template <int D>
 void DeviceFluid<D>::leave_solids() {
     if (solid_) run("leave_solids", {count(), state_params, wall_params, poses, clamps, a, near_solid, terms});
+    hold_places();
 }
 
 template std::string text_of(const geometry::Solids<2>&);

@@ -31,6 +31,16 @@ long allocations_in_steps(Solver& solver) {
     return test::allocations - before;
 }
 
+/// Water with some ice, a warm wall and a heater.
+template <int D>
+std::string heat() {
+    const std::string gradient = D == 2 ? "[20, 10]" : "[20, 10, 0]", lo = D == 2 ? "[0, 0]" : "[0, 0, 0]",
+                      hi = D == 2 ? "[1, 1]" : "[1, 1, 1]";
+    return "substance = \"water\"\ninitial.temperature = { name = \"linear\", value = 265, gradient = " + gradient +
+           " }\nsides.x_min = { kind = \"wall\", temperature = 320 }\nheaters = [ { shape = \"box\", min = " + lo + ", max = " + hi +
+           ", power = 100 } ]\n";
+}
+
 template <int D>
 std::string ball() {
     return D == 2 ? "solids = [ { shape = \"sphere\", centre = [0.8, 0.2], radius = 0.15 } ]\n"
@@ -49,7 +59,9 @@ TEST_IN_2D_AND_3D("after the first, a step allocates nothing, whatever the schem
                   {"sph", "tension = true", smooth + "effects.surface_tension = { sigma = 1.0 }\neffects.viscosity = {}\n"},
                   {"pbf", "", ""},
                   {"pbf", "warm_start = 0.0, tolerance = 1e-3", ""},
-                  {"pbf", "", smooth + "effects.artificial_pressure = {}\n"}};
+                  {"pbf", "", smooth + "effects.artificial_pressure = {}\n"},
+                  {"sph", "", heat<D>()},
+                  {"pbf", "", heat<D>()}};
     for (const auto& scene : scenes) {
         const auto solver = make<D>(scene.solver, scene.scheme, scene.more);
         EXPECT_EQ(allocations_in_steps(*solver), 0) << scene.solver << " { " << scene.scheme << " } " << scene.more;
@@ -75,6 +87,8 @@ TEST_IN_2D_AND_3D("an effect brings the passes that it needs and no others") {
         return names;
     };
     EXPECT_EQ(passes("sph", ""), (std::vector<std::string>{"neighbours", "forces", "effect gravity", "integrate", "density"}));
+    EXPECT_EQ(passes("sph", heat<D>()),
+              (std::vector<std::string>{"neighbours", "forces", "effect gravity", "integrate", "density", "heat"}));
     EXPECT_EQ(passes("pbf", ""),
               (std::vector<std::string>{"predict", "neighbours", "lambda", "correct", "update", "effect gravity", "warm start"}));
 }
