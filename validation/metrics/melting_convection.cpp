@@ -84,7 +84,11 @@ real rolls(const RunRecord& run, const Reference&) {
 
 std::vector<Metric> melting_convection_metrics() {
     return {
-        {.name = "melting.share", .unit = "", .doc = "Liquid's share of the box at the end.", .measure = melted_share, .figure = melted_panel},
+        {.name = "melting.share",
+         .unit = "",
+         .doc = "Liquid's share of the box at the end.",
+         .measure = melted_share,
+         .figure = melted_panel},
         {.name = "melting.rolls",
          .unit = "",
          .doc = "Rolls in the melt at the end: extrema of the stream function above a twentieth of the strongest.",
