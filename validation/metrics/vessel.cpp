@@ -8,17 +8,17 @@ namespace weir::validation {
 namespace {
 
 /// Rows of the table for the run's mass, each with what the run had at the last moment at which its surroundings had that temperature.
-struct Rest {
+struct VesselRest {
     real T, p, vapour, u, pressure_in_table, vapour_in_table;
     bool dry;
     std::size_t moment;
 };
 
-std::vector<Rest> rests(const RunRecord& run, const Reference& ref) {
+std::vector<VesselRest> rests(const RunRecord& run, const Reference& ref) {
     const Curve pressure = run.series("pressure"), vapour = run.series("vapour_mass");
-    std::vector<Rest> list;
+    std::vector<VesselRest> list;
     for (std::size_t i = 0; i < ref.curve("pressure").size(); ++i) {
-        Rest rest{};
+        VesselRest rest{};
         rest.T = ref.curve("pressure").x[i], rest.pressure_in_table = ref.curve("pressure").y[i];
         rest.vapour_in_table = ref.curve("vapour").y[i], rest.u = ref.curve("energy").y[i], rest.dry = ref.curve("dry").y[i] > 0;
         const real ends = ref.curve("until").y[i];
@@ -27,7 +27,7 @@ std::vector<Rest> rests(const RunRecord& run, const Reference& ref) {
         rest.p = pressure.y[rest.moment], rest.vapour = vapour.y[rest.moment];
         list.push_back(rest);
     }
-    std::sort(list.begin(), list.end(), [](const Rest& a, const Rest& b) { return a.moment < b.moment; });
+    std::sort(list.begin(), list.end(), [](const VesselRest& a, const VesselRest& b) { return a.moment < b.moment; });
     return list;
 }
 
@@ -35,7 +35,7 @@ template <class F>
 Metric worst_of(const char* name, const char* doc, F&& error) {
     return {.name = name, .unit = "", .doc = doc, .measure = [error](const RunRecord& run, const Reference& ref) {
                 real worst = 0;
-                for (const Rest& rest : rests(run, ref))
+                for (const VesselRest& rest : rests(run, ref))
                     if (const real e = std::abs(error(rest)); !(e <= worst)) worst = e;
                 return worst;
             }};
@@ -59,7 +59,7 @@ real vessel_heat(const RunRecord& run, const Reference& ref) {
 real misjudged(const RunRecord& run, const Reference& ref) {
     const Curve liquid = run.series("liquid_mass");
     real count = 0;
-    for (const Rest& rest : rests(run, ref)) count += (liquid.y[rest.moment] == 0) != rest.dry;
+    for (const VesselRest& rest : rests(run, ref)) count += (liquid.y[rest.moment] == 0) != rest.dry;
     return count;
 }
 
@@ -90,8 +90,8 @@ Panel path_panel(const RunRecord& run, const Reference& ref) {
 std::vector<Metric> vessel_metrics() {
     std::vector<Metric> list = {
         worst_of("vessel.pressure_error", "Largest relative difference of the pressure at rest from the table's, of all temperatures.",
-                 [](const Rest& r) { return r.p / r.pressure_in_table - 1; }),
-        worst_of("vessel.vapour_error", "The same of the vapour's mass.", [](const Rest& r) { return r.vapour / r.vapour_in_table - 1; }),
+                 [](const VesselRest& r) { return r.p / r.pressure_in_table - 1; }),
+        worst_of("vessel.vapour_error", "The same of the vapour's mass.", [](const VesselRest& r) { return r.vapour / r.vapour_in_table - 1; }),
         {.name = "vessel.heat_error",
          .unit = "",
          .doc = "Largest relative difference of the heat between two rests from mass times the table's difference of energies.",
