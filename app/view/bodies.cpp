@@ -1,4 +1,5 @@
 // What the viewer's stage shows in space: clouds of a 3D grid's field, the scene's solids, the outline of the domain.
+#include "rigid/bodies.hpp"
 #include "app/view/solid_mesh.hpp"
 #include "app/view/stage.hpp"
 

@@ -196,7 +196,7 @@ TEST_IN_2D_AND_3D("a warm cell warms its neighbours and no cell leaves the range
         EXPECT_EQ(conduction.step(h, {cells, false, none}, fourier), 0);
         real lowest = infinity;
         for (const real value : h.values()) lowest = std::min(lowest, m.temperature(value));
-        EXPECT_GT(lowest, 300 - 1e-10) << fourier;  // Legendre's polynomials fall 8 K short in 3D
+        EXPECT_GT(lowest, 300 - 1e-10) << fourier;
         EXPECT_LT(m.temperature(h(Index<D>::constant(8))), 400) << fourier;
     }
 }
