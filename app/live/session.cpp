@@ -3,7 +3,6 @@
 #include "geometry/hand.hpp"
 #include "output/atomic_file.hpp"
 #include "scene/names.hpp"
-#include "scene/steer.hpp"
 #include "sim/registry.hpp"
 
 #include <fmt/format.h>
@@ -56,7 +55,7 @@ void Session::hand(HandKey key) {
         keys.insert(next, key);
 }
 
-std::string Session::text(const std::vector<scene::TimedChange>& more) const {
+std::string Session::text(const std::vector<Change>& more) const {
     const scene::Place given{1, 1};
     scene::Table root = scene_.root();
     if (const Hand* hand = simulation_->solver().hand()) {
@@ -81,7 +80,7 @@ std::string Session::text(const std::vector<scene::TimedChange>& more) const {
 }
 
 /// Some numbers of a solver may follow from time.end, such as the length of even steps: so it stays what it was, until it is changed.
-std::vector<scene::TimedChange> Session::ending() const {
+std::vector<Change> Session::ending() const {
     if (simulation_->finished()) return {};
     const real from = simulation_->horizon();
     return {{from, {"time.end", scene::number_text(from + (from - simulation_->time()))}}};

@@ -32,7 +32,7 @@ public:
     void reset();
 
     /// The scene that repeats the run; with `more` changes that wait.
-    std::string text(const std::vector<scene::TimedChange>& more = {}) const;
+    std::string text(const std::vector<Change>& more = {}) const;
     /// Where the run stands, as a checkpoint of that scene. The file's path.
     std::filesystem::path checkpoint() const;
     /// Goes on, with the hand off, to an end that no step before it would have been cut for, and writes session.toml. The file's path.
@@ -40,7 +40,7 @@ public:
 
 private:
     /// As a change in the scene; none where it has ended.
-    std::vector<scene::TimedChange> ending() const;
+    std::vector<Change> ending() const;
 
     scene::Scene scene_;
     std::filesystem::path folder_;

@@ -61,8 +61,8 @@ std::vector<TimedChange> changes_of(const Table& root) {
     return list;
 }
 
-double end_after(double end, const std::vector<TimedChange>& changes, std::size_t next) {
-    for (; next < changes.size() && changes[next].time < end; ++next)
+double end_after(double end, const std::vector<TimedChange>& changes) {
+    for (std::size_t next = 0; next < changes.size() && changes[next].time < end; ++next)
         if (changes[next].what.key == "time.end") end = std::stod(changes[next].what.value);
     return end;
 }

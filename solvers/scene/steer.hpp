@@ -14,8 +14,8 @@ struct TimedChange {
     Override what;
 };
 std::vector<TimedChange> changes_of(const Table& root);
-/// time.end as these changes leave it, from the one on that is still to come [s].
-double end_after(double end, const std::vector<TimedChange>& changes, std::size_t next = 0);
+/// time.end as these changes leave it [s].
+double end_after(double end, const std::vector<TimedChange>& changes);
 
 /// Why a key of this scene cannot change while its run goes on; empty where it can.
 std::string why_not_steerable(const Table& root, const SolverSchema& solver, std::string_view path);

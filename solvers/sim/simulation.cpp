@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "scene/given.hpp"
 #include "scene/names.hpp"
+#include "scene/steer.hpp"
 #include "sim/finite.hpp"
 #include "sim/foretold.hpp"
 #include "sim/registry.hpp"
@@ -43,6 +44,12 @@ long cells_of(const scene::Scene& scene) {
 std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind) {
     const ThreadsWorth worth(cells_of(scene));
     return kind.make(scene);
+}
+
+std::vector<Change> changes_in(const scene::Scene& scene) {
+    std::vector<Change> list;
+    for (auto& change : scene::changes_of(scene.root())) list.push_back({change.time, std::move(change.what)});
+    return list;
 }
 
 void refuse_ignored(const scene::Scene& scene, const scene::SolverKind& kind) {
@@ -86,7 +93,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       probes_(scene_, *solver_),
       every_(scene_.root().number_or("output.every", infinity)),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
-      changes_(scene::changes_of(scene_.root())) {
+      changes_(changes_in(scene_)) {
     read_times();
     check_output_fields(scene_, solver_->fields());
     refuse_ignored(scene_, kind_);
@@ -124,7 +131,12 @@ void Simulation::steer(const scene::Override& change) {
     read_times();
 }
 
-real Simulation::end_time() const { return scene::end_after(end_, changes_, static_cast<std::size_t>(changed_)); }
+real Simulation::end_time() const {
+    real end = end_;
+    for (auto at = static_cast<std::size_t>(changed_); at < changes_.size() && changes_[at].time < end; ++at)
+        if (changes_[at].what.key == "time.end") end = std::stod(changes_[at].what.value);
+    return end;
+}
 
 void Simulation::set(const scene::Override& change) { steer(change); }
 void Simulation::set(const std::string& key, real value) { steer({key, scene::number_text(value)}); }
@@ -137,7 +149,7 @@ void Simulation::set_at(real time, const scene::Override& change) {
         throw BadInput(fmt::format("{} cannot change at {} s: the run is at {} s", change.key, scene::number_text(time),
                                    scene::number_text(this->time())));
     scene_.steered(change, {kind_.schema});  // refuses what it would then
-    const auto later = [](real t, const scene::TimedChange& other) { return t < other.time; };
+    const auto later = [](real t, const Change& other) { return t < other.time; };
     changes_.insert(std::upper_bound(changes_.begin() + changed_, changes_.end(), time, later), {time, change});
 }
 

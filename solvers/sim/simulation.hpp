@@ -8,7 +8,6 @@
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
 #include "scene/solver_kind.hpp"
-#include "scene/steer.hpp"
 #include "sim/probes.hpp"
 
 #include <algorithm>
@@ -20,6 +19,12 @@
 #include <vector>
 
 namespace weir {
+
+/// A key that changes at a time of the run [s].
+struct Change {
+    real time = 0;
+    scene::Override what;
+};
 
 class Simulation {
 public:
@@ -52,7 +57,7 @@ public:
     /// A time that no step up to now would have been cut for, had it been known that something happens there.
     real horizon() const { return time() + 2.5 * std::max(longest_dt_, uncut_dt()); }
     /// Every change that the run is to meet, those that it has met included.
-    const std::vector<scene::TimedChange>& changes() const { return changes_; }
+    const std::vector<Change>& changes() const { return changes_; }
 
     bool finished() const { return reached(end_) || steady_; }
     /// The run ended because nothing changed any more (time.stop_when_steady).
@@ -107,7 +112,7 @@ private:
     std::vector<std::vector<real>> last_velocity_;  // where it is, that of the last step
     bool split_ = false, concerned_ = false;        // whether a step was taken in parts, or the solver had a concern
     std::vector<std::string> warnings_;
-    std::vector<scene::TimedChange> changes_;
+    std::vector<Change> changes_;
     std::int64_t changed_ = 0;  // how many of them the run has met
     real longest_dt_ = 0;       // that was wanted so far, before it was cut for a frame [s]
 };
