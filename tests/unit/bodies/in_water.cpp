@@ -34,6 +34,7 @@ real draft_of_disc(real s) {
 }  // namespace
 
 TEST("discs and boxes float as deep as Archimedes says, to a tenth of a cell, at three resolutions") {
+    const OneThread alone;
     for (const int cells : {20, 30, 40})
         for (const real s : {0.1, 0.5, 0.9}) {
             const real r = 0.15, y = 0.4 + r - r * draft_of_disc(s), h = 1.0 / cells;
@@ -52,6 +53,7 @@ TEST("discs and boxes float as deep as Archimedes says, to a tenth of a cell, at
 }
 
 TEST("a checkpoint of bodies that touch in the water continues bit for bit") {
+    const OneThread alone;
     const std::string text =
         tank(24,
              "{ shape = \"box\", min = [0.1, 0.41], max = [0.3, 0.55], density = 300.0, friction = 0.3 }, { shape = \"box\", min = "
@@ -102,6 +104,7 @@ bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], densi
 }
 
 TEST("a heavy body falls through the air as a stone, sinks, and lies still on the floor") {
+    const OneThread alone;
     const auto solver = solver_of(tank(30, "{ shape = \"box\", min = [0.4, 0.55], max = [0.6, 0.7], density = 3000.0 }"));
     const real dt = 0.002;
     for (int i = 0; i < 50; ++i) solver->step(dt);  // 0.1 s: 4.9 cm of the 15 to the water
