@@ -42,6 +42,7 @@ real coefficient(const std::string& text, real s) {
 }  // namespace
 
 TEST("the added mass of a disc in a round vessel is exact to 2% with 16 cells a radius, and converges at first order at least") {
+    const OneThread alone;
     for (const real s : {0.0, 0.5, 2.0}) {
         const real exact = exact_coefficient(2, 2);
         const real coarse = std::abs(coefficient(concentric(2, 8, 2, s), s) / exact - 1),
@@ -52,11 +53,13 @@ TEST("the added mass of a disc in a round vessel is exact to 2% with 16 cells a 
 }
 
 TEST("the added mass of a ball in a round vessel is exact to 4% with 8 cells a radius") {
+    const OneThread alone;
     // First order: twice the 2% of 16 cells.
     EXPECT_NEAR(coefficient(concentric(3, 8, 2, 0.0), 0.0) / exact_coefficient(3, 2), 1, 0.04);
 }
 
 TEST_IN_2D_AND_3D("a body as dense as the fluid stays where it is, however it lies in the cells") {
+    const OneThread alone;
     const std::string at = D == 2 ? "[0.513, 0.487]" : "[0.513, 0.487, 0.44]";
     const auto solver = solver_of(fmt::format(R"(solver = "mac"
 dim = {}

@@ -34,6 +34,7 @@ real draft_of_disc(real s) {
 }  // namespace
 
 TEST("discs and boxes float as deep as Archimedes says, to a tenth of a cell, at three resolutions") {
+    const OneThread alone;
     for (const int cells : {20, 30, 40})
         for (const real s : {0.1, 0.5, 0.9}) {
             const real r = 0.15, y = 0.4 + r - r * draft_of_disc(s), h = 1.0 / cells;
@@ -52,6 +53,7 @@ TEST("discs and boxes float as deep as Archimedes says, to a tenth of a cell, at
 }
 
 TEST("a checkpoint of bodies that touch in the water continues bit for bit") {
+    const OneThread alone;
     const std::string text =
         tank(24,
              "{ shape = \"box\", min = [0.1, 0.41], max = [0.3, 0.55], density = 300.0, friction = 0.3 }, { shape = \"box\", min = "
@@ -73,7 +75,36 @@ TEST("a checkpoint of bodies that touch in the water continues bit for bit") {
     EXPECT_EQ(p, q);
 }
 
+TEST("bodies in space that collide in the water continue from a checkpoint bit for bit, and with two threads as with one") {
+    const std::string text = R"(solver = "mac_water"
+dim = 3
+grid = { cells = [16, 12, 10], size = [0.8, 0.6, 0.5] }
+time = { end = 1.0 }
+fluid = { density = 1000.0 }
+liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.4, 0.4, 0.5] } ]
+effects = { gravity = { g = [0.0, -9.81, 0.0] } }
+bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], density = 300.0, friction = 0.3, spin = [1.0, 0.5, 0.2] },
+           { shape = "capsule", from = [0.45, 0.1, 0.2], to = [0.6, 0.15, 0.25], radius = 0.07, density = 700.0 } ]
+)";
+    const auto one = solver_of(text), two = solver_of(text);
+    for (int i = 0; i < 12; ++i) one->step(0.01);
+    Checkpoint checkpoint;
+    one->save(checkpoint);
+    two->restore(checkpoint);
+    for (int i = 0; i < 12; ++i) {
+        set_threads(1);
+        one->step(0.01);
+        set_threads(2);
+        two->step(0.01);
+    }
+    set_threads(0);
+    for (std::size_t body = 0; body < 2; ++body)
+        for (const char* field : {"position", "velocity", "rotation", "spin", "force", "torque"})
+            for (const std::size_t a : {0u, 1u, 2u}) EXPECT_EQ(shown(*one, field, a, body), shown(*two, field, a, body)) << field << body;
+}
+
 TEST("a heavy body falls through the air as a stone, sinks, and lies still on the floor") {
+    const OneThread alone;
     const auto solver = solver_of(tank(30, "{ shape = \"box\", min = [0.4, 0.55], max = [0.6, 0.7], density = 3000.0 }"));
     const real dt = 0.002;
     for (int i = 0; i < 50; ++i) solver->step(dt);  // 0.1 s: 4.9 cm of the 15 to the water

@@ -21,6 +21,12 @@ inline std::unique_ptr<Solver> solver_of(const std::string& text) {
     return scene.solver() == "mac" ? flow::kind().make(scene) : water::kind().make(scene);
 }
 
+/// Loops of problems too small to share are not shared while it lives, as a Simulation sees to.
+struct OneThread {
+    OneThread() { set_threads(1); }
+    ~OneThread() { set_threads(0); }
+};
+
 /// The component of a field of body number `body`.
 inline real shown(const Solver& solver, const char* field, std::size_t component, std::size_t body = 0) {
     const FieldSet set = solver.fields();
