@@ -27,7 +27,7 @@ Key sides_key() {
                                 .doc = "uniform; parabolic: the mean of 6 s (1 - s); kovasznay: the exact wake at Re = 1 / viscosity.",
                                 .fallback = std::string("uniform"),
                                 .choices = inflow_profiles()}}}};
-            side.variants.push_back(matter::wall_with_heat_flux());
+            side.variants.push_back(matter::wall_with_exchange());
             sides.keys.push_back(std::move(side));
         }
     return sides;

@@ -47,13 +47,19 @@ scene::Variant wall_with_heat_flux() {
             {{.name = "heat_flux",
               .type = Type::number,
               .doc = "Heat that passes into the fluid. Only where `substance` is named.",
-              .unit = "W/m^2"},
-             {.name = "exchange",
-              .type = Type::number,
-              .doc = "Heat that comes in for each kelvin by which the surroundings, heat.ambient, are warmer than the wall's inner face.",
-              .unit = "W/(m^2 K)",
-              .min = 0,
-              .min_open = true}}};
+              .unit = "W/m^2"}}};
+}
+
+scene::Variant wall_with_exchange() {
+    scene::Variant wall = wall_with_heat_flux();
+    wall.keys.push_back(
+        {.name = "exchange",
+         .type = Type::number,
+         .doc = "Heat that comes in for each kelvin by which the surroundings, heat.ambient, are warmer than the wall's inner face.",
+         .unit = "W/(m^2 K)",
+         .min = 0,
+         .min_open = true});
+    return wall;
 }
 
 thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance) {

@@ -13,6 +13,8 @@ scene::Key pressure_key();
 scene::Key heaters_key(const std::string& doc);
 /// What a side of kind "wall" says beside its temperature.
 scene::Variant wall_with_heat_flux();
+/// And of a solver that knows its surroundings, heat.ambient.
+scene::Variant wall_with_exchange();
 
 /// Enthalpy against temperature at the scene's heat.pressure, at which it is refused where the substance is not known there.
 thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance);

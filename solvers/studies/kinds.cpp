@@ -56,7 +56,8 @@ scene::SolverKind reconstruction_kind() {
     schema.doc = "Particles on a lattice that nothing moves, and the surface around them: to measure reconstructions.";
     schema.dims = {3};
     schema.keys = {output, ReconstructionStudy::jitter_key()};
-    schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial", "probes"};
+    schema.without = {
+        "time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial", "probes", "changes"};
     return {schema, [](const scene::Scene& scene) { return std::make_unique<ReconstructionStudy>(scene); }};
 }
 

@@ -72,7 +72,7 @@ scene::SolverKind kind() {
     for (const char* axis : {"x", "y", "z"})
         for (const char* end : {"_min", "_max"}) {
             Key side{.name = std::string(axis) + end, .type = Type::table};
-            side.variants = {matter::wall_with_heat_flux()};
+            side.variants = {matter::wall_with_exchange()};
             sides.keys.push_back(std::move(side));
         }
     schema.keys.push_back(std::move(sides));
