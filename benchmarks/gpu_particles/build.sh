@@ -22,7 +22,7 @@ cd "$root/solvers"
 {
     echo '#include "benchmarks/gpu_particles/load_opencl.hpp"'
     printf '#include "%s"\n' core/{checkpoint,hex_number,parallel}.cpp geometry/*.cpp backend/{choice,opencl}.cpp pbf/options.cpp \
-        particles/{cell_sort,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,kernels}.cpp \
+        particles/{cell_sort,device_heat,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,heat,kernels}.cpp \
         particles/{scheme,solver,walls}.cpp
 } >"$work/solvers.cpp"
 printf '#include "%s"\n' particles/device_fluid.cpp pbf/device_solver.cpp "$work/kernel_text.cpp" >"$work/step.cpp"
