@@ -73,6 +73,7 @@ struct SolverSchema {
     std::vector<Variant> effects{};
     std::vector<std::string> without{};  // common keys that it has no use for: "time.cfl", "emitters.smoke", "sides.*.temperature"
     bool columns = false;                // it has one cell along y, however many a scene that other solvers share names
+    bool whole_columns = false;          // its memory goes with columns and how they differ in height: a smaller copy keeps the height
     std::string why_without{};           // where it needs saying, why, and what has
 };
 

@@ -27,7 +27,8 @@ constexpr double particles_of_copy = 16384;  // of a copy made of particles, who
 constexpr int samples = 1 << 17;             // of cells: a part of a thousandth is known to a tenth of it
 constexpr double alike = 0.02;               // of the liquid: less than a tenth of what is claimed
 constexpr double corrected = 0.3;            // of the particles: so many more or fewer have about as many neighbours
-constexpr double most_bytes_a_cell = 8000;   // that any solver holds: SPH's neighbours at three spacings are half of it
+constexpr double widest_copy = 3.9;  // times as wide as they are: tall cells refuse those that are more than four times as long as thin
+constexpr double most_bytes_a_cell = 8000;  // that any solver holds: SPH's neighbours at three spacings are half of it
 
 double product(const std::vector<double>& list) { return std::accumulate(list.begin(), list.end(), 1.0, std::multiplies<>()); }
 
@@ -75,6 +76,12 @@ std::vector<double> copy_cells_of(const std::vector<double>& n, double target, C
     const double f = std::pow(target / product(n), 1.0 / static_cast<double>(n.size()));
     if (how == Copy::similar) {
         for (double& c : cells) c = std::min(c, std::max(fewest, std::round(c * f)));
+        return cells;
+    }
+    if (how == Copy::like_columns) {
+        const double fewer = std::pow(std::min(1.0, target / product(n)), 1.0 / static_cast<double>(n.size() - 1));
+        for (std::size_t a = 0; a < n.size(); ++a)
+            if (a != 1) cells[a] = std::min(n[a], std::max(std::ceil(n[a] / widest_copy), halving_like(n[a], n[a] * fewer)));
         return cells;
     }
     cells[0] = padded_like(n[0], n[0] * f);
@@ -218,6 +225,12 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
     const auto n = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size");
     if (product(n) <= cells) return scene;
     const auto copy = copy_cells_of(n, cells, how);
+    const auto schemas = scene::schemas_of(kinds);
+    if (how == Copy::like_columns) {  // the same box and the same liquid in it
+        auto overrides = scene.overrides();
+        overrides.push_back({"grid.cells", list_text(copy)});
+        return scene::parse(scene.source(), scene.file(), schemas, overrides);
+    }
     double coarser = 1;  // one factor for all axes: particles want cubes
     for (std::size_t a = 0; a < n.size(); ++a) coarser = std::max(coarser, n[a] / copy[a]);
     bool cubes = true;  // to the last bit: a pressure solver has simpler coefficients for these
@@ -230,7 +243,6 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
     auto overrides = scene.overrides();
     overrides.push_back({"grid.cells", list_text(copy)});
     overrides.push_back({"grid.size", list_text(box)});
-    const auto schemas = scene::schemas_of(kinds);
     const auto parsed = [&] { return scene::parse(scene.source(), scene.file(), schemas, overrides); };
     if (!scene.has("liquid") || scene.root().tables("liquid").empty()) return parsed();
     const double wet =
@@ -247,7 +259,10 @@ Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind
     Foretold f{.cells = product(cells), .particle_solver = consists_of_particles(scene, kinds)};
     const double wet = f.particle_solver ? wet_part(scene) : 0;
     const double enough = f.particle_solver && wet > 0 ? particles_of_copy / wet : copy_cells;
-    const Copy how = f.particle_solver ? Copy::similar : Copy::like_rows;
+    const double least = product(cells) / std::pow(widest_copy, static_cast<double>(cells.size() - 1));
+    const bool by_columns = kind_named(scene.solver(), kinds).schema.whole_columns && least <= 8 * copy_cells;
+    const Copy how = f.particle_solver ? Copy::similar : by_columns ? Copy::like_columns : Copy::like_rows;
+    const bool whole = how == Copy::like_columns;
     const Held fine = hold(small ? scene : small_copy(scene, kinds, enough, how), kinds);
     f.exact = product(fine.cells) == f.cells;
     f.particles = f.exact ? fine.particles : wet > 0 ? wet * f.cells : fine.particles / product(fine.cells) * f.cells;
@@ -256,6 +271,10 @@ Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind
     if (f.exact || f.particle_solver) {
         const double times = f.exact ? 1 : fine.particles > 0 ? f.particles / fine.particles : f.cells / product(fine.cells);
         f.bytes = times * fine.bytes;
+        return f;
+    }
+    if (whole) {  // columns as they are, but wider: a quarter of so many would be too flat
+        f.bytes = fine.bytes / product(fine.cells) * f.cells;
         return f;
     }
     const Held coarse = hold(small_copy(scene, kinds, copy_cells / 4, how), kinds);

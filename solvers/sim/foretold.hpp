@@ -34,8 +34,9 @@ inline constexpr double cells_of_copy = 131072;
 /// Throws BadInput where not even a copy can be built.
 Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells = cells_of_copy);
 
-/// How a copy is made smaller: of a scene of particles by one factor; of a grid so that rows of cells are padded alike and halve as often.
-enum class Copy { similar, like_rows };
+/// How a copy is made smaller: of a scene of particles by one factor; of a grid so that rows of cells are padded alike and halve as often;
+/// of one whose columns are held whole, by fewer columns of the same height.
+enum class Copy { similar, like_rows, like_columns };
 /// The scene with about so many cells, in a box that contains the scene's own, with liquid in about the same part of it. Where that many
 /// are no fewer than it has, the scene itself.
 scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double cells, Copy how);

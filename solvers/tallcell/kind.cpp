@@ -70,6 +70,7 @@ scene::SolverKind kind() {
     schema.name = "tallcell";
     schema.doc = "Liquid with a free surface on tall cells: regular cells near the surface, cells as tall as the water is deep below.";
     schema.dims = {2, 3};
+    schema.whole_columns = true;
     schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0, .max = 3.0}}},
                    scheme_keys(),
                    initial_keys(),
