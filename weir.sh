@@ -3,6 +3,7 @@
 #   build               everything, with tests and benchmarks
 #   run SCENE [...]     simulate a scene, or a case by its name
 #   view RESULT         the frames of a run in a window
+#   live SCENE          a scene in a window, with a hand in it
 #   picture RESULT      the frames of a run as a PNG
 #   movie RESULT        the frames of a run as a film
 #   validate [...]      the claims of the cases
@@ -106,11 +107,11 @@ case "${1:-}" in
         install_missing "${weir_needs[@]}" "${figures_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     movie)
         install_missing "${weir_needs[@]}" "${films_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
-    view) install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec "$here/build/release/weir" "$@" ;;
+    view | live) install_missing "${weir_needs[@]}" && build weir weir-view weir-live >&2 && exec "$here/build/release/weir" "$@" ;;
     python) build_python ;;
     docs) install_missing "${docs_need[@]}" && python3 "$here/docs/site/make.py" "$here/build/docs" ;;
     test) build_all && cd "$here/build/release" && run_tests "${@:2}" ;;
-    install) [ $# -eq 2 ] || { usage >&2; exit 2; }; install_missing "${weir_needs[@]}" && build weir weir-view >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
+    install) [ $# -eq 2 ] || { usage >&2; exit 2; }; install_missing "${weir_needs[@]}" && build weir weir-view weir-live >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
     help | --help | -h) usage ;;
     *) usage >&2; exit 2 ;;
 esac
