@@ -1,5 +1,5 @@
 // petsc_gamg, petsc_boomeramg, petsc_icc: PETSc's conjugate gradients, from a library that is loaded when one of them is named.
-#include "poisson/petsc/engine.hpp"
+#include "poisson/petsc_engine.hpp"
 
 #include "core/error.hpp"
 #include "poisson/factories.hpp"

@@ -1,6 +1,6 @@
 // libweir_petsc: PETSc's conjugate gradients (KSPCG) with its algebraic multigrid (GAMG), hypre's (BoomerAMG; Henson & Yang 2002) or
 // incomplete Cholesky. None of weir's own arithmetic is in the way: an independent referee. Balay et al., PETSc/TAO Users Manual, 3.18.
-#include "poisson/petsc/engine.hpp"
+#include "poisson/petsc_engine.hpp"
 
 #include <petscksp.h>
 
