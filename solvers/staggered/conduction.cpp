@@ -31,6 +31,12 @@ Boundary<D> without_values(Boundary<D> boundary) {
     return boundary;
 }
 
+template <int D>
+Index<D> rows_of(Index<D> cells) {
+    cells[0] = 1;
+    return cells;
+}
+
 /// max_over, a row at a time.
 template <int D, class F>
 real max_of_rows(const Index<D>& extent, F&& f) {
@@ -58,6 +64,7 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
       no_flux_(without_values(temperature)),
       change_{Grid<real, D>(cells), Grid<real, D>(cells)},
       T_{Padded<D>(cells), Padded<D>(cells)},
+      alike_(rows_of(cells)),
       arrivals_(static_cast<std::size_t>(most_in_a_pass * cells[D - 1])),
       work_(static_cast<std::size_t>(cells[D - 1]) + 1) {
     std::iota(work_.begin(), work_.end(), 0);
@@ -118,6 +125,7 @@ void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>
         });
     }
     weaken_exchanges();
+    find_rows_alike();
     most_conductance_ = max_of_rows(n, [&](const Index<D>& I) {
         std::array<const real*, D> g;
         std::array<std::ptrdiff_t, D> up;
@@ -129,6 +137,26 @@ void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>
             most = std::max(most, sum);
         }
         return most;
+    });
+}
+
+/// Away from fronts and solids all faces of a row's cells conduct alike: a stage then reads them as D numbers.
+template <int D>
+void Conduction<D>::find_rows_alike() {
+    Index<D> rows = T_[0].extent();
+    const int n = rows[0];
+    rows[0] = 1;
+    for_each_cell(rows, [&](const Index<D>& first) {
+        real apart = 0;
+        Vec<D> all;
+        for (int a = 0; a < D; ++a) {
+            const auto& faces = conductance_[static_cast<std::size_t>(a)];
+            const real *below = &faces(first), *above = below + faces.stride(a), g = all[a] = *below;
+#pragma omp simd reduction(max : apart)
+            for (int i = 0; i < n; ++i) apart = std::max({apart, std::abs(below[i] - g), std::abs(above[i] - g)});
+        }
+        if (apart > 0) all[0] = -1;
+        alike_(first) = all;
     });
 }
 
@@ -203,7 +231,7 @@ real Conduction<D>::longest_euler_step() const {
 
 template <int D>
 std::size_t Conduction<D>::bytes() const {
-    std::size_t count = arrivals_.size() * sizeof(real) + work_.size() * sizeof(std::int64_t);
+    std::size_t count = alike_.size() * sizeof(Vec<D>) + arrivals_.size() * sizeof(real) + work_.size() * sizeof(std::int64_t);
     for (const auto& grid : change_) count += grid.size() * sizeof(real);
     for (const auto& padded : T_) count += padded.bytes();
     for (const auto& g : conductance_) count += g.size() * sizeof(real);

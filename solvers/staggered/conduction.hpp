@@ -57,6 +57,7 @@ private:
     EndRule& rule(int axis, int end) { return boundary_.end[static_cast<std::size_t>(axis)][static_cast<std::size_t>(end)]; }
     void weaken_exchanges();
     void prepare(const Grid<real, D>& H, const Given& given);
+    void find_rows_alike();
     void set_conductances(const Grid<real, D>& H, const Grid<poisson::Cell, D>& cells);
     real stages(Grid<real, D>& H, const Given& given, real dt, int count);
     bool may_freeze(const Grid<real, D>& source) const;
@@ -77,7 +78,7 @@ private:
     void add_stage(const Stage& stage, int plane);
     void add_linear_stage(const Stage& stage, int plane);
     void flow(const Padded<D>& T, const Index<D>& first, int count, real* out) const;
-    void flow_of_liquid(const Padded<D>& T, const Index<D>& first, int count, real* out) const;
+    void flow_alike(const Vec<D>& conductance, const Padded<D>& T, const Index<D>& first, int count, real* out) const;
     void continue_row(Padded<D>& T, const Index<D>& first, bool values) const;
     void continue_plane(Padded<D>& T, int plane, bool values) const;
     void continue_around(Padded<D>& T) const;
@@ -96,6 +97,7 @@ private:
     static constexpr int most_in_a_pass = 8;  // stages
     std::array<Grid<real, D>, 2> change_;     // D_j by the parity of j
     std::array<Padded<D>, 2> T_;              // of H + D_j
+    Grid<Vec<D>, D> alike_;                   // what all faces of a row's cells conduct, by axis; [0] is -1 where they differ
     std::vector<real> arrivals_;              // through the sides, of each stage of a pass and each plane [W/m³, summed over cells]
     std::vector<std::int64_t> work_;          // the number of each plane
 };

@@ -105,12 +105,12 @@ void Conduction<D>::flow(const Padded<D>& T, const Index<D>& first, int count, r
     }
 }
 
-/// The same where all faces conduct alike.
+/// The same where all faces along an axis conduct alike.
 template <int D>
-void Conduction<D>::flow_of_liquid(const Padded<D>& T, const Index<D>& first, int count, real* out) const {
+void Conduction<D>::flow_alike(const Vec<D>& conductance, const Padded<D>& T, const Index<D>& first, int count, real* out) const {
     const real* t = T.at(first);
     for (int b = 0; b < D; ++b) {
-        const real g = melting_.k_liquid / (h_[b] * h_[b]);
+        const real g = conductance[b];
         const std::ptrdiff_t next = T.stride(b);
         if (b == 0) {
 #pragma omp simd
@@ -170,9 +170,13 @@ void Conduction<D>::add_stage(const Stage& stage, int plane) {
     const bool none_before = stage.number == 1, none_older = stage.number <= 2;
     Padded<D>& to = T_[now];
     for_each_row_of(stage.H.extent(), plane, [&](const Index<D>& row) {
+        const Vec<D>& alike = alike_(row);
         for_each_block(row, stage.H.extent()[0], [&](const Index<D>& first, int width) {
             alignas(64) real rate[row_block];
-            flow(T_[1 - now], first, width, rate);
+            if (alike[0] >= 0)
+                flow_alike(alike, T_[1 - now], first, width, rate);
+            else
+                flow(T_[1 - now], first, width, rate);
             real* H = &stage.H(first);
             const real* from = stage.from(first);
             if (!stage.given.source.empty()) {
@@ -218,16 +222,17 @@ void Conduction<D>::add_linear_stage(const Stage& stage, int plane) {
     const auto now = static_cast<std::size_t>(stage.number % 2);
     const Padded<D>& from = T_[1 - now];
     Padded<D>& to = T_[now];
+    const Vec<D> alike = alike_[0];
     for_each_row_of(stage.H.extent(), plane, [&](const Index<D>& row) {
         for_each_block(row, stage.H.extent()[0], [&](const Index<D>& first, int width) {
             real *start = &change_[0](first), *d = to.at(first);
             if (stage.number == 1) {
-                flow_of_liquid(from, first, width, start);
+                flow_alike(alike, from, first, width, start);
 #pragma omp simd
                 for (int i = 0; i < width; ++i) d[i] = push * start[i];
             } else {
                 alignas(64) real rate[row_block];
-                flow_of_liquid(from, first, width, rate);
+                flow_alike(alike, from, first, width, rate);
                 const real* before = from.at(first);
                 if (stage.number == 2) {  // D_0 is nothing, and there stand temperatures
 #pragma omp simd
@@ -297,17 +302,17 @@ real Conduction<D>::stages(Grid<real, D>& H, const Given& given, real dt, int co
     return rho_ * cell_volume_ * arrived;
 }
 
-#define WEIR_INSTANTIATE(D)                                                                           \
-    template real Conduction<D>::stages(Grid<real, D>&, const Given&, real, int);                     \
-    template int Conduction<D>::most_stages_at_once() const;                                          \
-    template void Conduction<D>::take_temperature(const Stage&, int);                                 \
-    template void Conduction<D>::add_stage(const Stage&, int);                                        \
-    template void Conduction<D>::add_linear_stage(const Stage&, int);                                 \
-    template void Conduction<D>::flow(const Padded<D>&, const Index<D>&, int, real*) const;           \
-    template void Conduction<D>::flow_of_liquid(const Padded<D>&, const Index<D>&, int, real*) const; \
-    template void Conduction<D>::continue_row(Padded<D>&, const Index<D>&, bool) const;               \
-    template void Conduction<D>::continue_plane(Padded<D>&, int, bool) const;                         \
-    template void Conduction<D>::continue_around(Padded<D>&) const;                                   \
+#define WEIR_INSTANTIATE(D)                                                                                      \
+    template real Conduction<D>::stages(Grid<real, D>&, const Given&, real, int);                                \
+    template int Conduction<D>::most_stages_at_once() const;                                                     \
+    template void Conduction<D>::take_temperature(const Stage&, int);                                            \
+    template void Conduction<D>::add_stage(const Stage&, int);                                                   \
+    template void Conduction<D>::add_linear_stage(const Stage&, int);                                            \
+    template void Conduction<D>::flow(const Padded<D>&, const Index<D>&, int, real*) const;                      \
+    template void Conduction<D>::flow_alike(const Vec<D>&, const Padded<D>&, const Index<D>&, int, real*) const; \
+    template void Conduction<D>::continue_row(Padded<D>&, const Index<D>&, bool) const;                          \
+    template void Conduction<D>::continue_plane(Padded<D>&, int, bool) const;                                    \
+    template void Conduction<D>::continue_around(Padded<D>&) const;                                              \
     template real Conduction<D>::through_sides(const Padded<D>&, int) const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
