@@ -7,9 +7,12 @@
 namespace weir::particles {
 
 template <int D>
-Compression compression_of(const Fluid<D>& fluid, real rest_density) {
+Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour) {
     const int n = fluid.count();
-    const auto excess = [&](int i) { return std::max<real>(0, fluid.density[static_cast<std::size_t>(i)] / rest_density - 1); };
+    const auto excess = [&](int i) {
+        const real rest = vapour ? rest_density * vapour->rest(i) : rest_density;
+        return std::max<real>(0, fluid.density[static_cast<std::size_t>(i)] / rest - 1);
+    };
     const auto [sum, worst] = block_sum_and_max(n, excess);
     return {n ? sum / n : 0, worst};
 }
@@ -32,6 +35,7 @@ std::vector<Integral> ParticleSolver<D>::integrals() const {
     list.push_back({"mean_neighbours", "1", neighbours.mean});
     list.push_back({"max_neighbours", "1", neighbours.most});
     if (const Hand* hand = this->hand()) geometry::sum_up(*hand, D, list);
+    if (heat_) heat_->place(state());
     sum_up(list);
     if (heat_) heat_->sum_up(state(), list);
     if (bodies_) {
@@ -72,8 +76,8 @@ void HostSolver<D>::restore_state(const Checkpoint& from) {
     speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // the device does not keep it
 }
 
-template Compression compression_of(const Fluid<2>&, real);
-template Compression compression_of(const Fluid<3>&, real);
+template Compression compression_of(const Fluid<2>&, real, const Vapour<2>*);
+template Compression compression_of(const Fluid<3>&, real, const Vapour<3>*);
 template class ParticleSolver<2>;
 template class ParticleSolver<3>;
 template class HostSolver<2>;

@@ -17,9 +17,9 @@ namespace weir::particles {
 struct Compression {
     real mean = 0, worst = 0;
 };
-/// Of the densities of the last step.
+/// Of the densities of the last step; vapour: what else particles are to have than the rest density.
 template <int D>
-Compression compression_of(const Fluid<D>& fluid, real rest_density);
+Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour = nullptr);
 
 template <int D>
 class ParticleSolver : public Solver {
@@ -58,6 +58,9 @@ protected:
 
     /// Conduction over dt [s], heaters and walls: where the scene names a substance, else nothing.
     virtual void conduct(real dt) = 0;
+
+    /// nullptr: nothing boils.
+    Vapour<D>* vapour() const { return heat_ ? heat_->vapour() : nullptr; }
 
     Passes passes_;
     std::shared_ptr<Heat<D>> heat_;  // where the scene names a substance

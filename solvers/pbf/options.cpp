@@ -3,6 +3,8 @@
 #include "particles/fastest_flow.hpp"
 #include "particles/flow.hpp"
 #include "particles/passes.hpp"
+#include "particles/vapour.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 
@@ -21,6 +23,22 @@ Options::Options(const scene::Scene& scene) {
         pressure_k = p->number("k");
         pressure_dq = p->number("dq");
     }
+    if (particles::vapour_is_named(scene)) check_vapour(scene);
+}
+
+/// Constraints need neighbours: a lattice of the vapour has its own within the support, with as much room beyond them as half a spacing.
+/// With less, one particle by itself would be too dense, and no place would satisfy it.
+void Options::check_vapour(const scene::Scene& scene) const {
+    constexpr real least_support = 1.5;  // over the vapour's spacing
+    const real least = scene.number("fluid.density") * std::pow(least_support / support, scene.dim());
+    const bool own = scene.text("heat.vapour.name") == "own";
+    if (own && scene.number("heat.vapour.density") >= least) return;
+    scene.refuse(
+        own ? "heat.vapour.density" : "heat.vapour",
+        own ? "particles of a vapour of " + scene::number_text(scene.number("heat.vapour.density")) + " kg/m^3 do not reach each other"
+            : "PBF's particles must reach each other in the vapour too: it needs a density that the scene says",
+        "heat.vapour.density from " + scene::number_text(std::ceil(least)) +
+            " kg/m^3 on, with scheme.support = " + scene::number_text(support));
 }
 
 template <int D>

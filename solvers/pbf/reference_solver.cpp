@@ -84,6 +84,7 @@ void ReferencePbfSolver<D>::predict(real dt) {
     }
     const auto timed = passes_.time("neighbours");
     reference_.find_neighbours(x_star_);
+    this->expand();
 }
 
 /// Starts from the multipliers of the step before: see PbfSolver.
@@ -138,9 +139,10 @@ void ReferencePbfSolver<D>::update(real dt, real slow) {
 template <int D>
 Compression ReferencePbfSolver<D>::compression() const {
     Compression c;
-    for (const double rho : density_) {
-        c.mean += std::max(0.0, rho - 1) / static_cast<real>(density_.size());
-        c.worst = std::max(c.worst, rho - 1);
+    for (std::size_t i = 0; i < density_.size(); ++i) {
+        const double excess = density_[i] / (reference_.rest.empty() ? 1 : reference_.rest[i]) - 1;
+        c.mean += std::max(0.0, excess) / static_cast<real>(density_.size());
+        c.worst = std::max(c.worst, excess);
     }
     return c;
 }

@@ -63,7 +63,7 @@ StepReport SphSolver<D>::step(real dt) {
     this->hold();
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = this->speed();
-    const Compression c = particles::compression_of(fluid_, rho_rest_);
+    const Compression c = particles::compression_of(fluid_, rho_rest_, this->vapour());
     this->end_step();
     return this->report(dt, speed, c);
 }
@@ -76,6 +76,7 @@ void SphSolver<D>::find_neighbours() {
     pairs_.fit(velocity_, 4);
     pairs_.fit(acceleration_, 4);
     solids_.mark(pairs_);
+    this->expand();
     rho_rest_ = rest_density_.at(fluid_.time);
     params_.wall_rho = static_cast<float>(std::min(rho_rest_, fluid_.rho0));
 }
@@ -92,7 +93,8 @@ SphPass SphSolver<D>::pass() {
             acceleration_.data(),
             pairs_.list().first(),
             pairs_.list().rows(),
-            options_.wall_forces()};
+            options_.wall_forces(),
+            this->rest()};
 }
 
 template <int D>
@@ -153,7 +155,7 @@ void SphSolver<D>::load(F&& more) {
 template <int D>
 void SphSolver<D>::find_pressures() {
     load([&](int k, int i) {
-        const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], rho_rest_);
+        const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], this->rest_of(i));
         if (!pairs_.is_image(k)) fluid_.carried[static_cast<std::size_t>(i)] = pressure;
         return pressure;
     });

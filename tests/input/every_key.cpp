@@ -251,13 +251,14 @@ std::map<std::string, Said> everything() {
     said["pbf"] = {
         liquid,
         all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
-            Lines{"time.cfl = 0.4", "fluid.density = 2",
+            Lines{"time.cfl = 0.4", "fluid.density = 2", wax + "heat.vapour = { name = \"own\", density = 600 }",
                   "scheme = { kernel = \"cubic\", support = 2, iterations = 3, cfm = 1, relaxation = 1, warm_start = 0, settle = 1 "
                   "}",
                   "scheme = { tolerance = 0.1, max_iterations = 9, backend = \"threads\" }",
                   "effects.artificial_pressure = { k = 1, dq = 0.1 }"}),
         all(probes("density"),
-            Lines{walls[1], at_the_wall, wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
+            Lines{walls[1], at_the_wall, wax + "heat.vapour = \"substance\"",
+                  wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
             refused_by_particles, no_heat),
         of_surfaces};
     said["sph"] = {
@@ -266,6 +267,8 @@ std::map<std::string, Said> everything() {
             Lines{"substance = \"water\"\nfluid = { density = 1000, viscosity = 0.01 }\neffects.viscosity = {}\ninitial.temperature = { "
                   "name = \"constant\", value = 280 "
                   "}\nsides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
+            Lines{wax + "scheme.density = \"summation\"\nheat.vapour = \"substance\"",
+                  wax + "scheme.density = \"summation\"\nheat.vapour = { name = \"own\", density = 600 }"},
             Lines{walls[1] + "\neffects.viscosity = {}\nfluid.viscosity = 0.01", "fluid.density = 2", "initial.surface = [0, 1]",
                   "scheme = { kernel = \"cubic\", support = 2, sound_speed = 10, state = \"tait\", gamma = 7, density = \"delta\" }",
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
