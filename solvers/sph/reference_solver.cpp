@@ -90,8 +90,10 @@ template <int D>
 void ReferenceSphSolver<D>::find_densities() {
     const auto timed = passes_.time("density");
     if (!options_.continuity) fluid_.density = reference_.densities(x_);
+    rise_ = fluid_.carried;
     std::transform(fluid_.density.begin(), fluid_.density.end(), fluid_.carried.begin(),
                    [&](real rho) { return options_.pressure(rho, rho_rest_); });
+    for (std::size_t i = 0; i < rise_.size(); ++i) rise_[i] = fluid_.carried[i] - rise_[i];
 }
 
 template <int D>
@@ -144,7 +146,8 @@ void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
     particles::meet_bodies(reference_, fluid_.domain, x_, bodies_->meetings());
     beside_bodies_.clear();
     for (auto& m : bodies_->meetings()) {
-        const Vec<D> beyond = meet_body(options_, reference_.p, fluid_, m.particle, dt, m);
+        const Vec<D> beyond = meet_body(options_, reference_.p, fluid_, m.particle,
+                                        bodies_->over_last(dt) * rise_[static_cast<std::size_t>(m.particle)], dt, m);
         for (int b = 0; b < D; ++b) a[static_cast<std::size_t>(m.particle)][static_cast<std::size_t>(b)] += beyond[b];
         beside_bodies_.push_back(m.particle);
     }
