@@ -94,9 +94,11 @@ template <int D>
 void ReferenceSphSolver<D>::find_densities() {
     const auto timed = passes_.time("density");
     if (!options_.continuity) fluid_.density = reference_.densities(x_);
+    rise_ = fluid_.carried;
     for (int i = 0; i < fluid_.count(); ++i) {
         const auto at = static_cast<std::size_t>(i);
         fluid_.carried[at] = options_.pressure(fluid_.density[at], this->rest_of(i));
+        rise_[at] = fluid_.carried[at] - rise_[at];
     }
 }
 
@@ -150,7 +152,8 @@ void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
     particles::meet_bodies(reference_, fluid_.domain, x_, bodies_->meetings());
     beside_bodies_.clear();
     for (auto& m : bodies_->meetings()) {
-        const Vec<D> beyond = meet_body(options_, reference_.p, fluid_, m.particle, dt, m);
+        const Vec<D> beyond = meet_body(options_, reference_.p, fluid_, m.particle,
+                                        bodies_->over_last(dt) * rise_[static_cast<std::size_t>(m.particle)], dt, m);
         for (int b = 0; b < D; ++b) a[static_cast<std::size_t>(m.particle)][static_cast<std::size_t>(b)] += beyond[b];
         beside_bodies_.push_back(m.particle);
     }

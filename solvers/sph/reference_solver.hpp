@@ -36,6 +36,7 @@ private:
     std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }
 
     std::vector<int> beside_bodies_;
+    std::vector<double> rise_;  // of the pressure in the last step
     Points x_;  // where the step began
 };
 

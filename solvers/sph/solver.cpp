@@ -154,9 +154,13 @@ void SphSolver<D>::load(F&& more) {
 
 template <int D>
 void SphSolver<D>::find_pressures() {
+    if (bodies_) rise_.resize(fluid_.id.size());
     load([&](int k, int i) {
         const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], this->rest_of(i));
-        if (!pairs_.is_image(k)) fluid_.carried[static_cast<std::size_t>(i)] = pressure;
+        if (pairs_.is_image(k)) return pressure;
+        real& carried = fluid_.carried[static_cast<std::size_t>(i)];
+        if (bodies_) rise_[static_cast<std::size_t>(i)] = pressure - carried;
+        carried = pressure;
         return pressure;
     });
 }
@@ -204,7 +208,7 @@ void SphSolver<D>::meet_bodies(real dt) {
         const int k = m.particle, i = beside_bodies_[static_cast<std::size_t>(at)] = pairs_.owner(k);
         m.particle = i;
         if (m.body < 0) return;
-        const Vec<D> beyond = meet_body(options_, exact_, fluid_, i, dt, m);
+        const Vec<D> beyond = meet_body(options_, exact_, fluid_, i, bodies_->over_last(dt) * rise_[static_cast<std::size_t>(i)], dt, m);
         for (int a = 0; a < D; ++a) acceleration_[static_cast<std::size_t>(4 * k + a)] += static_cast<float>(beyond[a]);
     });
 }
