@@ -79,6 +79,10 @@ public:
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
     Hand* hand() const final { return hand_.get(); }
+    std::vector<EditableField> editable() final;
+    void edited(const EditableField& field) final;
+    bool add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) final;
+    bool remove_particles(std::string_view set, std::span<const unsigned char> gone) final;
 
 protected:
     explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) { this->bodies_ = BodiesInLiquid<D>::make(fluid_); }
@@ -91,6 +95,7 @@ protected:
     }
     void save_state(Checkpoint& to) const final;
     void restore_state(const Checkpoint& from) final;
+    void refuse_outside(int first) const;
 
     Fluid<D> fluid_;
     Emitters<D> emitters_;
