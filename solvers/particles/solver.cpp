@@ -94,7 +94,7 @@ void HostSolver<D>::edited(const EditableField& field) {
         refuse_outside(0);
         std::fill(fluid_.carried.begin(), fluid_.carried.end(), 0.0);
     }
-    speed_ = fluid_.max_speed();
+    speed_ = speed();
 }
 
 template <int D>
@@ -107,7 +107,7 @@ bool HostSolver<D>::add_particles(std::string_view set, std::span<const Vec<3>> 
         fluid_.add(x, u);
     }
     refuse_outside(before);
-    speed_ = fluid_.max_speed();
+    speed_ = speed();
     return true;
 }
 
