@@ -152,8 +152,13 @@ void Heat<D>::sum_up(const Fluid<D>& fluid, std::vector<Integral>& list) const {
     const char* joule = D == 2 ? "J/m" : "J";
     const auto h = [&](int i) { return fluid.enthalpy[static_cast<std::size_t>(i)]; };
     const auto vapour = [&](int i) { return heat_vapour(h(i), shift(i), &states_); };
-    list.push_back({"heat", joule, fluid.mass * block_sum(fluid.count(), h)});
+    const real heat = fluid.mass * block_sum(fluid.count(), h);
+    list.push_back({"heat", joule, heat});
     list.push_back({"heat_added", joule, added_});
+    list.push_back({"heat_kept", joule, heat - added_});
+    const auto T = [&](int i) { return heat_temperature(h(i), shift(i), &states_); };
+    list.push_back({"warmest", "K", block_max(fluid.count(), T)});
+    list.push_back({"coldest", "K", -block_max(fluid.count(), [&](int i) { return -T(i); })});
     list.push_back({"liquid_volume", D == 2 ? "m^2" : "m^3",
                     fluid.mass / rho0_ * block_sum(fluid.count(), [&](int i) { return heat_melted(h(i), &states_) - vapour(i); })});
     if (vapour_) list.push_back({"vapour_mass", D == 2 ? "kg/m" : "kg", fluid.mass * block_sum(fluid.count(), vapour)});

@@ -63,15 +63,14 @@ public:
 
     /// What the scene lets boil; nullptr: nothing.
     Vapour<D>* vapour() const { return vapour_.get(); }
-    /// How deep the particles are and what density they are to have, where they may boil.
-    void place(const Fluid<D>& fluid) const {
-        if (vapour_) vapour_->find(fluid, states_);
-    }
+    /// How deep the particles are and what density they are to have; false: none boils.
+    bool place(const Fluid<D>& fluid) const { return vapour_ && vapour_->find(fluid, states_); }
     /// By how much more enthalpy particle i boils than at no depth, as place() found it.
     real shift(int i) const { return vapour_ ? vapour_->shift(i) : 0; }
     /// Of particle i with this enthalpy.
     real theta(int i, real h) const {
-        return vapour_ ? heat_theta_at(heat_temperature(h, vapour_->shift(i), &states_), &states_) : heat_theta(h, 0, &states_);
+        if (!vapour_ || h <= states_.liquid_end) return heat_theta(h, 0, &states_);  // the same below boiling, at any depth
+        return heat_theta_at(heat_temperature(h, vapour_->shift(i), &states_), &states_);
     }
 
     /// A heater at work in (time, time + dt]: what it gives in that [J].

@@ -37,7 +37,7 @@ template <int D>
 void ThreadedSolver<D>::expand() {
     if (!this->heat_ || !this->heat_->vapour()) return;
     const auto timed = this->passes_.time("vapour");
-    this->heat_->place(fluid_);
+    if (!this->heat_->place(fluid_)) return;
     pairs_.fit(rest_, 1);
     pairs_.each([&](int k) { rest_[static_cast<std::size_t>(k)] = static_cast<float>(this->heat_->vapour()->rest(pairs_.owner(k))); });
 }

@@ -37,7 +37,7 @@ protected:
     /// After the pairs are found: what density particles are to have, where the scene lets them boil.
     void expand();
     /// Of sorted particles, over the liquid's; null: nothing boils.
-    const float* rest() const { return this->heat_ && this->heat_->vapour() ? rest_.data() : nullptr; }
+    const float* rest() const { return this->vapour() && this->vapour()->boils() ? rest_.data() : nullptr; }
     /// Particles that are frozen do not move: forgets what was done to their velocities.
     void hold();
     /// Whether particle i of the state is frozen, where hold() has found any.

@@ -118,29 +118,32 @@ int Vapour<D>::columns() const {
 }
 
 template <int D>
-void Vapour<D>::find(const Fluid<D>& fluid, const HeatStates& states) {
+bool Vapour<D>::find(const Fluid<D>& fluid, const HeatStates& states) {
+    const auto h = [&](int i) { return fluid.enthalpy[static_cast<std::size_t>(i)]; };
+    boils_ = fluid.count() > 0 && block_max(fluid.count(), h) > states.liquid_end;
+    if (!boils_) return false;
     const auto n = static_cast<std::size_t>(fluid.count());
-    if (shift_.size() < n) shift_.resize(n + n / 8), rest_.resize(shift_.size());
+    if (shift_.size() < n) shift_.resize(n + n / 8), rest_.resize(shift_.size()), entry_.resize(shift_.size());
     above_.assign(static_cast<std::size_t>(columns() * (rows() + 1)), 0);
+    std::vector<real>& below = shift_;  // until the shift is known
     parallel_for(0, fluid.count(), [&](int i) {
+        const auto k = static_cast<std::size_t>(i);
         const Vec<3> x = place_of(fluid.position(i));
-        int& entry =
-            above_[static_cast<std::size_t>(vapour_column(&x[0], &params_) + vapour_cell(vapour_below(&x[0], &params_), rows()) + 1)];
-        __atomic_fetch_add(&entry, 1, __ATOMIC_RELAXED);
+        below[k] = vapour_below(&x[0], &params_);
+        entry_[k] = vapour_column(&x[0], &params_) + vapour_cell(below[k], rows());
+        __atomic_fetch_add(&above_[static_cast<std::size_t>(entry_[k] + 1)], 1, __ATOMIC_RELAXED);
     });
     parallel_for(0, columns(), [&](int column) {
         int* own = above_.data() + static_cast<std::size_t>(column) * static_cast<std::size_t>(rows() + 1);
         for (int row = 0; row < rows(); ++row) own[row + 1] += own[row];
     });
     parallel_for(0, fluid.count(), [&](int i) {
-        const Vec<3> x = place_of(fluid.position(i));
-        const real below = vapour_below(&x[0], &params_);
-        const int row = vapour_cell(below, rows());
-        const int* at = above_.data() + vapour_column(&x[0], &params_) + row;
         const auto k = static_cast<std::size_t>(i);
-        shift_[k] = vapour_shift(vapour_depth(below, row, at[0], at[1] - at[0], &params_), &params_);
-        rest_[k] = vapour_rest(fluid.enthalpy[k], shift_[k], &states, &params_);
+        const int* at = above_.data() + entry_[k];
+        shift_[k] = vapour_shift(vapour_depth(below[k], vapour_cell(below[k], rows()), at[0], at[1] - at[0], &params_), &params_);
+        rest_[k] = h(i) > states.liquid_end ? vapour_rest(h(i), shift_[k], &states, &params_) : 1;
     });
+    return true;
 }
 
 template class Vapour<2>;

@@ -33,18 +33,22 @@ public:
     /// states: of the substance at the scene's pressure.
     Vapour(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance, const HeatStates& states);
 
-    /// How deep every particle is, and what density it is to have.
-    void find(const Fluid<D>& fluid, const HeatStates& states);
+    /// How deep every particle is, and what density it is to have; false: all are liquid at any depth, and nothing needs to know.
+    bool find(const Fluid<D>& fluid, const HeatStates& states);
     /// Of particle i, as found: how much more enthalpy boiling takes than at no depth [J/kg]; its density over the liquid's.
-    real shift(int i) const { return shift_[static_cast<std::size_t>(i)]; }
-    real rest(int i) const { return rest_[static_cast<std::size_t>(i)]; }
+    real shift(int i) const { return !boils_ ? 0 : shift_[static_cast<std::size_t>(i)]; }
+    real rest(int i) const { return !boils_ ? 1 : rest_[static_cast<std::size_t>(i)]; }
+
+    bool boils() const { return boils_; }
 
     const VapourParams& params() const { return params_; }
     int columns() const;
     int rows() const { return params_.cells[params_.axis]; }
     /// That the vapour's density is not the physical one, where that is so.
     const std::string& concern() const { return concern_; }
-    std::size_t bytes() const { return (shift_.capacity() + rest_.capacity()) * sizeof(real) + above_.capacity() * sizeof(int); }
+    std::size_t bytes() const {
+        return (shift_.capacity() + rest_.capacity()) * sizeof(real) + (above_.capacity() + entry_.capacity()) * sizeof(int);
+    }
 
 private:
     void set_columns(const scene::Scene& scene, const Domain<D>& domain);
@@ -55,6 +59,8 @@ private:
     std::string concern_;
     std::vector<real> shift_, rest_;
     std::vector<int> above_;  // particles above each row of each column
+    std::vector<int> entry_;  // of each particle in it
+    bool boils_ = false;
 };
 
 }  // namespace weir::particles
