@@ -3,8 +3,8 @@
 //
 // A body may be lighter than the water that it moves, or weigh nothing. What it feels in a step depends on how it moves in that step: where
 // it closes on a particle by u along the gradient w of the kernel's part inside it, the particle gets k w (w.u) less or more, with a k that
-// the method knows: of SPH the pressure that follows in one step, of PBF the multiplier that follows in one iteration. The velocities of the
-// bodies solve
+// the method knows: of SPH the pressure that follows in one step, of PBF the multiplier that follows in one iteration. The velocities of
+// the bodies solve
 //
 //     (M + K) dV = P,    K = sum over particles of m k w w^T,  as a rigid velocity sees w,    P = -sum of m times what particles are given
 //
@@ -25,10 +25,10 @@ struct Meeting {
     int particle = -1;         // its number, whatever the caller counts
     std::ptrdiff_t body = -1;  // -1: none
     Vec<D> at{};               // where the particle is [m]
-    Vec<D> pull{};             // gradient of the kernel's part inside the body, what walls hide of it taken off; or a unit normal [1/m or 1]
-    real part = 0, open = 1;   // the kernel's part inside the body, and how much of it walls do not hide
-    Vec<D> given{};            // velocity that the body gives the particle [m/s]
-    real stiff = 0;            // and how much of the body's change along `pull` [m^2 or 1], across it
+    Vec<D> pull{};            // gradient of the kernel's part inside the body, what walls hide of it taken off; or a unit normal [1/m or 1]
+    real part = 0, open = 1;  // the kernel's part inside the body, and how much of it walls do not hide
+    Vec<D> given{};           // velocity that the body gives the particle [m/s]
+    real stiff = 0;           // and how much of the body's change along `pull` [m^2 or 1], across it
     real rub = 0;
 };
 
@@ -50,8 +50,8 @@ public:
     real over_last(real dt) const { return last_dt_ > 0 ? dt / last_dt_ : 0; }
     /// A step starts: remembers where bodies are, and what they may touch in a step.
     void begin(const Domain<D>& domain, real dt);
-    /// New velocities of bodies from all meetings, from their weight where `heavy`, and from what they touch. Meetings then say what particles
-    /// have been given in all.
+    /// New velocities of bodies from all meetings, from their weight where `heavy`, and from what they touch. Meetings then say what
+    /// particles have been given in all.
     void exchange(Domain<D>& domain, real dt, bool heavy);
     /// What of it came back by the body's own change.
     Vec<D> back(const Meeting<D>& m) const { return m.stiff * closing(m) * m.pull + m.rub * across(m); }

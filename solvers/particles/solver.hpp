@@ -32,6 +32,8 @@ public:
     void restore(const Checkpoint& from) final;
     const Passes& passes() const final { return passes_; }
     Passes& passes() final { return passes_; }
+    /// Bodies in the liquid; nullptr where the scene names none.
+    const BodiesInLiquid<D>* carried() const { return bodies_.get(); }
 
 protected:
     // A backend's part.

@@ -16,8 +16,7 @@ public:
 
 private:
     using Base = Sph<particles::ReferenceSolver<D, particles::ReferenceSph>>;
-    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_,
-        Base::bodies_;
+    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_, Base::bodies_;
     using Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
     using Points = std::vector<particles::Point>;
 
@@ -37,7 +36,7 @@ private:
 
     std::vector<int> beside_bodies_;
     std::vector<double> rise_;  // of the pressure in the last step
-    Points x_;  // where the step began
+    Points x_;                  // where the step began
 };
 
 }  // namespace weir::sph

@@ -29,7 +29,8 @@ SphSolver<D>::SphSolver(const scene::Scene& scene, Fluid<D>&& start)
 
 template <int D>
 SphSolver<D>::SphSolver(const Options& options, const scene::Scene& scene, Fluid<D>&& start)
-    : Base(options, scene, std::move(start)), params_(sph_params<SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
+    : Base(options, scene, std::move(start)),
+      params_(sph_params<SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
       exact_(sph_params<particles::plain::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)) {
     kernels_ = smoothing_params(params_, fluid_);
     if (scene.effect("surface_tension")) effects_.add("surface_tension", std::make_unique<SurfaceTension<D>>(params_, walls_, solids_));
@@ -58,7 +59,7 @@ StepReport SphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back();  // of what pushed
+    if (bodies_) give_back();                           // of what pushed
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     this->hold();
     this->conduct(dt);  // only where a substance is named

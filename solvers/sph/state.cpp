@@ -147,8 +147,10 @@ void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>
     for (const int i : near) bodies.push_out(fluid.domain, i, fluid.position(i) + dt * fluid.velocity(i), dt);
 }
 
-template Vec<2> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<2>&, int, real, real, particles::Meeting<2>&);
-template Vec<3> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<3>&, int, real, real, particles::Meeting<3>&);
+template Vec<2> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<2>&, int, real, real,
+                          particles::Meeting<2>&);
+template Vec<3> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<3>&, int, real, real,
+                          particles::Meeting<3>&);
 template void find_pushes(particles::BodiesInLiquid<2>&, const particles::Fluid<2>&, const std::vector<int>&, real);
 template void find_pushes(particles::BodiesInLiquid<3>&, const particles::Fluid<3>&, const std::vector<int>&, real);
 template particles::Fluid<2> first_fluid(const scene::Scene&);

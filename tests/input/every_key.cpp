@@ -250,7 +250,7 @@ std::map<std::string, Said> everything() {
                   fluids[0], fluids[1]})};
     said["pbf"] = {
         liquid,
-        all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
+        all(of_the_run, particles, solids, bodies, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
             Lines{"time.cfl = 0.4", "fluid.density = 2", wax + "heat.vapour = { name = \"own\", density = 600 }",
                   "scheme = { kernel = \"cubic\", support = 2, iterations = 3, cfm = 1, relaxation = 1, warm_start = 0, settle = 1 "
                   "}",
@@ -259,11 +259,11 @@ std::map<std::string, Said> everything() {
         all(probes("density"),
             Lines{walls[1], at_the_wall, wax + "heat.vapour = \"substance\"",
                   wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
-            refused_by_particles, no_heat),
+            refused_by_particles, no_heat, endless_bodies),
         of_surfaces};
     said["sph"] = {
         liquid,
-        all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall}, open_sides,
+        all(of_the_run, particles, solids, bodies, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall}, open_sides,
             Lines{"substance = \"water\"\nfluid = { density = 1000, viscosity = 0.01 }\neffects.viscosity = {}\ninitial.temperature = { "
                   "name = \"constant\", value = 280 "
                   "}\nsides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
@@ -274,7 +274,7 @@ std::map<std::string, Said> everything() {
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
                   "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
                   "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
-        all(probes("density"), refused_by_particles, no_heat), of_surfaces};
+        all(probes("density"), refused_by_particles, no_heat, endless_bodies), of_surfaces};
     const std::string of_input = std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/", asc = of_input + "hill.asc",
                       pgm = of_input + "hill.pgm";
     const std::string hill = "terrain = { kind = ";
