@@ -58,6 +58,7 @@ public:
 
 private:
     std::unique_ptr<poisson::Solver<D>> solver_;
+    real tolerance_ = 0;
     poisson::Operator<D> matrix_;
     Grid<real, D> rhs_;
 };
