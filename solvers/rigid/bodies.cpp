@@ -199,7 +199,7 @@ void Bodies<D>::refuse_overlaps(const scene::Scene& scene) const {
 template <int D>
 void Bodies<D>::join(geometry::Solids<D>& solids) {
     around_.prescribed = solids.count();
-    for (const Body<D>& body : list_) solids.add_free(body.shape, body.no_slip);
+    for (const Body<D>& body : list_) solids.add_free(body.shape, body.no_slip, {body.centre, body.radius});
     place(solids);
 }
 

@@ -288,11 +288,13 @@ void Contacts<D>::resolve(std::vector<Body<D>>& bodies, const Mobility& mobility
         Contact& c = list_[i];
         const real approach = relative(c, rows_[i * D], velocities);
         // What falls from less than a step's fall is at rest, not bouncing.
-        const bool bounces = c.restitution > 0 && approach * dt < -std::max(c.gap, 0.0) && approach < -2 * gravity * dt;
+        c.bounces = c.bounces || (c.restitution > 0 && approach * dt < -std::max(c.gap, 0.0) && approach < -2 * gravity * dt);
         const real over = -c.gap - slop * bodies[c.body].radius;
-        c.target = bounces ? -c.restitution * approach : c.gap > 0 ? -c.gap / dt : over > 0 ? push_apart * over / dt : 0;
+        c.target = c.bounces ? -c.restitution * approach : c.gap > 0 ? -c.gap / dt : over > 0 ? push_apart * over / dt : 0;
     }
     free_ = velocities;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (const real known = list_[i / D].impulse[i % D]; known != 0) push(i, known, velocities);
     real fastest = 0, slope = 0;
     for (const real v : velocities) fastest = std::max(fastest, std::abs(v));
     direction_.assign(rows_.size(), 0.0), gained_.assign(rows_.size(), 0.0);

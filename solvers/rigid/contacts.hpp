@@ -50,7 +50,7 @@ public:
     /// Marks the bodies of all pairs that were found as touched.
     void mark(std::vector<Body<D>>& bodies) const;
     /// Changes the velocities so that over a time dt no gap closes further than to nothing, with the restitution and friction of both
-    /// sides. Marks the bodies that are touched.
+    /// sides. Marks the bodies that are touched. Of the same contacts again, it begins with the impulses that were found.
     void resolve(std::vector<Body<D>>& bodies, const Mobility& mobility, std::vector<real>& velocities, real dt, real gravity);
 
 private:
@@ -60,7 +60,8 @@ private:
         Vec<D> at, normal;     // the normal points to `body`
         Vec<D> moves{};        // velocity of the other side where that is prescribed
         real gap = 0, friction = 0, restitution = 0;
-        real target = 0;                // least relative velocity along the normal
+        real target = 0;  // least relative velocity along the normal
+        bool bounces = false;
         std::array<real, D> impulse{};  // along the normal, then across it
     };
     /// One direction of one contact: which velocities it sees, and what an impulse along it does.
