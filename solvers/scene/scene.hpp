@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -73,6 +74,8 @@ public:
         for (int d = 0; d < D && d < static_cast<int>(list.size()); ++d) i[d] = static_cast<int>(list[static_cast<std::size_t>(d)]);
         return i;
     }
+    /// Where the file lies that a key names: its path from the folder of the scene.
+    std::filesystem::path file(std::string_view path) const;
     /// Keys in the order of the file, then defaults in schema order.
     std::vector<std::string> keys() const;
 
@@ -83,6 +86,7 @@ public:
     void forget_reading();
 
     void set(const std::string& key, Value value, Place place = {});
+    void stands_in(std::shared_ptr<const std::filesystem::path> folder) { folder_ = std::move(folder); }
     const Value* find(std::string_view path) const;
     Table* find_table(std::string_view path);  // nullptr where there is none
     void erase(std::string_view key);          // of this table itself
@@ -91,6 +95,7 @@ private:
     struct Entry;
     const Entry* entry(std::string_view path) const;
     std::vector<Entry> entries_;
+    std::shared_ptr<const std::filesystem::path> folder_;  // of the scene's file; null: none
 };
 
 struct Table::Entry {

@@ -1,6 +1,7 @@
 #include "sim/simulation.hpp"
 
 #include "core/parallel.hpp"
+#include "geometry/mesh/mesh.hpp"
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
@@ -58,6 +59,7 @@ void refuse_ignored(const scene::Scene& scene, const scene::SolverKind& kind) {
 
 /// Looked at before anything of it is built.
 scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
+    geometry::require_meshes(scene);
     sim::require_memory(scene, kinds);
     return scene;
 }
