@@ -237,7 +237,8 @@ const geometry::Solids<D>& ShownSolids<D>::at(real t, const std::function<real(c
     for (const Joint<D>& joint : bodies_.joints().all())
         if (thin_ > 0 && joint.kind == JointKind::mooring) {
             const auto end = bodies_.joints().ends(joint, bodies_.all());
-            solids_.add_free(geometry::capsule<D>(end[0], end[1], 0.5 * thin_), false);
+            solids_.add_free(geometry::capsule<D>(end[0], end[1], 0.5 * thin_), false,
+                             {0.5 * (end[0] + end[1]), 0.5 * (norm(end[1] - end[0]) + thin_)});
         }
     bodies_.join(solids_);
     solids_.set_time(t);
