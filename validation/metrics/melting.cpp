@@ -94,7 +94,7 @@ real balance_error(const RunRecord& run, const Reference&) {
 Curve first_row(const RunRecord& run) {
     const auto& T = run.field("temperature").data[0];
     const auto& grid = run.fields.grid;
-    Curve row{.label = "weir", .points = true};
+    Curve row{.label = "weir"};
     for (int i = 0; i < grid.cells[0]; ++i)
         row.x.push_back(grid.origin[0] + (i + 0.5) * grid.spacing[0]), row.y.push_back(T[static_cast<std::size_t>(i)]);
     return row;
@@ -120,10 +120,10 @@ real contact_temperature(const RunRecord& run, const Reference& ref) {
 
 Panel contact_panel(const RunRecord& run, const Reference& ref) {
     const auto temperature = ref.scalars.at("temperature");
-    Curve exact{.label = ref.source};
+    Curve exact{.label = fmt::format("exact, contact at {:.3f} K", ref.number("contact")), .points = true};
     const real length = run.fields.grid.spacing[0] * run.fields.grid.cells[0];
-    for (int i = 0; i <= 400; ++i) {
-        exact.x.push_back(length * i / 400);
+    for (int i = 0; i <= 40; ++i) {
+        exact.x.push_back(length * i / 40);
         exact.y.push_back(temperature({exact.x.back(), 0, 0}, run.time));
     }
     return {.title = "Two half spaces in contact", .x = {"x [m]"}, .y = {"T [K]"}, .curves = {exact, first_row(run)}};
