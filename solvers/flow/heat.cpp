@@ -124,10 +124,16 @@ std::vector<Integral> Heat<D>::integrals(const MacState<D>& s) const {
     const auto over = [&](const Grid<real, D>& q) {
         return s.u.cell_volume() * sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? q(I) : 0; });
     };
+    const auto& T = *s.find("temperature");
+    const auto most = [&](real sign) {
+        return sign * max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? sign * T(I) : -infinity; });
+    };
     const char* joule = D == 2 ? "J/m" : "J";
     return {{"heat", joule, s.rho * over(*s.find("enthalpy"))},
             {"heat_added", joule, added_},
-            {"liquid_volume", D == 2 ? "m^2" : "m^3", over(liquid_)}};
+            {"liquid_volume", D == 2 ? "m^2" : "m^3", over(liquid_)},
+            {"coldest", "K", most(-1)},
+            {"hottest", "K", most(1)}};
 }
 
 template <int D>

@@ -15,36 +15,21 @@ using scene::Type;
 
 template <int D>
 std::vector<Key> Heat<D>::keys() {
-    return {
-        matter::substance_key_of_heat(
-            "Naming it lets heat, melting and freezing be simulated, with `fluid.density` for solid and liquid alike."),
-        {.name = "heat",
-         .type = Type::table,
-         .doc = "How a substance takes up heat. Only where `substance` is named.",
-         .keys = {matter::pressure_key(),
-                  matter::ambient_key(),
-                  {.name = "conduction",
-                   .type = Type::choice,
-                   .doc =
-                       "In time, first order. stages: as many explicit stages as a step of its length needs; explicit: one, which limits "
-                       "the step to about rho c h^2/(6 dim k).",
-                   .fallback = std::string("stages"),
-                   .choices = {"stages", "explicit"}},
-                  {.name = "lift",
-                   .type = Type::number,
-                   .doc = "Gravity that lifts the melt along y by as much lighter as it is than at its melting point, by the substance's "
-                          "expansion.",
-                   .unit = "m/s^2",
-                   .fallback = 0.0},
-                  {.name = "drag",
-                   .type = Type::number,
-                   .doc = "C of Carman and Kozeny's drag C (1 - f)^2/(f^3 + 0.001) in cells that are part solid.",
-                   .unit = "kg/(m^3 s)",
-                   .fallback = 1.6e6,
-                   .min = 0,
-                   .min_open = true}}},
-        matter::heaters_key(
-            "Regions that give off heat, evenly over the cells whose centres they cover. Only where `substance` is named.")};
+    return matter::keys_on_a_grid(
+        "heat, melting and freezing be simulated",
+        {{.name = "conduction",
+          .type = Type::choice,
+          .doc = "In time, first order. stages: as many explicit stages as a step of its length needs; explicit: one, which limits "
+                 "the step to about rho c h^2/(6 dim k).",
+          .fallback = std::string("stages"),
+          .choices = {"stages", "explicit"}},
+         {.name = "lift",
+          .type = Type::number,
+          .doc = "Gravity that lifts the melt along y by as much lighter as it is than at its melting point, by the substance's "
+                 "expansion.",
+          .unit = "m/s^2",
+          .fallback = 0.0}},
+        "the cells whose centres they cover.");
 }
 
 template <int D>

@@ -1,6 +1,7 @@
 #include "matter/heat.hpp"
 
 #include "core/error.hpp"
+#include "matter/ambient.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
 
@@ -39,6 +40,21 @@ Key heaters_key(const std::string& doc) {
                      {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
             .selector = "shape",
             .variants_from = &scene::shapes};
+}
+
+std::vector<Key> keys_on_a_grid(const std::string& lets, std::vector<Key> own, const std::string& over) {
+    std::vector<Key> keys = {pressure_key(), ambient_key()};
+    keys.insert(keys.end(), own.begin(), own.end());
+    keys.push_back({.name = "drag",
+                    .type = Type::number,
+                    .doc = "C of Carman and Kozeny's drag C (1 - f)^2/(f^3 + 0.001) in cells that are part solid.",
+                    .unit = "kg/(m^3 s)",
+                    .fallback = 1.6e6,
+                    .min = 0,
+                    .min_open = true});
+    return {substance_key_of_heat("Naming it lets " + lets + ", with `fluid.density` for solid and liquid alike."),
+            {.name = "heat", .type = Type::table, .doc = "How a substance takes up heat. Only where `substance` is named.", .keys = keys},
+            heaters_key("Regions that give off heat, evenly over " + over + " Only where `substance` is named.")};
 }
 
 scene::Variant wall_with_heat_flux() {

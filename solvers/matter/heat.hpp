@@ -3,6 +3,9 @@
 #include "scene/scene.hpp"
 #include "thermo/substance.hpp"
 
+#include <string>
+#include <vector>
+
 namespace weir::matter {
 
 /// The key "substance" of a solver that carries heat where it is named, and only there; `doc` is added to its own.
@@ -11,6 +14,9 @@ scene::Key substance_key_of_heat(const std::string& doc);
 scene::Key pressure_key();
 /// "heaters": regions with a power; `doc` says over what it is spread.
 scene::Key heaters_key(const std::string& doc);
+/// What a solver on a grid says of heat: "substance", "heat" with the pressure, the surroundings, the drag of ice and keys of its `own`,
+/// and "heaters". `lets`: what naming a substance lets it do; `over`: what a heater's power is spread over.
+std::vector<scene::Key> keys_on_a_grid(const std::string& lets, std::vector<scene::Key> own, const std::string& over);
 /// What a side of kind "wall" says beside its temperature.
 scene::Variant wall_with_heat_flux();
 /// And of a solver that knows its surroundings, heat.ambient.

@@ -1,6 +1,7 @@
 #include "studies/closed_vessel.hpp"
 
 #include "core/error.hpp"
+#include "matter/closed_gas.hpp"
 #include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
@@ -129,17 +130,7 @@ void ClosedVessel::find_temperature() {
     if (!(gas_volume(T_) > 0)) throw NumericalFailure("pressure", "the liquid has filled the vessel");
 }
 
-/// The pressure at which the vapour has its density: p ← p ρ/ρ(T, p), a contraction since the density is nearly in proportion to p.
-real ClosedVessel::pressure_of_gas() const {
-    const real density = vapour_ / gas_volume(T_), most = 0.999 * water_->critical()->p;
-    if (density == 0) return 0;
-    real p = std::min(density * gas_constant * T_, most);  // of the ideal gas
-    for (int i = 0; i < 100; ++i) {
-        const real next = std::min(p * density / water_->density(State::vapour, {T_, p}), most);
-        if (std::abs(next - std::exchange(p, next)) < 1e-12 * next) break;
-    }
-    return p;
-}
+real ClosedVessel::pressure_of_gas() const { return matter::pressure_of_vapour(*water_, vapour_ / gas_volume(T_), T_); }
 
 /// Rate at which the gas comes to the saturation pressure at constant temperature [1/s].
 real ClosedVessel::fastest() const {

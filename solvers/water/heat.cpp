@@ -18,42 +18,29 @@ using scene::Type;
 
 template <int D>
 std::vector<Key> LiquidHeat<D>::keys() {
-    return {
-        matter::substance_key_of_heat(
-            "Naming it lets the liquid carry heat, freeze and evaporate, with `fluid.density` for solid and liquid alike."),
-        {.name = "heat",
-         .type = Type::table,
-         .doc = "How a substance takes up heat. Only where `substance` is named.",
-         .keys = {matter::pressure_key(),
-                  matter::ambient_key(),
-                  {.name = "drag",
-                   .type = Type::number,
-                   .doc = "C of Carman and Kozeny's drag C (1 - f)^2/(f^3 + 0.001) in cells that are part solid.",
-                   .unit = "kg/(m^3 s)",
-                   .fallback = 1.6e6,
-                   .min = 0,
-                   .min_open = true},
-                  {.name = "surface_exchange",
-                   .type = Type::number,
-                   .doc = "Heat that comes in through the free surface for each kelvin by which heat.ambient is warmer.",
-                   .unit = "W/(m^2 K)",
-                   .fallback = 0.0,
-                   .min = 0},
-                  {.name = "evaporation",
-                   .type = Type::number,
-                   .doc = "Liquid that evaporates from the surface for each pascal by which its saturation pressure is above "
-                          "vapour_pressure. It goes with its heat and the heat of evaporation, and is counted.",
-                   .unit = "kg/(m^2 s Pa)",
-                   .fallback = 0.0,
-                   .min = 0},
-                  {.name = "vapour_pressure",
-                   .type = Type::number,
-                   .doc = "Of the substance's vapour above the liquid.",
-                   .unit = "Pa",
-                   .fallback = 0.0,
-                   .min = 0}}},
-        matter::heaters_key("Regions that give off heat, evenly over the liquid's cells whose centres they cover; none where there is no "
-                            "liquid. Only where `substance` is named.")};
+    return matter::keys_on_a_grid(
+        "the liquid carry heat, freeze and evaporate",
+        {{.name = "surface_exchange",
+          .type = Type::number,
+          .doc = "Heat that comes in through the free surface for each kelvin by which heat.ambient is warmer.",
+          .unit = "W/(m^2 K)",
+          .fallback = 0.0,
+          .min = 0},
+         {.name = "evaporation",
+          .type = Type::number,
+          .doc = "Liquid that evaporates from the surface for each pascal by which its saturation pressure is above "
+                 "vapour_pressure. It goes with its heat and the heat of evaporation, and is counted.",
+          .unit = "kg/(m^2 s Pa)",
+          .fallback = 0.0,
+          .min = 0},
+         {.name = "vapour_pressure",
+          .type = Type::number,
+          .doc = "Of the substance's vapour above the liquid.",
+          .unit = "Pa",
+          .fallback = 0.0,
+          .min = 0},
+         matter::ClosedGas::key()},
+        "the liquid's cells whose centres they cover; none where there is no liquid.");
 }
 
 namespace {
@@ -77,7 +64,7 @@ void refuse_open(const scene::Scene& scene, const MacState<D>& s) {
 }  // namespace
 
 template <int D>
-LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame)
+LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame, real volume)
     : substance_(matter::substance_of(scene)),
       melting_(matter::melting_of(scene, "mac_water")),
       frame_(frame),
@@ -111,6 +98,11 @@ LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame
     find_surface(s);
     mean_ = mean(s);
     note(s);
+    if (!matter::ClosedGas::named(scene)) return;
+    if (surface_cells_.empty()) scene.refuse("heat.enclosed_vapour", "the liquid has no surface");
+    const auto open =
+        static_cast<real>(std::count_if(s.cells.values().begin(), s.cells.values().end(), [](Cell cell) { return cell != Cell::solid; }));
+    gas_.emplace(scene, substance_, melting_, open * frame_.cell_volume(), volume, surface_temperature());
 }
 
 template <int D>
@@ -145,7 +137,11 @@ void LiquidHeat<D>::note(const MacState<D>& s) {
         temperature_(I) = melting_.temperature(enthalpy_(I));
         liquid_(I) = s.cells(I) == Cell::fluid ? melting_.liquid(enthalpy_(I)) : 1;
     });
-    const real hottest = max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? enthalpy_(I) : -infinity; });
+    const auto most = [&](real sign, const Grid<real, D>& q) {
+        return sign * max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? sign * q(I) : -infinity; });
+    };
+    coldest_ = most(-1, temperature_), hottest_ = most(1, temperature_);
+    const real hottest = most(1, enthalpy_);
     if (!(hottest <= melting_.boils_above))
         throw NumericalFailure("temperature", std::isnan(hottest) ? "the enthalpy is not finite"
                                                                   : "the liquid begins to boil, and solver \"mac_water\" has no bubbles");
@@ -182,16 +178,26 @@ void LiquidHeat<D>::carry(const MacState<D>& s, const LevelSet<D>& surface, real
     enthalpy_.swap(moved_);  // moved_: as it was
 }
 
-/// Cells whose enthalpy has changed bear what the mean lacks, each in proportion; all alike where none has.
+/// Cells bear what the mean lacks, each as much as it has changed but none so much that it leaves the range that there was; where that is
+/// not enough, each in proportion to what it is from the end of that range.
 template <int D>
 void LiquidHeat<D>::keep_mean(const MacState<D>& s) {
     if (cells_ == 0) return;
-    const real lacks = (mean_ - mean(s)) * static_cast<real>(cells_);
-    const auto moved = [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? std::abs(enthalpy_(I) - moved_(I)) : 0; };
-    const real change = sum_over(s.extent(), moved);
-    const bool bears = change > std::abs(lacks);
-    for_each_cell(s.extent(), [&](const Index<D>& I) {
-        if (s.cells(I) == Cell::fluid) enthalpy_(I) += lacks * (bears ? moved(I) / change : 1 / static_cast<real>(cells_));
+    const real lacks = (mean_ - mean(s)) * static_cast<real>(cells_), sign = lacks < 0 ? -1 : 1;
+    const auto is_liquid = [&](const Index<D>& I) { return s.cells(I) == Cell::fluid; };
+    const real end =
+        std::max(sign * mean_, max_over(s.extent(), [&](const Index<D>& I) { return is_liquid(I) ? sign * moved_(I) : -infinity; }));
+    const auto room = [&](const Index<D>& I) { return is_liquid(I) ? std::max(end - sign * enthalpy_(I), real(0)) : 0; };
+    const auto bears = [&](const Index<D>& I) { return is_liquid(I) ? std::min(std::abs(enthalpy_(I) - moved_(I)), room(I)) : 0; };
+    const auto give = [&](auto&& part) {
+        const real all = sum_over(s.extent(), part);
+        if (!(all >= std::abs(lacks)) || all == 0) return false;
+        for_each_cell(s.extent(), [&](const Index<D>& I) { enthalpy_(I) += lacks * (part(I) / all); });
+        return true;
+    };
+    if (give(bears) || give(room)) return;
+    for_each_cell(s.extent(), [&](const Index<D>& I) {  // all as warm as the end, but for rounding
+        if (is_liquid(I)) enthalpy_(I) += lacks / static_cast<real>(cells_);
     });
 }
 
@@ -202,23 +208,29 @@ real LiquidHeat<D>::surface_temperature() const {
     return sum / static_cast<real>(surface_cells_.size());
 }
 
+/// Heat capacity of the cells at the surface [J/K].
+template <int D>
+real LiquidHeat<D>::surface_capacity(const MacState<D>& s) const {
+    return s.rho * std::min(melting_.c_solid, melting_.c_liquid) * static_cast<real>(surface_cells_.size()) * frame_.cell_volume();
+}
+
 template <int D>
 real LiquidHeat<D>::evaporates(const MacState<D>& s, real area, real dt) {
     if (evaporation_ == 0 || surface_cells_.empty()) return 0;
-    const real T = surface_temperature();
-    const auto from = T < substance_->triple()->T ? thermo::Boundary::sublimation : thermo::Boundary::saturation;
-    return dt * area * evaporation_ * (substance_->pressure(from, T) - vapour_pressure_) / s.rho;
+    const real T = surface_temperature(), K = area * evaporation_;
+    if (gas_) return gas_->evaporates(K, T, surface_capacity(s), dt) / s.rho;
+    return dt * K * (substance_->pressure(matter::line_to_vapour(*substance_, T), T) - vapour_pressure_) / s.rho;
 }
 
 template <int D>
 void LiquidHeat<D>::leaves(const MacState<D>& s, real lost, real volume) {
     if (surface_cells_.empty() || !(volume > lost)) return;
-    const real T = surface_temperature(), h = melting_.enthalpy(T);
-    const auto from = T < substance_->triple()->T ? thermo::Boundary::sublimation : thermo::Boundary::saturation;
-    const real latent = substance_->latent_heat(from, T), m = s.rho * lost;
+    const real T = surface_temperature(), h = melting_.enthalpy(T), m = s.rho * lost;
+    const real taken =
+        gas_ ? gas_->take(m, melting_, T, volume - lost) : m * (h + substance_->latent_heat(matter::line_to_vapour(*substance_, T), T));
     evaporated_ += lost;
-    vapour_heat_ += m * (h + latent);
-    pending_ += m * latent;
+    vapour_heat_ += taken;
+    pending_ += taken - m * h;
     mean_ = (mean_ * volume - lost * h) / (volume - lost);
 }
 
@@ -261,15 +273,16 @@ template <int D>
 real LiquidHeat<D>::max_dt(const MacState<D>& s, real area) const {
     real limit = supply_.to_next_change(s.time);
     if (surface_cells_.empty()) return limit;
-    const real capacity = s.rho * std::min(melting_.c_solid, melting_.c_liquid) * static_cast<real>(surface_cells_.size()) *
-                          frame_.cell_volume();  // of the cells at the surface [J/K]
+    const real capacity = surface_capacity(s);
     if (exchange_ > 0) limit = std::min(limit, 0.5 * capacity / (exchange_ * area));
     if (evaporation_ > 0) {  // a tenth of a cell, and a kelvin of those at the surface
-        const real T = surface_temperature();
-        const auto from = T < substance_->triple()->T ? thermo::Boundary::sublimation : thermo::Boundary::saturation;
-        const real rate = evaporation_ * area * std::abs(substance_->pressure(from, T) - vapour_pressure_);  // [kg/s]
-        if (rate > 0)
-            limit = std::min({limit, 0.1 * frame_.h_min() * s.rho * area / rate, capacity / (rate * substance_->latent_heat(from, T))});
+        const real T = surface_temperature(), K = evaporation_ * area;
+        const auto line = matter::line_to_vapour(*substance_, T);
+        const real latent = substance_->latent_heat(line, T);
+        const real most = std::min(0.1 * frame_.h_min() * s.rho * area, capacity / latent);  // [kg]
+        if (gas_ && std::abs(gas_->evaporates(K, T, capacity, infinity)) <= most) return limit;
+        const real rate = K * std::abs(substance_->pressure(line, T) - (gas_ ? gas_->pressure() : vapour_pressure_));  // [kg/s]
+        if (rate > 0) limit = std::min(limit, most / rate);
     }
     return limit;
 }
@@ -278,17 +291,28 @@ template <int D>
 std::vector<Integral> LiquidHeat<D>::integrals(const MacState<D>& s, real volume) const {
     const std::string depth = D == 2 ? "/m" : "", m = D == 2 ? "m^2" : "m^3";
     const real melt = sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? liquid_(I) : 0; });
-    return {{"heat", "J" + depth, s.rho * volume * mean_ - pending_},
-            {"heat_added", "J" + depth, added_},
-            {"vapour_heat", "J" + depth, vapour_heat_},
-            {"evaporated", m, evaporated_},
-            {"liquid_volume", m, cells_ > 0 ? volume * melt / static_cast<real>(cells_) : 0}};
+    const real heat = s.rho * volume * mean_ - pending_;
+    std::vector<Integral> list = {{"heat", "J" + depth, heat},
+                                  {"heat_added", "J" + depth, added_},
+                                  {"vapour_heat", "J" + depth, vapour_heat_},
+                                  {"evaporated", m, evaporated_},
+                                  {"liquid_volume", m, cells_ > 0 ? volume * melt / static_cast<real>(cells_) : 0},
+                                  {"coldest", "K", coldest_},
+                                  {"hottest", "K", hottest_}};
+    if (!gas_) return list;
+    list.insert(list.end(), {{"pressure", "Pa", gas_->pressure()},
+                             {"temperature", "K", surface_cells_.empty() ? not_applicable : surface_temperature()},
+                             {"vapour_mass", "kg" + depth, gas_->mass()},
+                             {"liquid_mass", "kg" + depth, s.rho * volume},
+                             {"internal_energy", "J" + depth, heat + gas_->energy()}});
+    return list;
 }
 
 template <int D>
 void LiquidHeat<D>::save(Checkpoint& to) const {
     to.put("water.enthalpy", enthalpy_.values());
     to.put_value("water.heat", std::array<real, 5>{mean_, pending_, added_, evaporated_, vapour_heat_});
+    if (gas_) to.put_value("water.gas", gas_->saved());
 }
 
 template <int D>
@@ -298,6 +322,7 @@ void LiquidHeat<D>::restore(const Checkpoint& from, const MacState<D>& s) {
     mean_ = reals[0], pending_ = reals[1], added_ = reals[2], evaporated_ = reals[3], vapour_heat_ = reals[4];
     find_surface(s);
     note(s);
+    if (gas_) gas_->restore(from.template get_value<std::array<real, 4>>("water.gas"));
 }
 
 template <int D>

@@ -4,13 +4,16 @@
 // after them, where H has changed. Liquid that evaporates leaves with its own enthalpy and the heat of evaporation, which the cells at the
 // surface lose:
 //     dm/dt = A e (p_sat(T) − p_v),   M' = M − dm,   M' H̄' = M H̄ − dm (H_s + L).
+// Into a gas that is closed in (matter/closed_gas.hpp), whose pressure is p_v, it goes at constant volume.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/solver.hpp"
+#include "matter/closed_gas.hpp"
 #include "staggered/conduction.hpp"
 #include "staggered/heat_supply.hpp"
 #include "surface/level_set.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace weir::water {
@@ -23,8 +26,8 @@ public:
     static bool named(const scene::Scene& scene) { return scene.has("substance"); }
     static std::vector<scene::Key> keys();
 
-    /// Refuses what it cannot be told together with. The surface and the cells of liquid are known.
-    LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame);
+    /// Refuses what it cannot be told together with. The surface and the cells of liquid are known, and its volume.
+    LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame, real volume);
 
     /// DH/Dt = 0 in the flow that moves the surface, before that has moved.
     void carry(const MacState<D>& s, const LevelSet<D>& surface, real dt, Trace trace);
@@ -53,6 +56,7 @@ private:
     real mean(const MacState<D>& s) const;
     void keep_mean(const MacState<D>& s);
     real surface_temperature() const;
+    real surface_capacity(const MacState<D>& s) const;
 
     thermo::SubstancePtr substance_;
     matter::Melting melting_;
@@ -67,6 +71,8 @@ private:
     real mean_ = 0;                                      // H̄ of the ledger [J/kg]
     real pending_ = 0;                                   // heat of evaporation that the surface has still to give [J]
     real added_ = 0, evaporated_ = 0, vapour_heat_ = 0;  // since the start [J], [m^D], [J]
+    real coldest_ = 0, hottest_ = 0;                     // of the liquid's cells [K]
+    std::optional<matter::ClosedGas> gas_;               // none where the scene names none
     bool ice_ = false;
 };
 

@@ -57,7 +57,7 @@ Water<D>::Water(const scene::Scene& scene)
     }
     fill_with_liquid(scene);
     if (bodies_) bodies_->start(state_, solids_);
-    if (LiquidHeat<D>::named(scene)) heat_ = std::make_unique<LiquidHeat<D>>(scene, state_, frame_);
+    if (LiquidHeat<D>::named(scene)) heat_ = std::make_unique<LiquidHeat<D>>(scene, state_, frame_, volume_target_);
     set_initial_velocity(state_, scene);
     set_fixed_faces();
     extend_velocity(0);

@@ -224,6 +224,7 @@ std::map<std::string, Said> everything() {
           wax + "heat = { pressure = 2e3, drag = 1e5, evaporation = 1e-7, vapour_pressure = 1500 }",
           wax + "heat = { pressure = 2e3, ambient = { temperature = 310 }, surface_exchange = 10 }\nsides.x_min = { kind = \"wall\", "
                 "exchange = 5 }",
+          wax + "heat = { pressure = 2e3, evaporation = 1e-7, enclosed_vapour = 0.1 }",
           wax + "heat.ambient = { keyframes = [ { t = 0, temperature = 310, pressure = 2e3 }, { t = 1, temperature = 320, pressure = 3e3 } "
                 "] }",
           wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }", wax + "sides.x_min = { kind = \"wall\", temperature = 305 }",

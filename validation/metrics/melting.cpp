@@ -1,6 +1,7 @@
 // Melting and freezing: fronts, what ice and water come to, and the balance of heat.
 #include "validation/metrics/lists.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
@@ -28,8 +29,9 @@ real mean_front_error(const RunRecord& run, const Reference& ref) {
 }
 
 Panel front_panel(const RunRecord& run, const Reference& ref) {
-    Curve ours = front(run), exact{.label = ref.source, .points = true};
+    Curve ours = front(run), exact{.points = true};
     ours.label = "weir";
+    exact.label = fmt::format("2 lambda sqrt(alpha t), lambda = {:.4f}", ref.number("lambda"));
     for (int i = 1; i <= 20; ++i) exact.x.push_back(run.time * i / 20), exact.y.push_back(exact_front(ref, exact.x.back()));
     return {.title = "The front of melting", .x = {"t [s]"}, .y = {"x [m]"}, .curves = {exact, ours}};
 }
@@ -66,6 +68,16 @@ real lever_liquid(const RunRecord& run, const Reference& ref) {
     return std::abs(run.series("liquid_volume").y.back() / volume - lever(run, ref).liquid);
 }
 
+Panel lever_panel(const RunRecord& run, const Reference& ref) {
+    Curve share = run.series("liquid_volume");
+    for (real& y : share.y)
+        for (const real length : run.scene->root().numbers("grid.size")) y /= length;
+    share.label = "weir";
+    const real end = lever(run, ref).liquid;
+    Curve rule{.label = fmt::format("lever rule, {:.4f}", end), .x = {0, run.time}, .y = {end, end}, .dashed = true};
+    return {.title = "Share of liquid", .x = {"t [s]"}, .y = {"liquid"}, .curves = {rule, share}};
+}
+
 /// Largest |heat − heat at the start − heat added| of any moment, over the largest heat of any.
 real balance_error(const RunRecord& run, const Reference&) {
     const Curve heat = run.series("heat"), added = run.series("heat_added");
@@ -76,6 +88,45 @@ real balance_error(const RunRecord& run, const Reference&) {
         most = std::max({most, std::abs(heat.y[i]), std::abs(added.y[i])});
     }
     return worst / most;
+}
+
+/// Temperatures of the first row of cells, along x.
+Curve first_row(const RunRecord& run) {
+    const auto& T = run.field("temperature").data[0];
+    const auto& grid = run.fields.grid;
+    Curve row{.label = "weir"};
+    for (int i = 0; i < grid.cells[0]; ++i)
+        row.x.push_back(grid.origin[0] + (i + 0.5) * grid.spacing[0]), row.y.push_back(T[static_cast<std::size_t>(i)]);
+    return row;
+}
+
+/// Root mean square over cells, over the difference of both halves.
+real contact_profile(const RunRecord& run, const Reference& ref) {
+    const Curve row = first_row(run);
+    const auto exact = ref.scalars.at("temperature");
+    real sum = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) sum += std::pow(row.y[i] - exact({row.x[i], 0, 0}, run.time), 2);
+    return std::sqrt(sum / static_cast<real>(row.size())) / (ref.number("warm") - ref.number("cold"));
+}
+
+/// What both cells beside the contact say of it: the half cells pass the same heat on, as conductors in a row.
+real contact_temperature(const RunRecord& run, const Reference& ref) {
+    const Curve row = first_row(run);
+    const std::size_t right = row.size() / 2;
+    const real k_solid = run.scene->number("substance.solid.conductivity"), k_liquid = run.scene->number("substance.liquid.conductivity");
+    const real T = (k_solid * row.y[right - 1] + k_liquid * row.y[right]) / (k_solid + k_liquid);
+    return std::abs(T - ref.number("contact")) / (ref.number("warm") - ref.number("cold"));
+}
+
+Panel contact_panel(const RunRecord& run, const Reference& ref) {
+    const auto temperature = ref.scalars.at("temperature");
+    Curve exact{.label = fmt::format("exact, contact at {:.3f} K", ref.number("contact")), .points = true};
+    const real length = run.fields.grid.spacing[0] * run.fields.grid.cells[0];
+    for (int i = 0; i <= 40; ++i) {
+        exact.x.push_back(length * i / 40);
+        exact.y.push_back(temperature({exact.x.back(), 0, 0}, run.time));
+    }
+    return {.title = "Two half spaces in contact", .x = {"x [m]"}, .y = {"T [K]"}, .curves = {exact, first_row(run)}};
 }
 
 /// Largest difference of any cell's temperature at the end from the one that it began with.
@@ -134,7 +185,8 @@ std::vector<Metric> melting_metrics() {
         {.name = "lever.liquid_error",
          .unit = "",
          .doc = "How far the share of liquid at the end is from the lever rule's.",
-         .measure = lever_liquid},
+         .measure = lever_liquid,
+         .figure = lever_panel},
         {.name = "heat.balance_error",
          .unit = "",
          .doc = "Largest difference between the heat in the box and what was there and was added, over the largest heat.",
@@ -148,6 +200,15 @@ std::vector<Metric> melting_metrics() {
          .unit = "",
          .doc = "Largest difference from the steady temperature of a slab of two conductivities, over that of its two sides.",
          .measure = slab_error},
+        {.name = "contact.profile_error",
+         .unit = "",
+         .doc = "Root mean square of the difference from the exact temperatures of two half spaces in contact, over theirs at the start.",
+         .measure = contact_profile,
+         .figure = contact_panel},
+        {.name = "contact.temperature_error",
+         .unit = "",
+         .doc = "How far the temperature of the contact is from that of both effusivities, over the difference at the start.",
+         .measure = contact_temperature},
         {.name = "heat.return_error",
          .unit = "",
          .doc = "Largest relative difference of the temperature at the end from the uniform one at the start.",

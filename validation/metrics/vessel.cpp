@@ -73,6 +73,14 @@ real vessel_balance(const RunRecord& run, const Reference&) {
     return worst / most;
 }
 
+real vessel_mass(const RunRecord& run, const Reference&) {
+    const Curve liquid = run.series("liquid_mass"), vapour = run.series("vapour_mass");
+    real worst = 0;
+    for (std::size_t i = 0; i < liquid.size(); ++i)
+        if (const real e = std::abs((liquid.y[i] + vapour.y[i]) / (liquid.y[0] + vapour.y[0]) - 1); !(e <= worst)) worst = e;
+    return worst;
+}
+
 /// The path of the run in the plane of temperature and pressure, beside the table.
 Panel path_panel(const RunRecord& run, const Reference& ref) {
     const Curve T = run.series("temperature"), p = run.series("pressure");
@@ -80,9 +88,10 @@ Panel path_panel(const RunRecord& run, const Reference& ref) {
     for (std::size_t i = 0; i < T.size(); ++i)
         if (p.y[i] > 0) path.x.push_back(T.y[i]), path.y.push_back(p.y[i]);
     table.label = "rest (IAPWS)", table.points = true;
-    Curve line = ref.curve("saturation");
-    line.dashed = true;
-    return {.title = "The run's path in the phase diagram", .x = {"T [K]"}, .y = {"p [Pa]", true}, .curves = {line, table, path}};
+    return {.title = "The run's path in the phase diagram",
+            .x = {"T [K]"},
+            .y = {"p [Pa]", true},
+            .curves = {ref.curve("sublimation"), ref.curve("melting"), ref.curve("saturation"), table, path}};
 }
 
 }  // namespace
@@ -91,12 +100,17 @@ std::vector<Metric> vessel_metrics() {
     std::vector<Metric> list = {
         worst_of("vessel.pressure_error", "Largest relative difference of the pressure at rest from the table's, of all temperatures.",
                  [](const VesselRest& r) { return r.p / r.pressure_in_table - 1; }),
-        worst_of("vessel.vapour_error", "The same of the vapour's mass.", [](const VesselRest& r) { return r.vapour / r.vapour_in_table - 1; }),
+        worst_of("vessel.vapour_error", "The same of the vapour's mass.",
+                 [](const VesselRest& r) { return r.vapour / r.vapour_in_table - 1; }),
         {.name = "vessel.heat_error",
          .unit = "",
          .doc = "Largest relative difference of the heat between two rests from mass times the table's difference of energies.",
          .measure = vessel_heat},
         {.name = "vessel.misjudged", .unit = "", .doc = "Rests that are dry and should not be, or the reverse.", .measure = misjudged},
+        {.name = "vessel.mass_error",
+         .unit = "",
+         .doc = "Largest relative difference of the mass of liquid and vapour from that at the start.",
+         .measure = vessel_mass},
         {.name = "vessel.balance_error",
          .unit = "",
          .doc = "Largest difference between the energy and what there was and was added, over the largest energy.",

@@ -103,3 +103,23 @@ REFERENCE(steady_slab) {
     };
     return ref;
 }
+
+/// Ice at one temperature, x < middle, and water at another, brought into contact; it melts at the temperature of the contact, which both
+/// effusivities e = √(k ρ c) decide, so that no front moves (Carslaw & Jaeger 1959, 2.9).
+REFERENCE(contact) {
+    const Wax w(scene);
+    const scene::Table& halves = scene.root().table("initial.temperature");
+    const real cold = halves.number("value"), warm = halves.number("outside"), middle = scene.root().numbers("grid.size").at(0) / 2;
+    const real e_solid = std::sqrt(w.k_solid * w.rho * w.c_solid), e_liquid = std::sqrt(w.k_liquid * w.rho * w.c_liquid);
+    const real contact = (e_solid * cold + e_liquid * warm) / (e_solid + e_liquid);
+    if (!(std::abs(contact - w.T) < 1e-6 * (warm - cold)))
+        throw BadInput("the contact has " + std::to_string(contact) + " K, and the substance melts at another temperature: a front moves");
+    Reference ref{.source = "Carslaw & Jaeger 1959"};
+    ref.numbers = {{"contact", contact}, {"cold", cold}, {"warm", warm}, {"middle", middle}};
+    ref.scalars["temperature"] = [=](const Vec<3>& x, real t) {
+        const real d = x[0] - middle, k = d < 0 ? w.k_solid : w.k_liquid, c = d < 0 ? w.c_solid : w.c_liquid;
+        const real reach = 2 * std::sqrt(k / (w.rho * c) * t);
+        return contact + (d < 0 ? contact - cold : warm - contact) * std::erf(d / reach);
+    };
+    return ref;
+}

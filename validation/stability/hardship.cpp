@@ -160,6 +160,8 @@ std::optional<real> counted(const std::string& name, const Simulation& simulatio
 real value_of(const std::string& name, const Simulation& simulation, const StepReport& report) {
     if (const auto plus = name.find('+'); plus != std::string::npos)
         return value_of(name.substr(0, plus), simulation, report) + value_of(name.substr(plus + 1), simulation, report);
+    if (const auto minus = name.find('-'); minus != std::string::npos)
+        return value_of(name.substr(0, minus), simulation, report) - value_of(name.substr(minus + 1), simulation, report);
     if (name == "divergence") return report.max_divergence;
     if (name == "iterations") return static_cast<real>(report.iterations);
     if (name == "density_error") return report.density_error;

@@ -29,18 +29,19 @@ Key tables(std::string name, std::string doc, std::vector<Key> keys, bool requir
 Key methods_of_key() { return {.name = "methods", .type = Type::texts, .doc = "Only these of the study's methods; absent: all."}; }
 
 Key watch_key() {
-    return tables("watch", "What must hold after every step.",
-                  {text("series", "An integral, or divergence, density_error, iterations, dt; or a sum of two, a+b.", true),
-                   text("why", "Why it must hold.", true),
-                   {.name = "at_most", .type = Type::number, .doc = "value <= this"},
-                   {.name = "at_least", .type = Type::number, .doc = "value >= this"},
-                   {.name = "power",
-                    .type = Type::number,
-                    .doc = "at_most and at_least are for a key of 1, and grow with this power of it.",
-                    .fallback = 0.0},
-                   positive("drift", "|value - first| / |first| <= this"),
-                   methods_of_key(),
-                   positive("never_rises", "No step raises the value by more than this part of the largest.")});
+    return tables(
+        "watch", "What must hold after every step.",
+        {text("series", "An integral, or divergence, density_error, iterations, dt; or a sum or a difference of two, a+b, a-b.", true),
+         text("why", "Why it must hold.", true),
+         {.name = "at_most", .type = Type::number, .doc = "value <= this"},
+         {.name = "at_least", .type = Type::number, .doc = "value >= this"},
+         {.name = "power",
+          .type = Type::number,
+          .doc = "at_most and at_least are for a key of 1, and grow with this power of it.",
+          .fallback = 0.0},
+         positive("drift", "|value - first| / |first| <= this"),
+         methods_of_key(),
+         positive("never_rises", "No step raises the value by more than this part of the largest.")});
 }
 
 Key proof_key() {

@@ -7,6 +7,7 @@
 #include "thermo/substance.hpp"
 
 #include <numbers>
+#include <random>
 
 namespace weir::flow {
 
@@ -217,6 +218,144 @@ TEST("a step of many stages has an eighth of z^2 for its error, z = -(pi/L)^2 al
     // Of s stages the coefficient of z^2 is 3/8 (1 - 4/(s (s + 5)) ...) by (s - 1)(s + 6)/(s (s + 5)) of 3/8.
     const real s = 19, expected = 1 + z + 3.0 / 8 * z * z * ((s - 1) * (s + 6)) / (s * (s + 5));
     for (int i = 0; i < 64; ++i) EXPECT_NEAR((m.temperature(h({i, 0})) - 300) / shape(i), expected, std::abs(z * z * z) / 6) << i;
+}
+
+namespace {
+
+/// A step of conduction in `stages` stages as the formula has it, cell by cell, in a box without solids.
+template <int D>
+void plain_conduction(const matter::Melting& m, const Vec<D>& h, real rho, const staggered::Boundary<D>& boundary,
+                      const Grid<poisson::Cell, D>& cells, const Grid<real, D>& source, real dt, int stages, Grid<real, D>& H) {
+    using Kind = staggered::EndRule::Kind;
+    const Index<D> n = H.extent();
+    const auto conductivity = [&](real at) {
+        const real f = m.liquid(at);
+        return std::pair{m.conductivity(f), f > 0 && f < 1};
+    };
+    const Grid<real, D> start = H;
+    const auto rate = [&](const Grid<real, D>& at, const Index<D>& I) {
+        real sum = source.empty() ? 0 : source(I);
+        const auto [k, mixed] = conductivity(start(I));
+        for (int a = 0; a < D; ++a)
+            for (int end = 0; end < 2; ++end) {
+                Index<D> J = I;
+                J[a] += end == 0 ? -1 : 1;
+                const auto& rule = boundary.end[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)];
+                real g = k, beyond = 0;
+                if (J[a] >= 0 && J[a] < n[a])
+                    beyond = m.temperature(at(J));
+                else if (rule.kind == Kind::periodic)
+                    J[a] = (J[a] + n[a]) % n[a], beyond = m.temperature(at(J));
+                else if (rule.kind == Kind::dirichlet)
+                    J = I, beyond = 2 * rule.value - m.temperature(at(I));
+                else
+                    continue;
+                if (cells(J) != poisson::Cell::fluid) continue;
+                const auto [other, other_mixed] = conductivity(start(J));
+                g = mixed == other_mixed ? 2 * k * other / (k + other) : mixed ? other : k;
+                sum += g / (h[a] * h[a]) * (beyond - m.temperature(at(I)));
+            }
+        return sum;
+    };
+    Grid<real, D> now(n), older(n);
+    for (int j = 1; j <= stages; ++j) {
+        Grid<real, D> at = start, next(n);
+        for_each_cell(n, [&](const Index<D>& I) { at(I) += now(I); });
+        for_each_cell(n, [&](const Index<D>& I) {
+            if (cells(I) != poisson::Cell::fluid) return;
+            const real w = 6.0 / (stages * (stages + 5));
+            next(I) = (2.0 * j + 3) / (j + 4) * (now(I) + w * dt / rho * rate(at, I)) - (j - 1.0) / (j + 4) * older(I);
+        });
+        older = now, now = next;
+    }
+    for_each_cell(n, [&](const Index<D>& I) { H(I) += now(I); });
+}
+
+}  // namespace
+
+TEST_IN_2D_AND_3D("conduction in passes of several stages, by rows and by planes, is the formula's cell by cell") {
+    using Kind = staggered::EndRule::Kind;
+    const matter::Melting m{.T = 300, .h_liquid = 3000, .c_solid = 2, .c_liquid = 4, .k_solid = 2.2, .k_liquid = 0.6};
+    Index<D> n = Index<D>::constant(5);
+    n[0] = 150, n[D - 1] = 31;  // more than a block of a row; slabs of planes for two threads
+    Vec<D> h = Vec<D>::constant(1);
+    h[1] = 0.5;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<real> unit(0, 1);
+    for (const Kind last : {Kind::dirichlet, Kind::neumann, Kind::periodic})
+        for (const char* what : {"liquid", "melting", "melting, solids and a source"})
+            for (const int stages : {1, 2, 14}) {
+                const bool liquid = what == std::string("liquid"), solids = !liquid && what != std::string("melting");
+                staggered::Boundary<D> boundary;
+                boundary.end[D - 1] = {staggered::EndRule{last, 330, {}}, staggered::EndRule{last, 310, {}}};
+                boundary.end[0][1] = {Kind::dirichlet, 320, {}};
+                Grid<poisson::Cell, D> cells(n, poisson::Cell::fluid);
+                Grid<real, D> H(n), source;
+                if (solids) source = Grid<real, D>(n);
+                for_each_cell(n, [&](const Index<D>& I) {
+                    const bool frozen = !liquid && I[0] > 60 && I[1] < 4;
+                    H(I) = m.enthalpy(frozen ? 280 + 10 * unit(random) : 305 + 20 * unit(random));
+                    if (frozen && I[0] < 63) H(I) = 3000 * unit(random);
+                    if (solids && I[0] % 50 == 40) cells(I) = poisson::Cell::solid;
+                    if (solids && cells(I) == poisson::Cell::fluid) source(I) = unit(random) - 0.3;
+                });
+                real most = 0;  // as much as a step of so many stages may conduct
+                for (int a = 0; a < D; ++a) most += 2 * 2.2 / (h[a] * h[a]);
+                const real dt = 0.99 * stages * (stages + 5) / 6.0 * 2 * 1.5 / most * (liquid ? 2 * 2.2 / 0.6 : 1);
+                Grid<real, D> plain = H;
+                std::array<Grid<real, D>, 2> fast{H, H};
+                std::array<real, 2> added{};
+                for (const int team : {1, 2}) {
+                    set_threads(team);
+                    Conduction<D> conduction(m, n, h, 1.5, boundary);
+                    // one stage for steps that need one, and as many as there must be for those that need more
+                    added[static_cast<std::size_t>(team - 1)] =
+                        stages == 1 ? conduction.euler_step(fast[static_cast<std::size_t>(team - 1)], {cells, false, source}, dt)
+                                    : conduction.step(fast[static_cast<std::size_t>(team - 1)], {cells, false, source}, dt);
+                }
+                set_threads(1);
+                int taken = 1;  // stages of step(): by the theory in conduction.cpp
+                if (stages > 1) {
+                    real fastest = 0;
+                    for_each_cell(n, [&](const Index<D>& I) {
+                        real out = 0;
+                        for (int a = 0; a < D; ++a)
+                            for (const int by : {-1, 1}) {
+                                Index<D> J = I;
+                                J[a] += by;
+                                const bool inside = J[a] >= 0 && J[a] < n[a];
+                                if (!inside && boundary.end[static_cast<std::size_t>(a)][0].kind == Kind::periodic)
+                                    J[a] = (J[a] + n[a]) % n[a];
+                                else if (!inside)
+                                    J = I;
+                                if (cells(I) != poisson::Cell::fluid || cells(J) != poisson::Cell::fluid) continue;
+                                const auto k = [&](const Index<D>& K) { return m.conductivity(m.liquid(H(K))); };
+                                const auto mixed = [&](const Index<D>& K) { return m.liquid(H(K)) > 0 && m.liquid(H(K)) < 1; };
+                                const real g = mixed(I) == mixed(J) ? 2 * k(I) * k(J) / (k(I) + k(J)) : mixed(I) ? k(J) : k(I);
+                                out += g / (h[a] * h[a]);
+                            }
+                        fastest = std::max(fastest, out);
+                    });
+                    const real euler = dt * fastest / (1.5 * (liquid ? 4 : 2));
+                    taken = std::max(1, static_cast<int>(std::ceil((std::sqrt(25 + 24 * euler) - 5) / 2)));
+                    EXPECT_GT(taken, 1);
+                }
+                plain_conduction(m, h, 1.5, boundary, cells, source, dt, taken, plain);
+                real change = 0;
+                for (std::size_t c = 0; c < plain.size(); ++c) change = std::max(change, std::abs(plain[c] - H[c]));
+                EXPECT_GT(change, 1);
+                const auto where = std::string(what) + ", " + std::to_string(taken) + " stages";
+                for (std::size_t c = 0; c < plain.size(); ++c) {
+                    ASSERT_NEAR(fast[0][c], plain[c], 1e-12 * 3200 * taken) << where;  // some roundings of H a stage
+                    ASSERT_EQ(fast[0][c], fast[1][c]) << where;
+                }
+                real grown = 0;
+                for (std::size_t c = 0; c < plain.size(); ++c) grown += fast[0][c] - H[c];
+                real volume = 1.5;
+                for (int a = 0; a < D; ++a) volume *= h[a];
+                EXPECT_NEAR(added[0], volume * grown, 1e-13 * 3200 * static_cast<real>(plain.size())) << where;
+                EXPECT_EQ(added[0], added[1]) << where;
+            }
 }
 
 TEST_IN_2D_AND_3D("the same bits with one and with three threads, and after a restart") {
