@@ -39,7 +39,7 @@ public:
     bool moving() const;
     void set_time(real t);
     /// A solid that moves as it is told to: its place is the last one given, at any time. `ball` holds it where it rests.
-    void add_free(ShapePtr<D> shape, bool no_slip, const Ball<D>& ball);
+    void add_free(ShapePtr<D> shape, bool no_slip, const Ball<D>& ball = {});
     void place(std::size_t solid, const Pose<D>& pose);
     /// Holds the solid where it is.
     const Ball<D>& ball(std::size_t solid) const { return balls_[solid]; }

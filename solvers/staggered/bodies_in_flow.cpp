@@ -413,7 +413,8 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
         if (count > 0 && change > differs * left) learn();
         move_under_forces();
         touch(placement.solids(), dt, count == 0);
-        left = aim, change = adopt(s, dt, b) / whole;
+        const real added = adopt(s, dt, b);
+        left = aim, change = added == 0 ? 0 : added / whole;
         if (!coupled || (change <= enough && aim <= enough)) break;
         if (count == most_turns) measure_added_mass(s, *solver);
         if (count == most_turns + most_turns_measured) break;
