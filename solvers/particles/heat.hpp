@@ -66,6 +66,8 @@ public:
     int frozen() const { return frozen_; }
     std::string concern() const;
 
+    /// Of a temperature; no more than the liquid has where it begins to boil [J/kg].
+    real enthalpy(real T) const { return std::min(curve_.enthalpy(T), states_.liquid_end); }
     real theta(real h) const { return heat_theta(h, 0, &states_); }
 
     /// A heater at work in (time, time + dt]: what it gives in that [J].

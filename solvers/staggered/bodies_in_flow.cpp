@@ -262,6 +262,52 @@ void BodiesInFlow<D>::add_mass(const MacState<D>& s, poisson::Solver<D>* solver)
         for (std::size_t j = 0; j < i; ++j) added_(i, j) = added_(j, i) = 0.5 * (added_(i, j) + added_(j, i));
 }
 
+template <int D>
+void BodiesInFlow<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& scene) {
+    hand_ = std::move(hand);
+    for (std::size_t i = 0; i < hand_->keys.size(); ++i)
+        if (hand_->keys[i].kind == HandKind::grab && hand_->keys[i].body >= static_cast<int>(bodies_.count()))
+            scene.refuse("effects.hand.keyframes[" + std::to_string(i) + "].body", "there is no such body",
+                         "numbers of the list bodies, from 0 to " + std::to_string(bodies_.count() - 1));
+}
+
+/// dv/dt = rate (target − v) of the mass of the body and of the water in its place, v at the end of the step: stable for any step.
+template <int D>
+void BodiesInFlow<D>::be_held(const MacState<D>& s, real dt, std::vector<real>& impulse) {
+    const auto brush = hand_->at<D>(s.time);
+    if (brush.kind != HandKind::grab) return;
+    const auto b = static_cast<std::size_t>(brush.body);
+    const real c = dt * hand_->rate * held_mass(b);
+    for (int a = 0; a < D; ++a) {
+        const std::size_t i = b * n + static_cast<std::size_t>(a);
+        total_(i, i) += c;
+        impulse[i] += c * (held_target(brush, s, dt)[a] - bodies_[b].velocity[static_cast<std::size_t>(a)]);
+    }
+}
+
+template <int D>
+void BodiesInFlow<D>::tell_hand(const MacState<D>& s, real dt) {
+    const auto brush = hand_->at<D>(s.time);
+    if (brush.kind != HandKind::grab) return;
+    const auto b = static_cast<std::size_t>(brush.body);
+    for (int a = 0; a < D; ++a)
+        if (const std::size_t i = b * n + static_cast<std::size_t>(a); free_[i])
+            hand_->impulse[a] += dt * hand_->rate * held_mass(b) * (held_target(brush, s, dt)[a] - velocity_[i]);
+}
+
+template <int D>
+real BodiesInFlow<D>::held_mass(std::size_t b) const {
+    return bodies_[b].mass + bodies_[b].wet * rho_ * bodies_[b].moments.volume;
+}
+
+template <int D>
+Vec<D> BodiesInFlow<D>::held_target(const Brush<D>& brush, const MacState<D>& s, real dt) const {
+    const Body<D>& body = bodies_[static_cast<std::size_t>(brush.body)];
+    Vec<D> target = 0.25 * hand_->rate * (brush.centre - body.at);
+    for (int a = 0; a < D; ++a) target[a] = std::clamp(target[a], -s.u.h[a] / dt, s.u.h[a] / dt);
+    return target;
+}
+
 /// (M + m)(V − V_before) = dt (G + F).
 template <int D>
 void BodiesInFlow<D>::move_under_forces(const MacState<D>& s, real dt) {
@@ -277,11 +323,13 @@ void BodiesInFlow<D>::move_under_forces(const MacState<D>& s, real dt) {
             if (k < D) impulse[b * n + k] += dt * (m[k][k] - bodies_[b].mass) * gravity_[k];
         }
     }
+    if (hand_) be_held(s, dt, impulse);
     rigid::invert(total_, free_, mobility_);
     for (std::size_t i = 0; i < velocity_.size(); ++i) {
         velocity_[i] = bodies_[i / n].velocity[i % n];
         for (std::size_t j = 0; j < velocity_.size(); ++j) velocity_[i] += mobility_(i, j) * impulse[j];
     }
+    if (hand_) tell_hand(s, dt);
 }
 
 template <int D>

@@ -8,6 +8,7 @@
 // water too. Of a wall that cuts a cell the grid knows the pressure in the cell's middle alone: F takes it at the wall, by the gradient
 // that water at rest has, so that a flat bottom floats between the cells too.
 #pragma once
+#include "core/hand.hpp"
 #include "poisson/poisson.hpp"
 #include "rigid/bodies.hpp"
 #include "staggered/solid_faces.hpp"
@@ -28,6 +29,8 @@ public:
     static geometry::Solids<D> solids(const scene::Scene& scene, BodiesInFlow* in);
 
     const rigid::Bodies<D>& bodies() const { return bodies_; }
+    /// The hand may take hold of them; refuses keyframes of bodies that there are not.
+    void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
     /// What of them stands in fluid at t = 0.
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
     /// A time dt along their velocities.
@@ -69,6 +72,11 @@ private:
     rigid::Twist<D> weight(std::size_t body) const;
     std::array<rigid::Twist<D>, n> mass_of(std::size_t body) const;
     void add_mass(const MacState<D>& s, poisson::Solver<D>* solver);
+    /// Of the body that the hand holds: what its pull adds to the matrix of masses and to the impulses.
+    void be_held(const MacState<D>& s, real dt, std::vector<real>& impulse);
+    real held_mass(std::size_t body) const;
+    Vec<D> held_target(const Brush<D>& brush, const MacState<D>& s, real dt) const;
+    void tell_hand(const MacState<D>& s, real dt);
     void move_under_forces(const MacState<D>& s, real dt);
     void touch(const geometry::Solids<D>& solids, real dt);
 
@@ -81,6 +89,7 @@ private:
     std::vector<std::vector<Cut>> cuts_;
     Grid<real, D> rhs_, phi_;
     rigid::Mobility added_, total_, mobility_;
+    std::shared_ptr<Hand> hand_;  // none: nobody takes hold
     std::vector<char> free_;
     std::vector<real> velocity_, before_;
 };
