@@ -18,6 +18,8 @@ public:
     std::vector<Integral> integrals() const override;
     Hand* hand() const override { return hand_.get(); }
     real time() const override { return state_.time; }
+    std::vector<EditableField> editable() override;
+    void edited(const EditableField& field) override;
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }

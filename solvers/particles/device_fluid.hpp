@@ -111,6 +111,8 @@ public:
     void finish(real dt);
     /// Heat over dt, between particles where a has them.
     void conduct(Heat<D>& heat, real dt);
+    /// After the neighbours are found: what density particles are to have, where the scene lets them boil.
+    void expand();
     /// What is frozen does not move: it has no velocity, and is predicted and corrected to where it is.
     void hold();
     void hold_prediction();
@@ -150,6 +152,7 @@ public:
 
     Memory x, v, x_star, density, carried;            // state, double precision
     Memory enthalpy;                                  // where particles carry heat
+    Memory rests;                                     // of sorted particles that may boil: their densities over the liquid's
     Memory order, a, b, neighbours, list;             // sorted particles: owners, float4, their neighbours
     Memory clamps;                                    // how often walls and solids put a particle back, and from how far
     Memory near_solid, terms, poses;                  // of solids: sorted particles near one, what they add there; where they are
@@ -188,6 +191,7 @@ private:
     real speed_ = 0;
     std::uint32_t clamps_seen_ = 0;
     Memory warming_, by_walls_, heat_pairs_, heat_walls_, heat_states_;
+    Memory shift_, vapour_, above_;
     Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;
     Memory start_, members_, blocks_, parts_, needed_;
     std::size_t cells_room_ = 0;

@@ -30,6 +30,14 @@ void ReferenceSolver<D, Physics>::end_step() {
 }
 
 template <int D, class Physics>
+void ReferenceSolver<D, Physics>::expand() {
+    if (!this->vapour()) return;
+    this->heat_->place(fluid_);
+    reference_.rest.clear();
+    for (int i = 0; i < fluid_.count(); ++i) reference_.rest.push_back(this->vapour()->rest(i));
+}
+
+template <int D, class Physics>
 void ReferenceSolver<D, Physics>::hold() {
     if (!this->heat_ || this->heat_->count_frozen(fluid_) == 0) return;
     for (int i = 0; i < fluid_.count(); ++i)
@@ -46,7 +54,7 @@ void ReferenceSolver<D, Physics>::conduct_at(const std::vector<Point>& x, real d
     const real part = dt / parts;
     std::vector<double> theta(x.size());
     for (int p = 0; p < parts; ++p) {
-        for (std::size_t i = 0; i < x.size(); ++i) theta[i] = heat.theta(fluid_.enthalpy[i]);
+        for (std::size_t i = 0; i < x.size(); ++i) theta[i] = heat.theta(static_cast<int>(i), fluid_.enthalpy[i]);
         const auto warming = reference_.warming(x, theta, heat.plain_pairs(), heat.plain_walls());
         for (std::size_t i = 0; i < x.size(); ++i) {
             fluid_.enthalpy[i] += part * warming.rate[i];

@@ -31,6 +31,7 @@ protected:
     virtual std::size_t own_bytes() const = 0;
     void end_step();
     /// As on threads.
+    void expand();
     void hold();
     bool held(std::size_t i) const { return this->heat_ && this->heat_->frozen(fluid_.enthalpy[i]); }
     /// Between particles that are at x, whose neighbours are known.

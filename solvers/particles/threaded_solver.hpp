@@ -34,6 +34,10 @@ protected:
     void end_step();
     /// Where the passes of the step were: their positions are the pairs'.
     void conduct(real dt) final;
+    /// After the pairs are found: what density particles are to have, where the scene lets them boil.
+    void expand();
+    /// Of sorted particles, over the liquid's; null: nothing boils.
+    const float* rest() const { return this->vapour() && this->vapour()->boils() ? rest_.data() : nullptr; }
     /// Particles that are frozen do not move: forgets what was done to their velocities.
     void hold();
     /// Whether particle i of the state is frozen, where hold() has found any.
@@ -52,6 +56,7 @@ protected:
 
 private:
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
+    std::vector<float> rest_;
 };
 
 }  // namespace weir::particles

@@ -22,7 +22,7 @@ template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     this->pour_and_drain(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
-    this->hold();       // what is frozen
+    this->hold();  // what is frozen
     if (bodies_) start_bodies(dt);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
@@ -37,7 +37,7 @@ StepReport PbfSolver<D>::step(real dt) {
     }
     const real slow = std::max(dt, last_dt_);
     keep_multipliers(slow);
-    update(dt, slow);                                   // 20-21, 23-24
+    update(dt, slow);  // 20-21, 23-24
     if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
     this->hold();
@@ -80,6 +80,7 @@ void PbfSolver<D>::find_neighbours() {
     pairs_.find(particles::Fluid<D>::coordinates(x_star_), fluid_.count(), options_.support * fluid_.domain.spacing);
     pairs_.fit(density_, 1);
     solids_.mark(pairs_);
+    this->expand();
 }
 
 template <int D>
@@ -91,6 +92,7 @@ PbfPass PbfSolver<D>::pass(const float* from, float* to) {
     a.from = from;
     a.to = to;
     a.solid = solids_.at(pairs_, from);
+    a.rest = this->rest();
     a.density = density_.data();
     a.multiplier = options_.warm_start > 0 ? multiplier_.data() : nullptr;
     a.first = pairs_.list().first();
@@ -288,8 +290,11 @@ void PbfSolver<D>::update(real dt, real slow) {
 
 template <int D>
 Compression PbfSolver<D>::compression() const {
+    const float* rest = this->rest();
     const auto excess = [&](int k) {
-        return pairs_.is_image(k) ? 0 : std::max<real>(0, static_cast<real>(density_[static_cast<std::size_t>(k)]) - 1);
+        if (pairs_.is_image(k)) return real(0);
+        const real density = static_cast<real>(density_[static_cast<std::size_t>(k)]);
+        return std::max<real>(0, (rest ? density / static_cast<real>(rest[k]) : density) - 1);
     };
     const int n = pairs_.particles();
     const auto [sum, worst] = particles::block_sum_and_max(n ? pairs_.size() : 0, excess);

@@ -41,11 +41,11 @@ private:
     std::size_t own_bytes() const override;
 
     std::array<std::vector<real>, D> x_star_;
-    std::vector<float> density_;     // rho / rho0 of each sorted particle
+    std::vector<float> density_;      // rho / rho0 of each sorted particle
     std::vector<float> before_push_;  // places of particles near solids, before they are put out of them
     real give_ = 0;                   // of walls that give way [m^2]
     real carried_dt_ = 0;             // length of the step where bodies move in it, else 0 [s]
-    std::vector<float> multiplier_;  // sum of lambda of each sorted particle over this step, with warm start
+    std::vector<float> multiplier_;   // sum of lambda of each sorted particle over this step, with warm start
 };
 
 }  // namespace weir::pbf

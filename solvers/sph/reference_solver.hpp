@@ -16,8 +16,7 @@ public:
 
 private:
     using Base = Sph<particles::ReferenceSolver<D, particles::ReferenceSph>>;
-    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_,
-        Base::bodies_;
+    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_, Base::bodies_;
     using Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
     using Points = std::vector<particles::Point>;
 
@@ -36,7 +35,8 @@ private:
     std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }
 
     std::vector<int> beside_bodies_;
-    Points x_;  // where the step began
+    std::vector<double> rise_;  // of the pressure in the last step
+    Points x_;                  // where the step began
 };
 
 }  // namespace weir::sph
