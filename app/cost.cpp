@@ -8,12 +8,18 @@
 #include "validation/cost/forecast.hpp"
 #include "validation/report/command.hpp"
 
+#include <nlohmann/json.hpp>
+
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 namespace weir::app {
 
 namespace {
+
+constexpr const char* window_seconds = "5s";
 
 struct CostArguments : StudyArguments<validation::CostOptions> {
     std::string plan;
@@ -31,7 +37,24 @@ int forecast(const CostArguments& arguments) {
     return exit_success;
 }
 
+/// Frames a second of weir-live, on the display that there is or on one without a screen; NaN where there is neither, or no viewer.
+double frames_in_window(const std::filesystem::path& scene, const std::vector<scene::Override>& set) {
+    const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "weir-live";
+    if (!std::filesystem::exists(program)) return NAN;
+    std::string command = "'" + program.string() + "' '" + scene.string() + "' --bench " + window_seconds + " --fast --json";
+    for (const auto& change : set) command += " --set '" + change.key + "=" + change.value + "'";
+    if (!std::getenv("DISPLAY")) command = "xvfb-run -a -s '-screen 0 1280x1024x24' " + command;
+    FILE* pipe = popen((command + " 2>/dev/null").c_str(), "r");
+    if (!pipe) return NAN;
+    std::string said;
+    for (int c = 0; (c = std::fgetc(pipe)) != EOF;) said += static_cast<char>(c);
+    if (pclose(pipe) != 0) return NAN;
+    const auto measured = nlohmann::json::parse(said, nullptr, false);
+    return measured.is_object() ? measured.value("frames_a_second", NAN) : NAN;
+}
+
 int cost(CostArguments& arguments) {
+    arguments.options.drawn = frames_in_window;
     const auto& options = arguments.chosen();
     if (!arguments.plan.empty()) return forecast(arguments);
     if (!arguments.effects) return validation::cost_command(options);

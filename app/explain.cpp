@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
 
 #include <fmt/format.h>
@@ -107,6 +108,16 @@ std::string passes_text(Simulation& simulation) {
     return text + effects_text(simulation, passes, total, steps);
 }
 
+/// What output.surface makes of a frame, and at what cost.
+std::string surface_text(const Simulation& simulation) {
+    const auto surface = reconstruction::reconstruction_of(simulation.scene());
+    if (!surface) return "";
+    const auto& mesh = surface->make(simulation.fields(), simulation.time());
+    std::string text = fmt::format("a surface by {}, each frame\n", simulation.scene().text("output.surface.method"));
+    for (const Pass& pass : surface->passes().list()) text += fmt::format("  {:22} {:9.3f} ms\n", pass.name, 1e3 * pass.seconds);
+    return text + fmt::format("  {:22} {:9} {:>12} triangles {:>8}\n", "all", "", mesh.corners.size(), megabytes(surface->bytes()));
+}
+
 std::string left_out(const scene::Scene& scene, const scene::SolverSchema& schema) {
     std::string text = "not called for, so no field, no pass\n";
     bool any = false;
@@ -132,7 +143,7 @@ std::string explain(Simulation& simulation) {
     const scene::SolverSchema& schema = sim::kind_named(scene.solver()).schema;
     const std::string before =
         called_for(scene, schema) + concern_text(simulation.solver()) + fields_text(simulation);  // as the scene starts
-    return before + passes_text(simulation) + left_out(scene, schema);
+    return before + passes_text(simulation) + surface_text(simulation) + left_out(scene, schema);
 }
 
 }  // namespace weir::app

@@ -18,7 +18,8 @@ std::string scene_named(const std::string& word) {
 std::vector<std::string> with_scene(std::vector<std::string> words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i].starts_with('-')) {
-            const bool flag = words[i] == "--fast" || words[i] == "--paused" || words[i] == "--help" || words[i] == "-h";
+            const bool flag =
+                words[i] == "--fast" || words[i] == "--paused" || words[i] == "--json" || words[i] == "--help" || words[i] == "-h";
             if (!flag && words[i].find('=') == std::string::npos) ++i;  // its value
             continue;
         }

@@ -47,7 +47,7 @@ std::vector<Row> rows_of_report(const std::string& folder) {
             {"water, 128 x 64 cells", folder + "/water.toml", {{"grid.cells", "[128, 64]"}, {"grid.size", "[2, 1]"}}}};
 }
 
-void measure(const Row& row, double seconds, WindowOptions options) {
+void measure(const Row& row, double seconds, WindowOptions options, bool json) {
     options.warm_up = 1;  // shaders are compiled, the window is shown
 
     Session session(endless(row.scene, row.set), "out/bench_live");
@@ -57,6 +57,12 @@ void measure(const Row& row, double seconds, WindowOptions options) {
     window.stop();
     const FrameCosts& c = window.costs();
     const double frames = std::max(1, c.frames);
+    if (json) {
+        std::printf("{\"frames_a_second\": %.6g, \"steps_a_second\": %.6g, \"step_ms\": %.6g, \"copy_ms\": %.6g, \"draw_ms\": %.6g}\n",
+                    c.frames / c.seconds, static_cast<double>(c.steps) / c.seconds, c.step_ms / frames, c.transfer_ms / frames,
+                    c.drawing_ms / frames);
+        return;
+    }
     std::printf("%-42s %9.1f %9.1f %10.2f %10.2f %10.2f %10.2f %9.2f\n", row.name.c_str(), c.frames / c.seconds,
                 static_cast<double>(c.steps) / c.seconds, c.step_ms / frames, c.transfer_ms / frames, c.drawing_ms / frames,
                 1e3 * c.cpu_seconds / frames, c.simulated / c.seconds);
@@ -66,14 +72,17 @@ void measure(const Row& row, double seconds, WindowOptions options) {
 }  // namespace
 
 int bench(const std::string& time, const std::string& scene, const std::vector<scene::Override>& set, const std::string& report_table,
-          const WindowOptions& options) {
+          const WindowOptions& options, bool json) {
     const double seconds = seconds_of(time);
     if (scene.empty() && report_table.empty()) throw BadInput("weir live --bench needs a scene: the report's are not found");
     const auto rows = scene.empty() ? rows_of_report(report_table) : std::vector<Row>{{scene, scene, set}};
-    std::printf("%d x %d pixels, simulation on %d threads, no faster than real time\n", options.width, options.height, threads());
+    if (json && scene.empty()) throw BadInput("weir live --bench --json needs a scene");
+    if (json) return measure(rows.front(), seconds, options, json), exit_success;
+    std::printf("%d x %d pixels, simulation on %d threads, %s\n", options.width, options.height, threads(),
+                options.real_time ? "no faster than real time" : "as fast as it goes");
     std::printf("%-42s %9s %9s %10s %10s %10s %10s %9s\n", "scene", "frames/s", "steps/s", "step [ms]", "copy [ms]", "draw [ms]",
                 "CPU [ms]", "real time");
-    for (const Row& row : rows) measure(row, seconds, options);
+    for (const Row& row : rows) measure(row, seconds, options, json);
     return exit_success;
 }
 

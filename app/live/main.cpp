@@ -18,7 +18,7 @@ struct Arguments {
     std::vector<std::string> set;
     int threads = 0;
     weir::live::WindowOptions window;
-    bool fast = false;
+    bool fast = false, json = false;
 };
 
 /// "cases/plume" and "cases/plume/scene.toml" are both called plume.
@@ -34,13 +34,13 @@ int live(Arguments arguments) {
     std::vector<weir::scene::Override> overrides;
     for (const auto& text : arguments.set) overrides.push_back(weir::scene::to_override(text));
     weir::view::need_display("weir live");
+    arguments.window.real_time = !arguments.fast;
     if (!arguments.bench.empty())
-        return weir::live::bench(arguments.bench, arguments.scene, overrides, arguments.report_table, arguments.window);
+        return weir::live::bench(arguments.bench, arguments.scene, overrides, arguments.report_table, arguments.window, arguments.json);
     if (arguments.scene.empty())
         throw weir::BadInput("weir live needs a scene (a file, a folder with a scene.toml, or the name of a case)");
     const auto scene = weir::live::endless(arguments.scene, overrides);
     weir::live::Session session(scene, folder_of(arguments, scene));
-    arguments.window.real_time = !arguments.fast;
     weir::live::Window window(session, arguments.window);
     window.interact();
     window.stop();
@@ -63,6 +63,7 @@ int main(int argc, char** argv) {
     app.add_flag("--paused", arguments.window.paused, "Begin with a pause");
     app.add_flag("--fast", arguments.fast, "As fast as it goes, not as the clock does");
     app.add_option("--bench", arguments.bench, "Measure frames a second for so long, such as 10s: of the scene, or of the report's scenes");
+    app.add_flag("--json", arguments.json, "With --bench and a scene: the figures as JSON");
     app.add_option("--report-table", arguments.report_table, "Folder of the report's scenes")->group("");
     app.add_option("--width", arguments.window.width, "Pixels")->check(CLI::Range(64, 8192));
     app.add_option("--height", arguments.window.height, "Pixels")->check(CLI::Range(64, 8192));

@@ -17,6 +17,16 @@ namespace {
 constexpr double still_after = 0.06;  // [s]
 /// Pulled fluid crosses the brush so often a second.
 constexpr real pulls = 4;  // [1/s]
+/// Columns rise and fall by so many brushes a second where the hand pours and drains.
+constexpr real rises = 1;  // [1/s]
+
+/// Of the water's surface, by volume.
+real mean_level(const view::Columns& columns) {
+    real sum = 0, depth = 0;
+    for (std::size_t c = 0; c < columns.depth.size(); ++c)
+        sum += columns.depth[c] * (columns.bed[c] + columns.depth[c]), depth += columns.depth[c];
+    return depth > 0 ? sum / depth : 0;
+}
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -83,20 +93,30 @@ void Window::resize_brush(real by) {
     follow_mouse();
 }
 
-/// On the plane through the camera's focus that faces it.
-Vec<3> Window::place_under_mouse() {
+/// The place that is seen at a pixel, at this depth of the view, in [0, 1].
+Vec<3> Window::seen_at(const std::array<int, 2>& at, double depth) {
     vtkRenderer* renderer = scenery_.renderer();
-    double focus[3];
-    renderer->GetActiveCamera()->GetFocalPoint(focus);
-    renderer->SetWorldPoint(focus[0], focus[1], focus[2], 1);
-    renderer->WorldToDisplay();
-    const double depth = renderer->GetDisplayPoint()[2];
-    int at[2];
-    interactor_->GetEventPosition(at);
     renderer->SetDisplayPoint(at[0], at[1], depth);
     renderer->DisplayToWorld();
     const double* world = renderer->GetWorldPoint();
     return {{world[0] / world[3], world[1] / world[3], scenery_.dim() == 2 ? 0 : world[2] / world[3]}};
+}
+
+/// On the plane through the camera's focus that faces it; over columns in 3D, on the level of their water.
+Vec<3> Window::place_under_mouse() {
+    std::array<int, 2> at{};
+    interactor_->GetEventPosition(at.data());
+    vtkRenderer* renderer = scenery_.renderer();
+    if (scenery_.dim() == 3 && shown_->columns.nx > 0) {
+        const Vec<3> near = seen_at(at, 0), ray = seen_at(at, 1) - near;
+        const real along = (mean_level(shown_->columns) - near[1]) / ray[1];
+        if (along > 0 && along < 1) return near + along * ray;
+    }
+    double focus[3];
+    renderer->GetActiveCamera()->GetFocalPoint(focus);
+    renderer->SetWorldPoint(focus[0], focus[1], focus[2], 1);
+    renderer->WorldToDisplay();
+    return seen_at(at, renderer->GetDisplayPoint()[2]);
 }
 
 std::array<int, 2> Window::pixel(const Vec<3>& place) {
@@ -122,12 +142,17 @@ void Window::follow_mouse() {
 }
 
 void Window::tell_hand() {
-    if (!session_.has_hand()) return;
+    if (!shown_->has_hand) return;
     HandKey key;
-    if (acts_) key = {0, tool_, at_, radius_, velocity_, tool_ == HandKind::pull ? pulls * radius_ : 0};
+    if (acts_) key = {0, tool_, at_, radius_, velocity_, tool_ == HandKind::pull ? pulls * radius_ : radius_ * rises};
+    if (tool_ == HandKind::heat) key.temperature = temperature_;
+    if (tool_ == HandKind::push || tool_ == HandKind::grab) key.speed = 0;
     scenery_.show_brush(at_, radius_, acts_);
     stale_ = true;
-    runner_->wish([&](Wishes& w) { w.hand = key; });
+    runner_->wish([&](Wishes& w) {
+        w.hand = key;
+        if (acts_) w.touch = key;
+    });
 }
 
 }  // namespace weir::live

@@ -60,6 +60,7 @@ void Runner::run() {
             wishes = wishes_;
             wishes_.reset = wishes_.checkpoint = false;
             wishes_.changes.clear(), wishes_.field.clear();
+            if (!wishes_.paused || wishes_.single_steps > 0) wishes_.touch.reset();
             if (wishes_.single_steps > 0) --wishes_.single_steps;
         }
         if (wishes.quit) return;
@@ -86,7 +87,7 @@ void Runner::obey(Wishes wishes) {
             message_ = error.what();
         }
     const bool steps = (!paused_ || wishes.single_steps > 0) && !failed_ && !session_.simulation().finished();
-    if (steps) session_.hand(wishes.hand), step();
+    if (steps) session_.hand(wishes.touch.value_or(wishes.hand)), step();
     bool wanted = !steps;  // nothing moves: the change alone is shown
     {
         const std::lock_guard lock(mutex_);
@@ -141,6 +142,10 @@ void Runner::publish() {
     s.fields = field_names(fields);
     s.time = simulation.time(), s.steps = simulation.steps(), s.report = report_;
     s.factor = factor_, s.step_ms = step_ms_, s.passes = passes_, s.paused = paused_, s.message = message_;
+    const Hand* hand = simulation.solver().hand();
+    s.has_hand = hand != nullptr;
+    if (hand) s.hand_can = hand->can;
+    if (hand && hand->has(HandKind::heat)) s.temperatures = temperatures_of(fields);
     if (simulation.finished()) s.message = "the run has ended: r begins again";
     s.transfer_ms = transfer_ms_ = 1e3 * seconds(clock::now() - start);
     const std::lock_guard lock(mutex_);

@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,7 +16,8 @@ namespace weir::live {
 
 /// What the window wants; the runner takes it between two steps.
 struct Wishes {
-    HandKey hand;  // as it is now
+    HandKey hand;                  // as it is now
+    std::optional<HandKey> touch;  // the last that acted and that no step has seen yet: what is shorter than a step acts for one
     bool paused = false;
     int single_steps = 0;
     bool reset = false, checkpoint = false, quit = false;

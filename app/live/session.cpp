@@ -3,6 +3,7 @@
 #include "geometry/hand.hpp"
 #include "geometry/mesh/mesh.hpp"
 #include "output/atomic_file.hpp"
+#include "rigid/bodies.hpp"
 #include "scene/names.hpp"
 #include "sim/registry.hpp"
 
@@ -40,20 +41,37 @@ void Session::reset() { simulation_ = std::make_unique<Simulation>(scene_); }
 void Session::hand(HandKey key) {
     Hand* hand = simulation_->solver().hand();
     if (!hand) return;
+    if (!hand->has(key.kind)) key = {};
     key.time = simulation_->time();
     auto& keys = hand->keys;
     const auto next =
         std::upper_bound(keys.begin(), keys.end(), key.time, [](real time, const HandKey& other) { return time < other.time; });
     const bool first = next == keys.begin();
     const HandKey before = first ? HandKey{} : *std::prev(next);
+    if (key.kind == HandKind::grab) key.body = before.kind == HandKind::grab ? before.body : nearest_body(key.centre);
     const bool same =
-        key.kind == before.kind && (key.kind == HandKind::off || (key.centre == before.centre && key.radius == before.radius &&
-                                                                  key.velocity == before.velocity && key.speed == before.speed));
+        key.kind == before.kind &&
+        (key.kind == HandKind::off || (key.centre == before.centre && key.radius == before.radius && key.velocity == before.velocity &&
+                                       key.speed == before.speed && key.temperature == before.temperature));
     if (same) return;
     if (!first && before.time == key.time)
         *std::prev(next) = key;
     else
         keys.insert(next, key);
+}
+
+/// By its centre of mass.
+int Session::nearest_body(const Vec<3>& place) const {
+    const FieldSet fields = simulation_->fields();
+    const FieldView* x = fields.find(rigid::body_set_name, "position");
+    int nearest = 0;
+    real least = infinity;
+    for (std::size_t b = 0; x && b < x->data[0].size(); ++b) {
+        Vec<3> apart = place;
+        for (std::size_t a = 0; a < x->data.size(); ++a) apart[static_cast<int>(a)] -= x->data[a][b];
+        if (norm(apart) < least) least = norm(apart), nearest = static_cast<int>(b);
+    }
+    return nearest;
 }
 
 std::string Session::text(const std::vector<Change>& more) const {

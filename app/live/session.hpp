@@ -24,7 +24,8 @@ public:
     const std::filesystem::path& folder() const { return folder_; }
     bool has_hand() const { return simulation_->solver().hand() != nullptr; }
     StepReport step() { return simulation_->step(); }
-    /// From the next step on; its time is now.
+    /// From the next step on; its time is now. What the solver does not have is no hand; a hand that takes hold of a body takes the
+    /// nearest, and keeps that until it lets go.
     void hand(HandKey key);
     /// As soon as it can be told in a scene: some steps from now.
     void steer(const scene::Override& change) { simulation_->set_at(simulation_->horizon(), change); }
@@ -39,6 +40,7 @@ public:
     std::filesystem::path finish();
 
 private:
+    int nearest_body(const Vec<3>& place) const;
     /// As a change in the scene; none where it has ended.
     std::vector<Change> ending() const;
 

@@ -121,6 +121,16 @@ std::vector<std::string> field_names(const FieldSet& fields) {
     return names;
 }
 
+std::array<real, 2> temperatures_of(const FieldSet& fields) {
+    std::array<real, 2> range{infinity, -infinity};
+    for (const auto& f : fields.fields)
+        if (f.name == "temperature" && !f.data[0].empty()) {
+            const auto [least, most] = std::minmax_element(f.data[0].begin(), f.data[0].end());
+            range = {std::min(range[0], *least), std::max(range[1], *most)};
+        }
+    return range;
+}
+
 void take_fields(const FieldSet& fields, const std::string& field, Snapshot& into) {
     const std::string array = array_of(field);
     into.field = field;

@@ -20,6 +20,9 @@ struct Snapshot {
     std::vector<std::pair<std::string, double>> passes;  // ms a step, the longest first
     bool paused = false;
     std::string message;
+    bool has_hand = false;
+    std::array<bool, hand_kinds.size()> hand_can{};
+    std::array<real, 2> temperatures{infinity, -infinity};  // the coldest and the warmest, where there is any [K]
 
     std::string field;                // what colours show
     std::vector<std::string> fields;  // that could
@@ -41,5 +44,8 @@ struct Snapshot {
 std::vector<std::string> field_names(const FieldSet& fields);
 /// Points and values of the field; whatever does not have it is shown plain.
 void take_fields(const FieldSet& fields, const std::string& field, Snapshot& into);
+
+/// Of what has a temperature.
+std::array<real, 2> temperatures_of(const FieldSet& fields);
 
 }  // namespace weir::live

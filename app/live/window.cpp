@@ -20,9 +20,13 @@ namespace {
 
 constexpr double told_every = 0.25;  // [s]: text is dear to draw
 
+/// A brush that heats is so much warmer than the warmest fluid, or colder than the coldest.
+constexpr real warmer = 40;  // [K]
+
 const char* const help_text =
     "left drag    the hand acts in its brush\n"
-    "1 2 3 4      push, pull, pour, drain\n"
+    "1 2 3 4 6    push, pull, pour, drain, hold a body\n"
+    "5            heat; once more: cool\n"
     "wheel        size of the brush\n"
     "right drag   camera;   Ctrl + wheel, + and -   nearer and farther\n"
     "space        pause;   .   one step;   r   from the start again\n"
@@ -138,10 +142,29 @@ void Window::tell() {
     if (s.report.iterations > 0) text += fmt::format("   {} iterations", s.report.iterations);
     if (!std::isnan(s.report.density_error)) text += fmt::format("   density error {:.2g} %", 100 * s.report.density_error);
     if (!std::isnan(s.report.max_divergence)) text += fmt::format("   divergence {:.1e} 1/s", s.report.max_divergence);
-    text += session_.has_hand() ? fmt::format("\nhand: {}, {:.3g} m", hand_kinds[static_cast<std::size_t>(tool_)], radius_)
-                                : "\nthis solver has no hand";
+    text += "\n" + told_of_hand(s);
     if (!knobs_.empty()) text += fmt::format("   {} = {:.4g}", knobs_.chosen().name(), knobs_.chosen().value());
     scenery_.tell(text + "   F1: keys", help_ ? help_text : "");
+}
+
+std::string Window::told_of_hand(const Snapshot& s) const {
+    if (!s.has_hand) return "this solver has no hand";
+    const auto tool = static_cast<std::size_t>(tool_);
+    if (!s.hand_can[tool]) {
+        const char* why = tool_ == HandKind::heat   ? "the fluid of this scene carries no heat"
+                          : tool_ == HandKind::grab ? "no body here can be held"
+                                                    : "these columns have no currents";
+        return fmt::format("hand: no {}: {}", hand_kinds[tool], why);
+    }
+    if (tool_ == HandKind::heat) return fmt::format("hand: {} to {:.4g} K, {:.3g} m", cools_ ? "cool" : "heat", temperature_, radius_);
+    return fmt::format("hand: {}, {:.3g} m", hand_kinds[tool], radius_);
+}
+
+void Window::choose_tool(HandKind tool) {
+    cools_ = tool == HandKind::heat && tool_ == HandKind::heat && !cools_;
+    tool_ = tool;
+    temperature_ = cools_ ? std::max(1.0, shown_->temperatures[0] - warmer) : shown_->temperatures[1] + warmer;
+    tell_hand();
 }
 
 void Window::press(const std::string& key) {
@@ -159,8 +182,8 @@ void Window::press(const std::string& key) {
     if (key == "Right") knobs_.choose(1);
     if (key == "Up" || key == "Down")
         if (auto change = knobs_.turn(key == "Up" ? 1 : -1)) runner_->wish([&](Wishes& w) { w.changes.push_back(*change); });
-    for (int tool = 1; tool <= 4; ++tool)
-        if (key == std::to_string(tool)) tool_ = static_cast<HandKind>(tool), tell_hand();
+    for (std::size_t tool = 1; tool < hand_kinds.size(); ++tool)
+        if (key == std::to_string(tool)) choose_tool(static_cast<HandKind>(tool));
     told_ = {};
     stale_ = true;
     if (key == "q" || key == "Escape") interactor_->TerminateApp();

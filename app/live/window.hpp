@@ -81,8 +81,11 @@ private:
     void next_field();
     void picture();
     Vec<3> place_under_mouse();
+    Vec<3> seen_at(const std::array<int, 2>& pixel, double depth);
     void follow_mouse();
     void tell_hand();
+    void choose_tool(HandKind tool);
+    std::string told_of_hand(const Snapshot& s) const;
     void draw();
     void tell();
 
@@ -95,7 +98,8 @@ private:
     vtkNew<vtkRenderWindowInteractor> interactor_;
     HandKind tool_ = HandKind::push;
     bool acts_ = false, turns_camera_ = false, help_ = false, paused_ = false, stale_ = true;
-    real radius_ = 0.1;
+    real radius_ = 0.1, temperature_ = 0;
+    bool cools_ = false;
     Vec<3> at_{}, velocity_{};
     std::array<int, 2> mouse_{};
     clock::time_point moved_, told_, began_, ends_;

@@ -2,6 +2,7 @@
 // a level set, with the tall cells that it was solved on.
 #include "app/view/stage.hpp"
 #include "app/view/water.hpp"
+#include "core/solver.hpp"
 
 #include <vtkActor.h>
 #include <vtkCellData.h>

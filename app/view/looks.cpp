@@ -208,7 +208,7 @@ void look_at_all(vtkRenderer* renderer, const Domain& domain) {
     camera->SetPosition(middle(0) + (flat ? 0 : 0.45), middle(1) + (flat ? 0 : 0.42), middle(2) + 1);
     renderer->ResetCamera(domain.box.data());
     const bool wide = domain.box[1] - domain.box[0] > 1.6 * (domain.box[3] - domain.box[2]);
-    if (flat && !wide) camera->Zoom(1.2);  // room is left for a turn that a flat picture does not take, and for the scale
+    if (flat) camera->Zoom(wide ? 0.95 : 1.2);  // room is left for a turn that a flat picture does not take, and for the scale
 }
 
 std::string main_field(const std::vector<std::string>& names) {

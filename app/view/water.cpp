@@ -163,13 +163,13 @@ vtkSmartPointer<vtkPolyData> liquid_mesh(const Level& level, const Domain& domai
         vtkNew<vtkFlyingEdges3D> surface;
         surface->SetInputData(image);
         surface->SetValue(0, 0);
-        surface->ComputeNormalsOn();
+        surface->ComputeNormalsOff();
         surface->InterpolateAttributesOn();
         surface->Update();
         mesh = surface->GetOutput();
     }
     mesh->GetPointData()->SetActiveScalars(level.values.empty() ? nullptr : "shown");
-    return mesh;
+    return domain.flat() ? mesh : smooth(mesh);
 }
 
 vtkSmartPointer<vtkPolyData> cell_lines(const Level& level, const Domain& domain) {
@@ -202,9 +202,10 @@ vtkSmartPointer<vtkPolyData> cell_lines(const Level& level, const Domain& domain
         }
     };
     const double dx = level.spacing[0], dz = level.spacing[2], x0 = level.origin[0], z0 = level.origin[2];
+    const double before = 0.1 * domain.cell;  // in front of the liquid's own surface, so that lines are whole
     const int last = domain.flat() ? 0 : n[2] - 1;
-    for (int i = 0; i < n[0]; ++i) column(i, last, {x0 + i * dx, 0, domain.flat() ? 0.25 * domain.cell : z0 + n[2] * dz}, {dx, 0, 0});
-    for (int k = 0; !domain.flat() && k < n[2]; ++k) column(n[0] - 1, k, {x0 + n[0] * dx, 0, z0 + k * dz}, {0, 0, dz});
+    for (int i = 0; i < n[0]; ++i) column(i, last, {x0 + i * dx, 0, domain.flat() ? before : z0 + n[2] * dz + before}, {dx, 0, 0});
+    for (int k = 0; !domain.flat() && k < n[2]; ++k) column(n[0] - 1, k, {x0 + n[0] * dx + before, 0, z0 + k * dz}, {0, 0, dz});
     auto mesh = vtkSmartPointer<vtkPolyData>::New();
     mesh->SetPoints(points);
     mesh->SetLines(lines);

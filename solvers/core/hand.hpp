@@ -1,31 +1,38 @@
-// The hand: a round brush that pushes the fluid it covers to a velocity, pulls it together, pours or drains, by keyframes. A keyframe holds
-// until the next, so that what comes later never changes what has been: a hand that is recorded while a run goes on repeats it bit for bit.
+// The hand: a round brush that pushes the fluid it covers to a velocity, pulls it together, pours, drains or heats it, or takes hold of a
+// body, by keyframes. A keyframe holds until the next, so that what comes later never changes what has been: a hand that is recorded while
+// a run goes on repeats it bit for bit.
 //
 //   du/dt = rate w(x) (target − u),   w = (1 − |x − centre|²/radius²)² inside the brush,
 //
 // taken exactly over the step, u += (1 − exp(−rate w dt)) (target − u): stable for any rate. A target is cut to one cell (or spacing of
-// particles) a step. What it gives is accounted for: momentum and mass since the start.
+// particles) a step. Heat goes the same way towards the enthalpy of a temperature. A body follows by an acceleration rate (target − v) of
+// its centre of mass, target = (rate/4) (centre − x): a spring, critically damped. What it gives is accounted for: momentum, mass and heat
+// since the start.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/types.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 namespace weir {
 
-enum class HandKind { off, push, pull, pour, drain };
-inline constexpr std::array hand_kinds{"off", "push", "pull", "pour", "drain"};  // in the order of HandKind
+enum class HandKind { off, push, pull, pour, drain, heat, grab };
+inline constexpr std::array hand_kinds{"off", "push", "pull", "pour", "drain", "heat", "grab"};  // in the order of HandKind
 
 struct HandKey {
     real time = 0;  // from here on [s]
     HandKind kind = HandKind::off;
     Vec<3> centre{};
     real radius = 0;
-    Vec<3> velocity{};  // the target of push and pour [m/s]
-    real speed = 0;     // of pull, at the brush's edge towards its centre [m/s]
+    Vec<3> velocity{};     // the target of push and pour [m/s]
+    real speed = 0;        // of pull, at the brush's edge towards its centre; of a surface's rise or fall in columns [m/s]
+    real temperature = 0;  // the target of heat [K]
+    int body = -1;         // that grab takes hold of
 };
 
 /// The brush of a step.
@@ -33,7 +40,8 @@ template <int D>
 struct Brush {
     HandKind kind = HandKind::off;
     Vec<D> centre{}, velocity{};
-    real radius = 0, speed = 0;
+    real radius = 0, speed = 0, temperature = 0;
+    int body = -1;
 
     bool moves() const { return kind == HandKind::push || kind == HandKind::pull || kind == HandKind::pour; }
     bool covers(const Vec<D>& x) const { return dot(x - centre, x - centre) < radius * radius; }
@@ -54,6 +62,13 @@ struct Hand {
     real rate = 0;              // [1/s]
     Vec<3> impulse{};           // given to the fluid since the start, poured and drained liquid's momentum included [kg m/s]
     real mass = 0;              // poured less drained [kg]
+    real heat = 0;              // given to the fluid since the start [J]
+    std::array<bool, hand_kinds.size()> can{};  // what the solver has of it, in this scene
+
+    void allow(std::initializer_list<HandKind> kinds) {
+        for (const HandKind kind : kinds) can[static_cast<std::size_t>(kind)] = true;
+    }
+    bool has(HandKind kind) const { return can[static_cast<std::size_t>(kind)]; }
 
     /// In the step that begins at t.
     template <int D>
@@ -61,17 +76,17 @@ struct Hand {
         const auto next = std::upper_bound(keys.begin(), keys.end(), t, [](real time, const HandKey& key) { return time < key.time; });
         if (next == keys.begin()) return {};
         const HandKey& key = *std::prev(next);
-        Brush<D> brush{key.kind, {}, {}, key.radius, key.speed};
+        Brush<D> brush{key.kind, {}, {}, key.radius, key.speed, key.temperature, key.body};
         for (int a = 0; a < D; ++a) brush.centre[a] = key.centre[a], brush.velocity[a] = key.velocity[a];
         return brush;
     }
     /// How much of the way to the target a place of this weight goes in a step.
     real share(real weight, real dt) const { return -std::expm1(-rate * weight * dt); }
 
-    void save(Checkpoint& to) const { to.put_value("hand", std::array<real, 4>{impulse[0], impulse[1], impulse[2], mass}); }
+    void save(Checkpoint& to) const { to.put_value("hand", std::array<real, 5>{impulse[0], impulse[1], impulse[2], mass, heat}); }
     void restore(const Checkpoint& from) {
-        const auto given = from.get_value<std::array<real, 4>>("hand");
-        impulse = {{given[0], given[1], given[2]}}, mass = given[3];
+        const auto given = from.get_value<std::array<real, 5>>("hand");
+        impulse = {{given[0], given[1], given[2]}}, mass = given[3], heat = given[4];
     }
 };
 

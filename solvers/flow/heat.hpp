@@ -31,6 +31,8 @@ public:
     Heat(const scene::Scene& scene, MacState<D>& state);
     /// Enthalpies from the temperatures at the start, which it refuses below 0 K and above boiling.
     void start(MacState<D>& s, const scene::Scene& scene);
+    /// The hand heats too.
+    void follow(std::shared_ptr<Hand> hand, MacState<D>& s) { supply_.follow(std::move(hand), melting_, s["enthalpy"]); }
     /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it (conduction.hpp).
     void conduct(MacState<D>& s, real dt);
     /// u += dt g ∫β dT along y, β the substance's expansion from its melting point (Boussinesq); nothing in ice.

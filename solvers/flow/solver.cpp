@@ -119,7 +119,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       side_rate_(fastest_side(state_)),
       wants_vorticity_(lists(scene, "vorticity")),
       wants_divergence_(lists(scene, "divergence")),
-      hand_(geometry::make_hand(scene)) {
+      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
     if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::implicit));
     const auto& cells = state_.cells.values();
     if (std::none_of(cells.begin(), cells.end(), [](poisson::Cell c) { return c == poisson::Cell::fluid; }))
@@ -136,12 +136,14 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     if (heat_) {
         if (solids_.moving()) scene.refuse("solids", "solids that move and a substance that melts are not simulated together");
         heat_->start(state_, scene);
+        if (hand_) heat_->follow(hand_, state_);
     }
     if (bodies_) {
         if (options_.scheme == Scheme::conservative)
             scene.refuse("bodies", "scheme.advection = \"conservative\" takes a step in stages, and bodies move in whole steps",
                          "scheme.advection: semi_lagrangian, maccormack");
         bodies_->start(state_, solids_);
+        if (hand_) bodies_->follow(hand_, scene);
     }
     for (auto& field : state_.fields)
         if (!field.derived) carried_fields_.push_back({&field.before, &field.boundary, &field.values});

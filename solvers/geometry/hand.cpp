@@ -14,7 +14,11 @@ scene::Variant hand_schema() {
          .type = Type::choice,
          .doc =
              "push: towards `velocity`. pull: towards the brush's centre, with `speed` at its edge. pour: fluid with `velocity` fills what "
-             "is empty in the brush (smoke, where fluid fills the domain). drain: fluid (smoke) is taken out. off: nothing.",
+             "is empty in the brush (smoke, where fluid fills the domain; columns of water rise with `speed`). drain: fluid (smoke) is "
+             "taken out "
+             "(columns sink with `speed`). heat: towards `temperature`, where a substance is named. grab: a spring to the brush's centre "
+             "on "
+             "the centre of mass of a body. off: nothing.",
          .fallback = std::string("push"),
          .choices = {hand_kinds.begin(), hand_kinds.end()}},
         {.name = "centre", .type = Type::numbers, .doc = "Of the brush; obligatory but for off.", .unit = "m", .length = -1},
@@ -25,26 +29,51 @@ scene::Variant hand_schema() {
          .unit = "m/s",
          .fallback = std::vector<double>{0},
          .length = -1},
-        {.name = "speed", .type = Type::number, .doc = "Of pull.", .unit = "m/s", .fallback = 0.0, .min = 0}};
-    return {"hand",
-            "A round brush by keyframes that pushes, pulls, pours or drains: du/dt = rate w (target - u) with w = (1 - r^2/radius^2)^2 "
-            "inside it, taken exactly over the step; no target is faster than a cell a step. The integrals hand_impulse_x .. and hand_mass "
-            "tell what it has given. It does not reach around periodic sides.",
-            {{.name = "rate",
-              .type = Type::number,
-              .doc = "How fast the fluid follows in the middle of the brush.",
-              .unit = "1/s",
-              .fallback = 50.0,
-              .min = 0,
-              .steerable = true},
-             {.name = "keyframes", .type = Type::tables, .doc = "In the order of time.", .keys = keyframe}},
-            {"rate"}};
+        {.name = "speed",
+         .type = Type::number,
+         .doc = "Of pull; in a height field of pour and drain.",
+         .unit = "m/s",
+         .fallback = 0.0,
+         .min = 0},
+        {.name = "temperature",
+         .type = Type::number,
+         .doc = "Of heat, where it is obligatory; no hotter than where the liquid boils.",
+         .unit = "K",
+         .min = 0,
+         .min_open = true},
+        {.name = "body",
+         .type = Type::integer,
+         .doc = "Of grab: its number in the list `bodies`, from 0.",
+         .fallback = std::int64_t{0},
+         .min = 0}};
+    return {
+        "hand",
+        "A round brush by keyframes that pushes, pulls, pours, drains, heats, or takes hold of a body: du/dt = rate w (target - u) with w "
+        "= (1 - r^2/radius^2)^2 "
+        "inside it, taken exactly over the step; no target is faster than a cell a step. The integrals hand_impulse_x .., hand_mass and "
+        "hand_heat tell what it has given. It does not reach around periodic sides.",
+        {{.name = "rate",
+          .type = Type::number,
+          .doc = "How fast the fluid follows in the middle of the brush.",
+          .unit = "1/s",
+          .fallback = 50.0,
+          .min = 0,
+          .steerable = true},
+         {.name = "keyframes", .type = Type::tables, .doc = "In the order of time.", .keys = keyframe}},
+        {"rate"}};
 }
 
 namespace {
 
 HandKind hand_kind_named(const std::string& name) {
     return static_cast<HandKind>(std::find(hand_kinds.begin(), hand_kinds.end(), name) - hand_kinds.begin());
+}
+
+std::string kinds_of(const Hand& hand) {
+    std::string list;
+    for (std::size_t k = 0; k < hand_kinds.size(); ++k)
+        if (hand.can[k]) list += (list.empty() ? "" : ", ") + std::string(hand_kinds[k]);
+    return list;
 }
 
 Vec<3> point(const scene::Table& t, const char* key) {
@@ -58,20 +87,26 @@ Vec<3> point(const scene::Table& t, const char* key) {
 
 }  // namespace
 
-std::shared_ptr<Hand> make_hand(const scene::Scene& scene) {
+std::shared_ptr<Hand> make_hand(const scene::Scene& scene, std::initializer_list<HandKind> kinds) {
     const scene::Table* table = scene.effect("hand");
     if (!table) return nullptr;
     auto hand = std::make_shared<Hand>();
     hand->rate = table->number("rate");
+    hand->allow({HandKind::off});
+    hand->allow(kinds);
     const auto& frames = table->tables("keyframes");
     hand->keys.reserve(frames.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const scene::Table& t = frames[i];
         const std::string path = "effects.hand.keyframes[" + std::to_string(i) + "]";
         hand->keys.push_back({t.number("time"), hand_kind_named(t.text("kind")), point(t, "centre"), t.number_or("radius", 0),
-                              point(t, "velocity"), t.number("speed")});
+                              point(t, "velocity"), t.number("speed"), t.number_or("temperature", 0), static_cast<int>(t.integer("body"))});
         if (i > 0 && hand->keys[i].time < hand->keys[i - 1].time) scene.refuse(path + ".time", "it lies before that of the keyframe above");
+        if (!hand->has(hand->keys[i].kind))
+            scene.refuse(path + ".kind", "the hand has no \"" + t.text("kind") + "\" in this scene", "it has " + kinds_of(*hand));
         if (hand->keys[i].kind == HandKind::off) continue;
+        if (hand->keys[i].kind == HandKind::heat && !t.has("temperature"))
+            scene.refuse(path, path + " has no \"temperature\"", "heat goes towards one");
         for (const char* key : {"centre", "radius"})
             if (!t.has(key)) scene.refuse(path, path + " has no \"" + key + "\"", "only a keyframe that is off needs none");
     }
@@ -87,7 +122,9 @@ scene::Table to_table(const HandKey& key, int dim) {
     if (key.kind == HandKind::off) return t;
     t.set("centre", list(key.centre), given);
     t.set("radius", key.radius, given);
-    if (key.kind == HandKind::pull) t.set("speed", key.speed, given);
+    if (key.speed != 0) t.set("speed", key.speed, given);
+    if (key.kind == HandKind::heat) t.set("temperature", key.temperature, given);
+    if (key.kind == HandKind::grab) t.set("body", std::int64_t{key.body}, given);
     if (key.kind == HandKind::push || key.kind == HandKind::pour) t.set("velocity", list(key.velocity), given);
     return t;
 }
@@ -96,6 +133,7 @@ void sum_up(const Hand& hand, int dim, std::vector<Integral>& list) {
     const std::string per_depth = dim == 2 ? "/m" : "";
     for (int a = 0; a < dim; ++a) list.push_back({std::string("hand_impulse_") + "xyz"[a], "kg m/s" + per_depth, hand.impulse[a]});
     list.push_back({"hand_mass", "kg" + per_depth, hand.mass});
+    if (hand.has(HandKind::heat)) list.push_back({"hand_heat", "J" + per_depth, hand.heat});
 }
 
 }  // namespace weir::geometry

@@ -47,6 +47,7 @@ Columns::Columns(const scene::Scene& scene)
       periodic_z_(state_.sides(1, 0).kind == SideKind::periodic),
       sweep_(state_.plane, periodic_x_, periodic_z_),
       floats_(make_floats(scene, state_.plane), state_.plane, state_.bed, state_.h, state_.g, state_.rho, periodic_x_, periodic_z_),
+      hand_(geometry::make_hand(scene, {HandKind::pour, HandKind::drain})),
       depth_(state_.plane.count()),
       nothing_(state_.plane.count(), 0),
       cfl_(scene.number("time.cfl")) {
@@ -71,6 +72,7 @@ Columns::Columns(const scene::Scene& scene)
         }
     }
     if (scene.effect("gravity")) plans_.push_back({.name = "gravity", .inside = "move columns"});
+    if (hand_) plans_.push_back({.name = "hand", .pass = effect_pass("hand")});
     if (const auto* t = scene.effect("damping")) {
         damping_ = t->number("rate");
         plans_.push_back({.name = "damping", .pass = effect_pass("damping")});
@@ -111,6 +113,10 @@ void Columns::make_stiffness() {
 real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pace(state_.time)); }
 
 StepReport Columns::step(real dt) {
+    if (hand_) {
+        const auto timed = passes_.time("effect hand");
+        pour_and_drain(*hand_, state_, surface_, dt, [&](std::size_t c) { return floats_.covers(c); });
+    }
     if (!floats_.empty()) {
         const auto timed = passes_.time("place floats");
         floats_.before(state_.time + dt, surface_, rate_, k_);
@@ -222,6 +228,7 @@ std::vector<Integral> Columns::integrals() const {
                                   {"poured_volume", "m^3", state_.poured},
                                   {"volume_balance", "m^3", volume - state_.poured},
                                   {"potential_energy", "J", 0.5 * state_.rho * state_.g * raised}};
+    if (hand_) geometry::sum_up(*hand_, state_.plane.dim, list);
     for (std::size_t b = 0; b < floats_.count(); ++b) {
         const std::string name = fmt::format("float{}_", b);
         const Pushed& p = floats_.pushed(b);
@@ -242,6 +249,7 @@ void Columns::save(Checkpoint& to) const {
     to.put_value("poured", state_.poured);
     to.put_value("through", through_);
     to.put_value("steps", steps_);
+    if (hand_) hand_->save(to);
     if (!floats_.empty()) floats_.save(to);
 }
 
@@ -252,6 +260,7 @@ void Columns::restore(const Checkpoint& from) {
     state_.poured = from.get_value<real>("poured");
     through_ = from.get_value<real>("through");
     steps_ = from.get_value<std::int64_t>("steps");
+    if (hand_ && from.has("hand")) hand_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
 }
 

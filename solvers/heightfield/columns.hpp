@@ -2,6 +2,7 @@
 #pragma once
 #include "heightfield/effects.hpp"
 #include "heightfield/floats.hpp"
+#include "heightfield/hand.hpp"
 #include "heightfield/sweep.hpp"
 
 namespace weir::heightfield {
@@ -16,6 +17,7 @@ public:
     FieldSet fields() const override;
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
+    Hand* hand() const override { return hand_.get(); }
     real time() const override { return state_.time; }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
@@ -38,6 +40,7 @@ private:
     Sweep sweep_;
     Floats floats_;
     std::vector<EffectPlan> plans_;
+    std::shared_ptr<Hand> hand_;  // none where the scene names none
     mutable Field depth_, displaced_;
     Field nothing_;
     Passes passes_;

@@ -1,6 +1,7 @@
 #include "heightfield/effects.hpp"
 
 #include "core/parallel.hpp"
+#include "geometry/hand.hpp"
 #include "scene/gravity.hpp"
 
 #include <algorithm>
@@ -149,7 +150,8 @@ std::vector<scene::Variant> effect_schemas() {
                .unit = "m"},
               {.name = "start", .type = Type::number, .doc = "It begins then.", .unit = "s", .fallback = 0.0, .min = 0},
               {.name = "end", .type = Type::number, .doc = "It ends then.", .unit = "s", .min = 0}},
-             {"rate"}}};
+             {"rate"}},
+            geometry::hand_schema()};
 }
 
 Effects<State> make_effects(const scene::Scene& scene, const State& state, const char* moved_in) {

@@ -1,6 +1,7 @@
 // The shallow-water equations on a plane of columns: second order in space and time, water at rest at rest, no negative depth.
 #pragma once
 #include "heightfield/effects.hpp"
+#include "heightfield/hand.hpp"
 #include "heightfield/rows.hpp"
 #include "heightfield/start.hpp"
 
@@ -15,6 +16,7 @@ public:
     FieldSet fields() const override;
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
+    Hand* hand() const override { return hand_.get(); }
     real time() const override { return state_.time; }
     std::vector<EditableField> editable() override;
     void edited(const EditableField& field) override;
@@ -38,6 +40,7 @@ private:
     Field terrain_, nothing_;       // the bed without solids, where these move; the vertical velocity
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
+    std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

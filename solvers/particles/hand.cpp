@@ -60,9 +60,25 @@ void HandOnParticles<D>::apply(Flow<D>& f, real dt) {
 
 template <int D>
 void HandOnParticles<D>::pour_and_drain(Fluid<D>& fluid) {
-    const auto brush = hand_->at<D>(fluid.time);
-    if (brush.kind == HandKind::pour) pour(fluid, brush);
-    if (brush.kind == HandKind::drain) drain(fluid, brush);
+    brush_ = hand_->at<D>(fluid.time);
+    if (brush_.kind == HandKind::pour) pour(fluid, brush_);
+    if (brush_.kind == HandKind::drain) drain(fluid, brush_);
+}
+
+template <int D>
+real HandOnParticles<D>::warm(Fluid<D>& fluid, const Heat<D>& heat, real dt) {
+    if (brush_.kind != HandKind::heat) return 0;
+    const real wanted = heat.enthalpy(brush_.temperature);
+    const real given = fluid.mass * block_sum(fluid.count(), [&](int i) -> real {
+                           const real weight = brush_.weight(fluid.position(i));
+                           if (weight == 0) return 0;
+                           real& h = fluid.enthalpy[static_cast<std::size_t>(i)];
+                           const real change = hand_->share(weight, dt) * (wanted - h);
+                           h += change;
+                           return change;
+                       });
+    hand_->heat += given;
+    return given;
 }
 
 template <int D>

@@ -3,6 +3,7 @@
 #pragma once
 #include "geometry/hand.hpp"
 #include "particles/flow.hpp"
+#include "particles/heat.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -19,6 +20,8 @@ public:
     std::size_t bytes() const override { return taken_.capacity(); }
     /// What it adds and takes in the step that begins now: before the neighbours are found.
     void pour_and_drain(Fluid<D>& fluid);
+    /// What it heats in that step; the heat that it gives [J].
+    real warm(Fluid<D>& fluid, const Heat<D>& heat, real dt);
 
 private:
     void pour(Fluid<D>& fluid, const Brush<D>& brush);
@@ -27,6 +30,7 @@ private:
     void account(const Vec<D>& u, real mass);
 
     std::shared_ptr<Hand> hand_;
+    Brush<D> brush_;                   // of the step that goes on
     std::vector<std::uint8_t> taken_;  // places of the lattice in the brush's box beside which there is no room
 };
 

@@ -61,6 +61,8 @@ public:
     int frozen() const { return frozen_; }
     std::string concern() const;
 
+    /// Of a temperature; no more than the liquid has where it begins to boil [J/kg].
+    real enthalpy(real T) const { return std::min(curve_.enthalpy(T), states_.liquid_end); }
     /// What the scene lets boil; nullptr: nothing.
     Vapour<D>* vapour() const { return vapour_.get(); }
     /// How deep the particles are and what density they are to have; false: none boils.

@@ -12,7 +12,7 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
     if (fluid_.warm) this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain), this->heat_->count_frozen(fluid_);
-    this->hand_ = geometry::make_hand(scene);
+    this->hand_ = geometry::make_hand(scene, this->heat_ ? geometry::warming_kinds : geometry::moving_kinds);
     if (!this->hand_) return;
     auto hand = std::make_unique<HandOnParticles<D>>(this->hand_);
     sources_ = hand.get();
@@ -48,6 +48,7 @@ void ThreadedSolver<D>::conduct(real dt) {
     const auto timed = this->passes_.time("heat");
     Heat<D>& heat = *this->heat_;
     heat.feed(fluid_, dt);
+    if (sources_) heat.add(sources_->warm(fluid_, heat, dt));
     const auto n = static_cast<std::size_t>(pairs_.size());
     if (warming_.size() < n) warming_.resize(n + n / 8);
     if (heat.held() && by_walls_.size() < n) by_walls_.resize(warming_.size());

@@ -4,6 +4,8 @@
 
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
+#include "reconstruction/contour.hpp"
+#include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
 
 #include <fmt/format.h>
@@ -253,6 +255,15 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
     return parsed();
 }
 
+/// What a copy takes to make the scene's surface: so much a particle, or a cell of a level set.
+double surface_bytes(const scene::Scene& scene, const Held& copy, const Foretold& f) {
+    const auto surface = reconstruction::can_contour() ? reconstruction::reconstruction_of(scene) : nullptr;
+    if (!surface) return 0;
+    surface->make(static_cast<const Solver&>(*copy.solver).fields(), 0);
+    const double times = copy.particles > 0 ? f.particles / copy.particles : f.cells / product(copy.cells);
+    return times * static_cast<double>(surface->bytes());
+}
+
 Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells) {
     const auto cells = scene.root().numbers("grid.cells");
     const bool small = product(cells) <= copy_cells;
@@ -267,6 +278,7 @@ Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind
     f.exact = product(fine.cells) == f.cells;
     f.particles = f.exact ? fine.particles : wet > 0 ? wet * f.cells : fine.particles / product(fine.cells) * f.cells;
     f.fields = fields_of(fine.fields, cells, f.particles);
+    f.surface_bytes = surface_bytes(small ? scene : small_copy(scene, kinds, enough, how), fine, f);
     f.effects = fine.solver->effects();
     if (f.exact || f.particle_solver) {
         const double times = f.exact ? 1 : fine.particles > 0 ? f.particles / fine.particles : f.cells / product(fine.cells);
@@ -333,7 +345,8 @@ double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool fr
     constexpr double copies_of_frame = 3;
     double state = 0;
     for (const ForetoldField& f : foretold.fields) state += f.values * sizeof(real);
-    return foretold.bytes + state + (frames ? copies_of_frame * foretell_output(scene, foretold).bytes_of_frame : 0);
+    return foretold.bytes + state +
+           (frames ? copies_of_frame * foretell_output(scene, foretold).bytes_of_frame + foretold.surface_bytes : 0);
 }
 
 void require_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, Use use, double available) {

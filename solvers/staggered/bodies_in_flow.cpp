@@ -309,7 +309,43 @@ void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
             if (k < D) heavy_[at] += dt * (masses_[i][k][k] - body.mass) * gravity_[k];
         }
     }
+    if (hand_) be_held(s, dt);
     added_.begin(masses_, free_, mobility_);
+}
+
+template <int D>
+void BodiesInFlow<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& scene) {
+    hand_ = std::move(hand);
+    for (std::size_t i = 0; i < hand_->keys.size(); ++i)
+        if (hand_->keys[i].kind == HandKind::grab && hand_->keys[i].body >= static_cast<int>(bodies_.count()))
+            scene.refuse("effects.hand.keyframes[" + std::to_string(i) + "].body", "there is no such body",
+                         "numbers of the list bodies, from 0 to " + std::to_string(bodies_.count() - 1));
+}
+
+/// dv/dt = rate (target − v) of the mass of the body and of the water in its place, v at the end of the step: stable for any step. What
+/// depends on v counts as mass.
+template <int D>
+void BodiesInFlow<D>::be_held(const MacState<D>& s, real dt) {
+    const auto brush = hand_->at<D>(s.time);
+    hold_.body = brush.kind == HandKind::grab ? brush.body : -1;
+    if (hold_.body < 0) return;
+    const auto b = static_cast<std::size_t>(hold_.body);
+    const Body<D>& body = bodies_[b];
+    hold_.weight = dt * hand_->rate * (body.mass + body.wet * rho_ * body.moments.volume);
+    hold_.target = 0.25 * hand_->rate * (brush.centre - body.at);
+    for (std::size_t a = 0; a < D; ++a) {
+        real& target = hold_.target[static_cast<int>(a)];
+        target = std::clamp(target, -h_[static_cast<int>(a)] / dt, h_[static_cast<int>(a)] / dt);
+        masses_[b][a][a] += hold_.weight;
+        heavy_[b * n + a] += hold_.weight * (target - before_[b * n + a]);
+    }
+}
+
+template <int D>
+void BodiesInFlow<D>::tell_hand() {
+    for (int a = 0; a < D && hold_.body >= 0; ++a)
+        if (const std::size_t i = static_cast<std::size_t>(hold_.body) * n + static_cast<std::size_t>(a); free_[i])
+            hand_->impulse[a] += hold_.weight * (hold_.target[a] - velocity_[i]);
 }
 
 /// The impulses of the pressure in a time dt.
@@ -428,6 +464,7 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
         }
         body.force = force(s, i);
     }
+    if (hand_) tell_hand();
     if (solver) solver->aim(tolerance);
     bodies_.place(placement.solids());
     set_velocities(s);

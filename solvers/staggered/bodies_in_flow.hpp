@@ -10,6 +10,7 @@
 // that cuts a cell the grid knows the pressure in the cell's middle alone: F takes it at the wall, by the gradient that water at rest has,
 // so that a flat bottom floats between the cells too.
 #pragma once
+#include "core/hand.hpp"
 #include "poisson/poisson.hpp"
 #include "rigid/added_mass.hpp"
 #include "rigid/bodies.hpp"
@@ -31,6 +32,8 @@ public:
     static geometry::Solids<D> solids(const scene::Scene& scene, BodiesInFlow* in);
 
     const rigid::Bodies<D>& bodies() const { return bodies_; }
+    /// The hand may take hold of them; refuses keyframes of bodies that there are not.
+    void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
     /// What of them stands in fluid at t = 0.
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
     /// A time dt along their velocities.
@@ -74,6 +77,8 @@ private:
     rigid::Block<D> mass_of(std::size_t body) const;
     rigid::Block<D> mass_of_wet_surface(const MacState<D>& s, std::size_t body) const;
     void begin(const MacState<D>& s, bool wet, real dt);
+    void be_held(const MacState<D>& s, real dt);
+    void tell_hand();
     void measure_added_mass(const MacState<D>& s, poisson::Solver<D>& solver);
     void pushed(const MacState<D>& s, std::vector<real>& impulse, real dt) const;
     void learn();
@@ -99,6 +104,13 @@ private:
     std::vector<real> before_, gained_;     // when the step began; what the last step changed them by, over dt
     std::vector<real> heavy_, met_, last_;  // weights; the pressure's impulses of this turn and of the last one
     std::vector<real> change_, missing_;
+    std::shared_ptr<Hand> hand_;  // none: nobody takes hold
+    /// Of the body that it holds in this step: the impulse is weight (target − V).
+    struct Hold {
+        int body = -1;
+        real weight = 0;
+        Vec<D> target{};
+    } hold_;
     poisson::Report report_;
     int turns_ = 0;
 };

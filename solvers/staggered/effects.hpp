@@ -34,6 +34,8 @@ Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& 
 /// du/dt = g: acts on every fluid.
 EffectKind gravity();
 
+/// What a hand can do in this scene: it heats where a substance is named, and takes hold of bodies.
+std::initializer_list<HandKind> kinds_of_hand(const scene::Scene& scene);
 /// The hand (geometry/hand.hpp), which acts at this stage.
 template <int D>
 std::unique_ptr<MacEffect<D>> hand_effect(std::shared_ptr<Hand> hand, Stage stage);

@@ -77,6 +77,14 @@ private:
 
 }  // namespace
 
+std::initializer_list<HandKind> kinds_of_hand(const scene::Scene& scene) {
+    using enum HandKind;
+    static constexpr auto on_fluid = {push, pull, pour, drain}, heating = {push, pull, pour, drain, heat},
+                          holding = {push, pull, pour, drain, grab}, both = {push, pull, pour, drain, heat, grab};
+    const bool heats = scene.has("substance"), holds = !scene.root().tables("bodies").empty();
+    return heats && holds ? both : heats ? heating : holds ? holding : on_fluid;
+}
+
 template <int D>
 std::unique_ptr<MacEffect<D>> hand_effect(std::shared_ptr<Hand> hand, Stage stage) {
     return std::make_unique<HandOnGrid<D>>(std::move(hand), stage);

@@ -1,5 +1,6 @@
 #include "tallcell/kind.hpp"
 
+#include "geometry/hand.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/kind.hpp"
@@ -77,6 +78,7 @@ scene::SolverKind kind() {
                    scene::surface_key_of_level_set(false)};
     schema.effects = schemas_of(body_forces());
     schema.effects.push_back(surface::volume_control());
+    schema.effects.push_back(geometry::hand_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
     return {schema,
             staggered::make<TallCells>,

@@ -1,4 +1,5 @@
 // What water on tall cells shows of itself: fields, integrals, checkpoints.
+#include "geometry/hand.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
 #include "tallcell/solver.hpp"
@@ -23,6 +24,7 @@ template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.knots().count())});
+    if (hand_) geometry::sum_up(*hand_, D, list);
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     return list;
 }
@@ -34,6 +36,7 @@ void TallCells<D>::save(Checkpoint& to) const {
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
     to.put_value("tallcell.reals", reals);
     to.put_value("tallcell.steps", steps_);
+    if (hand_) hand_->save(to);
 }
 
 template <int D>
@@ -45,6 +48,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     surface_.restore(from);
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
+    if (hand_ && from.has("hand")) hand_->restore(from);
     remesh();
     mark_liquid_faces();
 }

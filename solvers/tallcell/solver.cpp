@@ -44,6 +44,38 @@ void TallCells<D>::move_surface(real dt) {
     const auto timed = passes_.time("level set");
     surface_.advect(state_.u, dt);
     surface_.redistance();
+    if (hand_) pour_and_drain_by_hand();
+}
+
+/// The level set becomes that of the liquid with the brush, or without it. What is poured has the brush's velocity, what is drained takes
+/// its own away, and the volume is what the level set has gained or lost.
+template <int D>
+void TallCells<D>::pour_and_drain_by_hand() {
+    const auto brush = hand_->at<D>(state_.time);
+    const bool pours = brush.kind == HandKind::pour;
+    if (!pours && brush.kind != HandKind::drain) return;
+    const real before = surface_.volume();
+    Vec<D> u{};  // mean over the cells that change sides
+    real changed = 0;
+    for (std::size_t cell = 0; cell < product(frame_.cells); ++cell) {
+        const Index<D> I = frame_.index_of(cell);
+        if (!closed_.empty() && closed_(I)) continue;
+        real& phi = surface_.phi(I);
+        const real inside = brush.radius - norm(frame_.centre(I) - brush.centre), was = phi;
+        phi = pours ? std::min(phi, -inside) : std::max(phi, inside);
+        if ((was < 0) == (phi < 0)) continue;
+        changed += 1;
+        for (int a = 0; a < D; ++a) {
+            real &lower = state_.u[a](I), &upper = state_.u[a](I + e<D>(a));
+            if (pours) lower = upper = brush.velocity[a];
+            u[a] += 0.5 * (lower + upper);
+        }
+    }
+    surface_.redistance();
+    const real volume = surface_.volume() - before;
+    volume_target_ += volume;
+    hand_->mass += state_.rho * volume;
+    for (int a = 0; a < D && changed > 0; ++a) hand_->impulse[a] += state_.rho * volume * u[a] / changed;
 }
 
 template <int D>

@@ -36,6 +36,7 @@ public:
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
     std::vector<Integral> integrals() const override;
+    Hand* hand() const override { return hand_.get(); }
     real time() const override { return state_.time; }
     bool checks_itself() const override { return true; }
     void save(Checkpoint& to) const override;
@@ -58,6 +59,7 @@ private:
     // The passes of a step, in order
     void place_solids(real t);
     void move_surface(real dt);
+    void pour_and_drain_by_hand();
     void control_volume();
     void remesh();
     void advect(real dt);
@@ -87,6 +89,7 @@ private:
     real volume_target_ = 0, volume_shift_ = 0;
     real rate_ = 0;  // max |u|/h over known faces [1/s]
     std::int64_t steps_ = 0;
+    std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
 };
 

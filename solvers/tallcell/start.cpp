@@ -1,5 +1,6 @@
 // What a scene of tall cells is at t = 0, and what it cannot be.
 #include "surface/start.hpp"
+#include "geometry/hand.hpp"
 #include "scene/names.hpp"
 #include "staggered/effects.hpp"
 #include "staggered/initial.hpp"
@@ -17,7 +18,9 @@ TallCells<D>::TallCells(const scene::Scene& scene)
       effects_(make_effects<D>(body_forces(), scene)),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
-      pressure_(frame_, up_, options_.poisson) {
+      pressure_(frame_, up_, options_.poisson),
+      hand_(geometry::make_hand(scene, geometry::moving_kinds)) {
+    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
     refuse_what_it_cannot(scene);
     const int reach = static_cast<int>(std::ceil(options_.cfl));
     surface_ = LevelSet<D>(frame_, reach);

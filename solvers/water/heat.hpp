@@ -35,6 +35,8 @@ public:
     real evaporates(const MacState<D>& s, real area, real dt);
     /// What has in fact left the liquid, whose volume was `volume` before.
     void leaves(const MacState<D>& s, real lost, real volume);
+    /// The hand heats too.
+    void follow(std::shared_ptr<Hand> hand) { supply_.follow(std::move(hand), melting_, enthalpy_); }
     /// ρ dH/dt = ∇·(k ∇T) + q in the liquid of s.cells, whose volume is `volume` and whose surface has this area.
     void conduct(const MacState<D>& s, real volume, real area, real dt);
     /// u* becomes β u*, s.mobility is β. Whether any face is held back.

@@ -28,7 +28,7 @@ Water<D>::Water(const scene::Scene& scene)
       effects_(make_effects<D>(body_forces(), scene)),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
-      hand_(geometry::make_hand(scene)) {
+      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
     if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
     refuse_flat_cells(scene, frame_);
     markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
@@ -57,7 +57,9 @@ Water<D>::Water(const scene::Scene& scene)
     }
     fill_with_liquid(scene);
     if (bodies_) bodies_->start(state_, solids_);
+    if (bodies_ && hand_) bodies_->follow(hand_, scene);
     if (LiquidHeat<D>::named(scene)) heat_ = std::make_unique<LiquidHeat<D>>(scene, state_, frame_, volume_target_);
+    if (heat_ && hand_) heat_->follow(hand_);
     set_initial_velocity(state_, scene);
     set_fixed_faces();
     extend_velocity(0);

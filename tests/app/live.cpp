@@ -10,15 +10,22 @@
 #include <vtkCommand.h>
 #include <vtkImageData.h>
 #include <vtkPNGReader.h>
+#include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <thread>
+
+#include <fmt/core.h>
+
+#include <X11/Xlib.h>
+#include <X11/keysym.h>
 
 namespace {
 
@@ -57,6 +64,67 @@ real integral(const Simulation& simulation, const std::string& name) {
     throw std::logic_error("no integral " + name);
 }
 
+const std::string pond =
+    "solver = \"heightfield\"\ndim = 3\ngrid = { cells = [32, 1, 24], size = [1.5, 1, 1] }\ntime = { end = 1.0, max_dt = 0.01 }\n"
+    "terrain = { kind = \"formula\", height = \"0.4 - 0.6*exp(-8*((x - 0.8)^2 + (z - 0.5)^2))\" }\ninitial.surface = \"0.25\"\n"
+    "effects.gravity.g = [0, -9.81, 0]\nfluid.density = 1000\n";
+const std::string columns =
+    "solver = \"heightfield\"\ndim = 2\ngrid = { cells = [48, 1], size = [1.5, 1] }\ntime = { end = 1.0, max_dt = 0.01 }\n"
+    "scheme.model = \"columns\"\ninitial.surface = \"0.5\"\nfloats = [ { size = [0.3, 0.2], at = [1.0, 0.42] } ]\n" +
+    falls;
+const std::string tall =
+    "solver = \"tallcell\"\ndim = 2\ngrid = { cells = [48, 32], size = [1.5, 1] }\ntime = { end = 1.0, max_dt = 0.01 }\n"
+    "scheme.layers = 8\nliquid = [ { shape = \"box\", min = [0, 0], max = [1.5, 0.5] } ]\n" +
+    falls;
+const std::string bodies = "bodies = [ { shape = \"box\", min = [0.9, 0.45], max = [1.1, 0.6], density = 400.0 } ]\n";
+const std::string warm = "substance = \"water\"\ninitial.temperature = { name = \"constant\", value = 300.0 }\n";
+
+/// Pictures of what is shown, for someone who wants to look: in the folder that WEIR_KEEP_PICTURES names.
+void keep_picture(live::Window& window, const std::string& name) {
+    const char* folder = std::getenv("WEIR_KEEP_PICTURES");  // none in a test run
+    if (folder) window.write(fs::path(folder) / (name + ".png"));
+}
+
+/// Someone at the keyboard and the mouse: events of the window system, sent to the window from outside of it.
+struct Fingers {
+    Display* display = XOpenDisplay(nullptr);
+    ::Window window;
+    int height;
+    Fingers(::Window w, int h) : window(w), height(h) {}
+    ~Fingers() { XCloseDisplay(display); }
+    static void wait(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+    void send(XEvent& event, long mask) {
+        event.xany.display = display, event.xany.window = window;
+        XSendEvent(display, window, True, mask, &event);
+        XFlush(display);
+        wait(15);
+    }
+    void key(KeySym sym) {
+        XEvent event{};
+        event.type = KeyPress;
+        event.xkey.keycode = XKeysymToKeycode(display, sym);
+        event.xkey.same_screen = True;
+        send(event, KeyPressMask);
+    }
+    void button(int type, const std::array<int, 2>& at) {
+        XEvent event{};
+        event.type = type;
+        event.xbutton.button = 1, event.xbutton.x = at[0], event.xbutton.y = height - 1 - at[1], event.xbutton.same_screen = True;
+        send(event, type == ButtonPress ? ButtonPressMask : ButtonReleaseMask);
+    }
+    void drag(const std::array<int, 2>& from, const std::array<int, 2>& to) {
+        button(ButtonPress, from);
+        for (int i = 1; i <= 10; ++i) {
+            XEvent event{};
+            event.type = MotionNotify;
+            event.xmotion.x = from[0] + i * (to[0] - from[0]) / 10, event.xmotion.y = height - 1 - from[1] - i * (to[1] - from[1]) / 10;
+            event.xmotion.same_screen = True;
+            send(event, PointerMotionMask);
+        }
+        button(ButtonRelease, to);
+    }
+};
+
 /// A window on a session in a folder of its own.
 struct Play {
     TemporaryFolder folder;
@@ -66,6 +134,8 @@ struct Play {
     explicit Play(const std::string& scene, live::WindowOptions options = {})
         : session(live::endless(written(folder.path() / "scene.toml", scene), {}), folder.path() / "out"),
           window(session, sized(std::move(options))) {}
+    Play(const fs::path& scene, std::vector<scene::Override> set)
+        : session(live::endless(scene, std::move(set)), folder.path() / "out"), window(session, sized({})) {}
     static live::WindowOptions sized(live::WindowOptions options) {
         options.width = 480, options.height = 360;
         return options;
@@ -145,6 +215,102 @@ TEST(
     }
 }
 
+TEST("heights of water and tall cells are pushed, poured and drained, and their sessions repeat bit for bit") {
+    const std::pair<std::string, std::string> scenes[] = {{"pond", pond}, {"columns", columns}, {"tall", tall}};
+    for (const auto& [name, scene] : scenes) {
+        Play play(scene);
+        const real z = play.session.scene().dim() == 3 ? 0.5 : 0;
+        play.run_for(0.05);
+        play.drag({{0.6, 0.3, z}}, {{0.9, 0.3, z}});
+        EXPECT_EQ(play.window.shown().hand_can[1], name != "columns");
+        play.key("3");
+        play.drag({{0.5, 0.7, z}}, {{0.6, 0.7, z}});
+        keep_picture(play.window, name);
+        play.key("4");
+        play.drag({{0.8, 0.3, z}}, {{0.9, 0.3, z}});
+        play.key("5");
+        play.drag({{0.8, 0.3, z}}, {{0.9, 0.3, z}});
+        EXPECT_FALSE(play.window.shown().hand_can[5]);
+        play.run_for(0.05);
+        const auto file = play.finish();
+        const auto& simulation = play.session.simulation();
+        EXPECT_NE(integral(simulation, "hand_mass"), 0) << name;
+        EXPECT_EQ(integral(simulation, "hand_impulse_x") != 0, name != "columns") << name;
+        play.expect_replay(file);
+    }
+}
+
+TEST("a hand warms and cools where there is heat, and takes hold of a body; sessions of both repeat bit for bit") {
+    for (const std::string solver : {"mac_water", "pbf"}) {
+        Play play("solver = \"" + solver + "\"\n" + warm + pool + (solver == "mac_water" ? bodies : ""));
+        play.run_for(0.05);
+        play.key("5");
+        play.drag({{0.3, 0.3, 0}}, {{0.5, 0.3, 0}});
+        play.key("c");
+        play.key("c");
+        play.until([](const auto& s) { return s.temperatures[1] > 310; });
+        keep_picture(play.window, solver + "_heated");
+        play.key("6");
+        play.drag({{1.0, 0.6, 0}}, {{0.8, 0.8, 0}});
+        keep_picture(play.window, solver + "_held");
+        const auto file = play.finish();
+        const auto& simulation = play.session.simulation();
+        EXPECT_GT(integral(simulation, "hand_heat"), 1e4) << solver;
+        const auto& keys = simulation.solver().hand()->keys;
+        const auto held = std::count_if(keys.begin(), keys.end(), [](const HandKey& k) { return k.kind == HandKind::grab; });
+        EXPECT_EQ(held > 0, solver == "mac_water");
+        play.expect_replay(file);
+    }
+}
+
+TEST(
+    "by the window's own clock a hand pushes a breaking dam, waits, begins again, turns gravity and pours: events of the window system, "
+    "and "
+    "the session repeats bit for bit") {
+    std::vector<scene::Override> small;  // a test has no time for 32,768 particles
+    if (!std::getenv("WEIR_KEEP_PICTURES")) small = {{"grid.cells", "[24, 16, 9]"}, {"grid.size", "[3, 2, 1.125]"}, {"time.dt", "0.005"}};
+    Play play(fs::path(WEIR_SOURCE_DIR) / "cases" / "dam_break_particles", small);
+    live::Knobs knobs(play.session.scene());
+    int to_gravity = 0;
+    while (knobs.chosen().name() != "effects.gravity.g[1]") knobs.choose(1), ++to_gravity;
+    const auto& box = play.window.scenery().domain().box;
+    const auto pixel = [&](double x, double y) {
+        return play.window.pixel({{box[0] + x * (box[1] - box[0]), box[2] + y * (box[3] - box[2]), 0.5 * (box[4] + box[5])}});
+    };
+    const auto a = pixel(0.1, 0.15), b = pixel(0.35, 0.2), high = pixel(0.6, 0.6), beside = pixel(0.65, 0.6);
+    auto* shown = play.window.interactor()->GetRenderWindow();
+    std::thread someone([&, id = reinterpret_cast< ::Window>(shown->GetGenericWindowId())] {
+        Fingers fingers(id, 360);
+        fingers.wait(300);
+        fingers.drag(a, b);
+        fingers.key(XK_space), fingers.wait(100), fingers.key(XK_p), fingers.key(XK_space);
+        fingers.key(XK_r);
+        fingers.drag(a, b);
+        fingers.key(XK_p);
+        for (int i = 0; i < to_gravity; ++i) fingers.key(XK_Right);
+        fingers.key(XK_Down), fingers.key(XK_Down);
+        fingers.key(XK_3);
+        fingers.drag(high, beside);
+        fingers.key(XK_F1), fingers.wait(100), fingers.key(XK_p);
+        fingers.wait(200);
+        fingers.key(XK_q);
+    });
+    play.window.interact();
+    someone.join();
+    for (int i = 0; i < 3; ++i) {
+        const auto picture = play.session.folder() / fmt::format("picture_{:03}.png", i);
+        ASSERT_TRUE(fs::exists(picture)) << picture;
+        if (const char* folder = std::getenv("WEIR_KEEP_PICTURES"))
+            fs::copy_file(picture, fs::path(folder) / fmt::format("dam_{}.png", i), fs::copy_options::overwrite_existing);
+    }
+    const auto file = play.finish();
+    const auto& simulation = play.session.simulation();
+    EXPECT_NE(integral(simulation, "hand_impulse_x"), 0);
+    EXPECT_GT(integral(simulation, "hand_mass"), 0);
+    EXPECT_EQ(simulation.changes().size(), 3u);  // two of gravity, and the end
+    play.expect_replay(file);
+}
+
 TEST("the executable runs the session that was kept, to the same bytes; a checkpoint of it continues it") {
     Play play("solver = \"pbf\"\n" + pool);
     play.drag({{0.3, 0.3, 0}}, {{0.9, 0.4, 0}});
@@ -177,6 +343,25 @@ TEST("a drag moves the water its way, and the hand takes hold only where it is p
     ASSERT_FALSE(play.session.simulation().solver().hand()->keys.empty());
     EXPECT_GT(play.session.simulation().solver().hand()->keys.front().time, 0.04);
     EXPECT_EQ(play.session.simulation().solver().hand()->keys.back().kind, HandKind::off);
+}
+
+TEST("a touch that is shorter than a step acts for one") {
+    live::WindowOptions options;
+    options.paused = true;
+    Play play("solver = \"pbf\"\n" + pool, options);
+    play.key("3");
+    play.mouse(vtkCommand::LeftButtonPressEvent, {{0.5, 0.8, 0}});
+    play.mouse(vtkCommand::LeftButtonReleaseEvent, {{0.5, 0.8, 0}});
+    play.key("period");
+    play.until([](const auto& s) { return s.steps == 1; });
+    play.key("period");
+    play.until([](const auto& s) { return s.steps == 2; });
+    play.window.stop();
+    const auto& keys = play.session.simulation().solver().hand()->keys;
+    ASSERT_EQ(keys.size(), 2u);
+    EXPECT_EQ(keys[0].kind, HandKind::pour);
+    EXPECT_EQ(keys[1].kind, HandKind::off);
+    EXPECT_GT(integral(play.session.simulation(), "hand_mass"), 0);
 }
 
 TEST("keys: space pauses, a full stop makes one step, r begins again, the wheel sizes the brush, c colours, p takes a picture, F1 tells") {
@@ -253,7 +438,17 @@ TEST("in 3D the hand acts in the plane of the camera's focus, and the session re
     play.expect_replay(file);
 }
 
-TEST("solvers without a hand have sessions too, and files beside their scene are found from where the session is kept") {
+TEST("solvers without a hand have sessions too") {
+    TemporaryFolder folder;
+    live::Session session(live::endless(fs::path(WEIR_SOURCE_DIR) / "cases" / "stokes_wave", {}), folder.path() / "kept");
+    EXPECT_FALSE(session.has_hand());
+    for (int s = 0; s < 5; ++s) session.step();
+    Simulation replay(session.finish());
+    while (!replay.finished()) replay.step();
+    EXPECT_TRUE(state_of(replay) == state_of(session.simulation()));
+}
+
+TEST("files beside a scene are found from where its session is kept") {
     TemporaryFolder folder;
     fs::create_directories(folder.path() / "scene");
     fs::copy(std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/hill.asc", folder.path() / "scene" / "hill.asc");
@@ -262,7 +457,6 @@ TEST("solvers without a hand have sessions too, and files beside their scene are
                                "terrain = { kind = \"asc\", file = \"hill.asc\", corner = [0, 0], nodata = 0 }\n"
                                "initial.surface = \"0.5 + 0.1*x\"\neffects.gravity.g = [0, -9.81]\n");
     live::Session session(live::endless(scene, {}), folder.path() / "out" / "kept");
-    EXPECT_FALSE(session.has_hand());
     for (int s = 0; s < 5; ++s) session.step();
     session.steer({"effects.gravity.g", "[0, -5]"});
     for (int s = 0; s < 5; ++s) session.step();

@@ -30,8 +30,7 @@ const std::vector<std::string> of_the_run{
 };
 const std::string hand =
     "effects.hand = { rate = 10, keyframes = [ { time = 0, kind = \"push\", centre = [0.5, 0.5], radius = 0.1, velocity = [1, 0], speed = "
-    "0 "
-    "} ] }";
+    "0, temperature = 300, body = 0 } ] }";
 /// With `field` as one that the solver has.
 std::vector<std::string> probes(const std::string& field) {
     const std::string of = ", field = \"" + field + "\"";
@@ -183,7 +182,7 @@ std::map<std::string, Said> everything() {
                                   "time.cfl = 0.4", "liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]",
                                   "scheme.poisson = { tolerance = 1e-6, max_iterations = 100, fixed = false }",
                                   "scheme = { columns = \"single\", layers = 9, advection = \"semi_lagrangian\" }",
-                                  "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]"}),
+                                  "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]", hand}),
                         {inflow + " } }", walls[1], open_sides[0], "grid.periodic = [\"y\"]"},
                         {of_level_set}};
     const Lines flows{"flow = { name = \"constant\", value = [1, 0] }", "flow = { name = \"rotation\", centre = [0, 0], rate = 1 }",
@@ -307,7 +306,7 @@ std::map<std::string, Said> everything() {
                   "scheme = { model = \"shallow_water\", limiter = \"mc\", dry_depth = 1e-5 }", "time.cfl = 0.4",
                   "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]",
                   "effects.friction = { law = \"manning\", n = 0.03 }", "effects.friction = { law = \"quadratic\", c = 0.003 }",
-                  "effects.rain = { rate = 0.001, over = [0, 1], start = 0, end = 1 }", "effects.damping.rate = 0.1",
+                  "effects.rain = { rate = 0.001, over = [0, 1], start = 0, end = 1 }", "effects.damping.rate = 0.1", hand,
                   "scheme.model = \"columns\"\neffects.gravity.g = [0, -1]\nfloats = [ { size = [0.2, 0.2], at = [0.3, 0.45], density = "
                   "0.5, heave = true, "
                   "motion = { kind = \"constant\", velocity = [0, 0] } } ]"}),

@@ -75,7 +75,7 @@ int report_table_command(const CostOptions& options, const Solvers& solvers) {
     if (options.all || !options.names.empty()) throw BadInput("weir cost --report-table takes neither names nor --all");
     const ReportTable table = read_report_table(case_root() / "report_table");
     output::require_writable(options.out);
-    const json measured = measure_report_table(table, solvers);
+    const json measured = measure_report_table(table, solvers, options.drawn);
     fmt::print("{}", report_table_text(measured));
     output::write_file(options.out / "report_table.json", measured.dump(1) + "\n");
     if (options.publish.empty()) return exit_success;

@@ -2,6 +2,7 @@
 #pragma once
 #include "sim/registry.hpp"
 #include "validation/cost/measure.hpp"
+#include "validation/cost/report_table.hpp"
 
 #include <filesystem>
 #include <string>
@@ -19,6 +20,7 @@ struct CostOptions {
     std::vector<std::string> vary{};   // "key=value,value,..."
     Size size = Size::ci;
     MeasureOptions measure{};
+    Drawn drawn{};                           // of the report's table: what a window reaches
     std::filesystem::path out = "out/cost";  // <study>.csv, .json, .svg
     std::filesystem::path publish{};         // folder of the published page; empty: not published
     bool quiet = false;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace weir::validation {
 namespace {
@@ -56,7 +57,7 @@ double milliseconds(const ReportRow& row, Simulation& simulation) {
     return sum;
 }
 
-json measure_row(const ReportRow& row, const Solvers& solvers) {
+json measure_row(const ReportRow& row, const Solvers& solvers, const Drawn& drawn) {
     const auto schemas = scene::schemas_of(solvers);
     Simulation simulation(scene_of(row.variant, 0, schemas), solvers);
     for (int i = 0; i < warm_up_steps; ++i) simulation.step();
@@ -66,16 +67,22 @@ json measure_row(const ReportRow& row, const Solvers& solvers) {
     const double others = others_between(before, work_so_far());
     std::sort(ms.begin(), ms.end());
     const double median = ms[batches / 2], ours = row.passes.empty() ? 1000 / median : median;
-    return {{"what", row.what},
-            {"unit", row.unit()},
-            {"theirs", row.theirs},
-            {"their_value", row.value},
-            {"on", row.on},
-            {"ours", ours},
-            {"times", row.passes.empty() ? ours / row.value : row.value / ours},
-            {"spread", (ms.back() - ms.front()) / median},
-            {"others", others}};
+    const double in_window = drawn && row.passes.empty() ? drawn(row.variant.scene, row.variant.overrides) : NAN;
+    json measured = {{"what", row.what},
+                     {"unit", row.unit()},
+                     {"theirs", row.theirs},
+                     {"their_value", row.value},
+                     {"on", row.on},
+                     {"ours", ours},
+                     {"times", row.passes.empty() ? ours / row.value : row.value / ours},
+                     {"spread", (ms.back() - ms.front()) / median},
+                     {"others", others}};
+    if (std::isfinite(in_window)) measured["drawn"] = in_window;
+    return measured;
 }
+
+/// Frames a second in a window, where they were measured.
+std::string drawn_text(const json& row) { return row.contains("drawn") ? fmt::format("{:.4g}", row["drawn"].get<double>()) : ""; }
 
 std::string cell(const json& row, const char* key) { return row[key].get<std::string>(); }
 
@@ -111,9 +118,9 @@ ReportTable read_report_table(const std::filesystem::path& folder) {
     return parse_report_table(scene::read_text(file), file.string(), folder);
 }
 
-json measure_report_table(const ReportTable& table, const Solvers& solvers) {
+json measure_report_table(const ReportTable& table, const Solvers& solvers, const Drawn& drawn) {
     json rows = json::array();
-    for (const ReportRow& row : table.rows) rows.push_back(measure_row(row, solvers));
+    for (const ReportRow& row : table.rows) rows.push_back(measure_row(row, solvers, drawn));
     const output::Machine m = output::this_machine();
     return {{"question", table.question},
             {"their_machine", table.their_machine},
@@ -125,24 +132,26 @@ json measure_report_table(const ReportTable& table, const Solvers& solvers) {
 }
 
 std::string report_table_text(const json& table) {
-    std::string s = fmt::format("{}\n    {:42} {:28} {:18} {:>10} {:9} {:>8}\n", table["question"].get<std::string>(), "problem",
-                                "the report", "on", "weir", "", "times");
+    std::string s = fmt::format("{}\n    {:42} {:28} {:18} {:>10} {:9} {:>8} {:>8}\n", table["question"].get<std::string>(), "problem",
+                                "the report", "on", "weir", "", "times", "drawn");
     for (const json& row : table["rows"])
-        s += fmt::format("    {:42} {:28} {:18} {:>10.4g} {:9} {:>8.3g}{}\n", cell(row, "what"), cell(row, "theirs"), cell(row, "on"),
-                         row["ours"].get<double>(), cell(row, "unit"), row["times"].get<double>(),
+        s += fmt::format("    {:42} {:28} {:18} {:>10.4g} {:9} {:>8.3g} {:>8}{}\n", cell(row, "what"), cell(row, "theirs"), cell(row, "on"),
+                         row["ours"].get<double>(), cell(row, "unit"), row["times"].get<double>(), drawn_text(row),
                          row["others"].get<double>() > 0.2 ? fmt::format("  others used {:.1f} cores", row["others"].get<double>()) : "");
     return s;
 }
 
 std::string report_table_markdown(const json& table) {
     std::string s = fmt::format(
-        "## {}\n\n{}\n\n| problem | the report | on | weir, {} CPU thread(s) | unit | times as fast |\n|---|---|---|---|---|---|\n",
+        "## {}\n\n{}\n\n| problem | the report | on | weir, {} CPU thread(s) | unit | times as fast | frames/s in a window "
+        "|\n|---|---|---|---|---|---|---|\n",
         table["question"].get<std::string>(), table["reading"].get<std::string>(), table["threads"].get<int>());
     for (const json& row : table["rows"])
         s += fmt::format(
-            "| {} | {} | {} | {:.4g} | {} | {:.3g}{} |\n", cell(row, "what"), cell(row, "theirs"), cell(row, "on"),
+            "| {} | {} | {} | {:.4g} | {} | {:.3g}{} | {} |\n", cell(row, "what"), cell(row, "theirs"), cell(row, "on"),
             row["ours"].get<double>(), cell(row, "unit"), row["times"].get<double>(),
-            row["others"].get<double>() > 0.2 ? fmt::format(" ({:.1f} cores busy with other work)", row["others"].get<double>()) : "");
+            row["others"].get<double>() > 0.2 ? fmt::format(" ({:.1f} cores busy with other work)", row["others"].get<double>()) : "",
+            drawn_text(row));
     return s + fmt::format("\nThe report: {}. Weir: commit {}, on {}. `./weir.sh cost --report-table`\n\n",
                            table["their_machine"].get<std::string>(), table["commit"].get<std::string>(),
                            table["machine"].get<std::string>());

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,12 @@ const std::vector<scene::Key>& report_table_keys();
 ReportTable read_report_table(const std::filesystem::path& folder);
 ReportTable parse_report_table(std::string_view text, const std::string& file, const std::filesystem::path& folder);
 
-/// Runs each scene for some batches of steps and takes the median batch. Throws BadInput where a row names a pass that there is not.
-nlohmann::json measure_report_table(const ReportTable& table, const Solvers& solvers);
+/// Frames a second of a scene in a window, each of a new step; NaN where there is no window.
+using Drawn = std::function<double(const std::filesystem::path& scene, const std::vector<scene::Override>& set)>;
+
+/// Runs each scene for some batches of steps and takes the median batch. Rows of whole steps are drawn too, where `drawn` is given. Throws
+/// BadInput where a row names a pass that there is not.
+nlohmann::json measure_report_table(const ReportTable& table, const Solvers& solvers, const Drawn& drawn = {});
 
 std::string report_table_text(const nlohmann::json& table);
 std::string report_table_markdown(const nlohmann::json& table);

@@ -102,11 +102,12 @@ std::string study_html(const json& study, const std::filesystem::path& results) 
 
 /// The figures of the report that began this work beside ours.
 std::string report_table(const json& t) {
-    HtmlTable table({"problem", "the report", "on", "weir", "unit", "times as fast"},
+    HtmlTable table({"problem", "the report", "on", "weir", "unit", "times as fast", "frames/s in a window"},
                     "Threads of weir: " + std::to_string(t.value("threads", 1)));
     for (const json& row : t["rows"])
         table.row({word(text_at(row, "what")), raw(escaped(text_at(row, "theirs")), number_at(row, "their_value")),
-                   word(text_at(row, "on")), value(number_at(row, "ours")), word(text_at(row, "unit")), value(number_at(row, "times"))});
+                   word(text_at(row, "on")), value(number_at(row, "ours")), word(text_at(row, "unit")), value(number_at(row, "times")),
+                   row.contains("drawn") ? value(number_at(row, "drawn")) : word("")});
     return fmt::format(
         "<article id=\"report-table\"><h3>{}</h3><p>Before weir there was a report that measured such methods in "
         "programs of its own, on one PC. Its figures stand here as it gives them: nobody can measure them again, so they compare with "
