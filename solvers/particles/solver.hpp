@@ -63,7 +63,7 @@ protected:
     Vapour<D>* vapour() const { return heat_ ? heat_->vapour() : nullptr; }
 
     Passes passes_;
-    std::shared_ptr<Heat<D>> heat_;  // where the scene names a substance
+    std::shared_ptr<Heat<D>> heat_;              // where the scene names a substance
     std::shared_ptr<BodiesInLiquid<D>> bodies_;  // where it names bodies
 };
 

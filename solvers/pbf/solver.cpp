@@ -22,7 +22,7 @@ template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     this->pour_and_drain(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
-    this->hold();       // what is frozen
+    this->hold();  // what is frozen
     if (bodies_) start_bodies(dt);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
@@ -37,7 +37,7 @@ StepReport PbfSolver<D>::step(real dt) {
     }
     const real slow = std::max(dt, last_dt_);
     keep_multipliers(slow);
-    update(dt, slow);                                   // 20-21, 23-24
+    update(dt, slow);  // 20-21, 23-24
     if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
     this->hold();
