@@ -99,7 +99,8 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
         for (Memory* number : {&enthalpy, &warming_, &by_walls_}) plan_.want(*number, sizeof(double));
         heat_pairs_ = constant(effects_.heat->single_pairs());
         heat_walls_ = constant(effects_.heat->single_walls());
-        heat_states_ = constant(effects_.heat->states());
+        heat_states = constant(effects_.heat->states());
+        if (effects_.heat->free()) ice_ = std::make_unique<Ice<D>>(*effects_.heat, host_.domain);
     }
     plan_.want(list, static_cast<std::size_t>(room_) * sizeof(int));
     state_params = constant(state_params_of(effects, host_.domain, support_));
@@ -130,6 +131,7 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     if (open_) defines += " -DWEIR_OPEN";
     if (!sinks.empty()) defines += " -DWEIR_SINKS";
     if (heated) defines += " -DWEIR_HEATERS";
+    if (effects_.heat && effects_.heat->free()) defines += " -DWEIR_ICE";
     if (effects_.gravity) defines += " -DWEIR_GRAVITY";
     if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
     if (effects_.xsph) defines += " -DWEIR_XSPH";
@@ -213,7 +215,7 @@ template <int D>
 void DeviceFluid<D>::predict(real dt) {
     pass_time(dt);
     run("predict", {count(), stride_, state_params, poses, dt, pull(dt), clamps, x, v, x_star});
-    hold_prediction();
+    hold_prediction(dt);
 }
 
 template <int D>

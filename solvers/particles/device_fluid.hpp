@@ -8,6 +8,7 @@
 #include "particles/device_memory.hpp"
 #include "particles/emitters.hpp"
 #include "particles/heat.hpp"
+#include "particles/ice.hpp"
 #include "particles/passes.hpp"
 #include "particles/scheme.hpp"
 
@@ -111,10 +112,16 @@ public:
     void finish(real dt);
     /// Heat over dt, between particles where a has them.
     void conduct(Heat<D>& heat, real dt);
-    /// What is frozen does not move: it has no velocity, and is predicted and corrected to where it is.
+    /// What is frozen does not move: it has no velocity, and is predicted and corrected to where it is. Or it moves in pieces.
     void hold();
-    void hold_prediction();
+    void hold_again();
+    void hold_prediction(real dt);
     void hold_places();
+    /// Pieces of ice after an update of positions, what moved them in dt; and by a drift of dt.
+    void arrive(real dt);
+    void carry_ice(real dt);
+    bool moving_ice() const { return ice_ != nullptr; }  // of the scene; any now:
+    bool ice_moves() const { return ice_ && effects_.heat->frozen() > 0; }
     /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory; what has crossed a side is
     /// taken back or out.
     void end_step();
@@ -149,7 +156,7 @@ public:
     const DevicePlan& plan() const { return plan_; }
 
     Memory x, v, x_star, density, carried;            // state, double precision
-    Memory enthalpy;                                  // where particles carry heat
+    Memory enthalpy, heat_states;                     // where particles carry heat
     Memory order, a, b, neighbours, list;             // sorted particles: owners, float4, their neighbours
     Memory clamps;                                    // how often walls and solids put a particle back, and from how far
     Memory near_solid, terms, poses;                  // of solids: sorted particles near one, what they add there; where they are
@@ -173,6 +180,11 @@ private:
     void append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities,
                 const std::vector<real>& enthalpies);
     void feed(Heat<D>& heat, real dt);
+    void find_ice();
+    void predict_ice(real dt);
+    void place_ice();
+    void fetch(const Memory& from, std::array<std::vector<real>, D>& to) const;
+    void send(const std::array<std::vector<real>, D>& from, const Memory& to);
     bool take_out(std::string_view find_stayers);
     std::size_t most_particles() const;
 
@@ -187,11 +199,15 @@ private:
     DeviceEffects<D> effects_;
     real speed_ = 0;
     std::uint32_t clamps_seen_ = 0;
-    Memory warming_, by_walls_, heat_pairs_, heat_walls_, heat_states_;
+    Memory warming_, by_walls_, heat_pairs_, heat_walls_;
     Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;
     Memory start_, members_, blocks_, parts_, needed_;
     std::size_t cells_room_ = 0;
     std::vector<double> host_parts_, host_poses_;
+    std::unique_ptr<Ice<D>> ice_;  // where what is frozen moves
+    std::array<std::vector<real>, D> ice_places_;
+    std::vector<int> ice_order_, ice_sorted_;
+    std::vector<float> ice_four_;
 };
 
 }  // namespace weir::particles

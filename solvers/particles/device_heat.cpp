@@ -35,20 +35,23 @@ template <int D>
 void DeviceFluid<D>::hold() {
     if (!effects_.heat || count() == 0) return;
     if (device_is_old_) upload();
-    effects_.heat->set_frozen(static_cast<int>(reduce("count_frozen", {count(), heat_states_, enthalpy, parts_}).sum));
-    if (effects_.heat->frozen() > 0) run("hold", {count(), stride_, heat_states_, enthalpy, v});
+    if (ice_) return find_ice();
+    effects_.heat->set_frozen(static_cast<int>(reduce("count_frozen", {count(), heat_states, enthalpy, parts_}).sum));
+    if (effects_.heat->frozen() > 0) run("hold", {count(), stride_, heat_states, enthalpy, v});
 }
 
 template <int D>
-void DeviceFluid<D>::hold_prediction() {
+void DeviceFluid<D>::hold_prediction(real dt) {
+    if (ice_ && count() > 0) return predict_ice(dt);
     hold();
-    if (effects_.heat && effects_.heat->frozen() > 0) run("hold_prediction", {count(), stride_, heat_states_, enthalpy, x, x_star});
+    if (effects_.heat && effects_.heat->frozen() > 0) run("hold_prediction", {count(), stride_, heat_states, enthalpy, x, x_star});
 }
 
 template <int D>
 void DeviceFluid<D>::hold_places() {
+    if (ice_moves()) return place_ice();
     if (effects_.heat && effects_.heat->frozen() > 0)
-        run("hold_places", {count(), stride_, state_params, heat_states_, order, enthalpy, x, a});
+        run("hold_places", {count(), stride_, state_params, heat_states, order, enthalpy, x, a});
 }
 
 template <int D>
@@ -58,7 +61,7 @@ void DeviceFluid<D>::conduct(Heat<D>& heat, real dt) {
     const int parts = heat.parts(dt);
     const real part = dt / parts;
     for (int p = 0; p < parts; ++p) {
-        run("load_theta", {count(), heat_states_, order, enthalpy, a});
+        run("load_theta", {count(), heat_states, order, enthalpy, a});
         run("conduct", {count(), stride_, heat_pairs_, heat_walls_, a, neighbours, list, warming_, by_walls_});
         run("warm", {count(), part, order, warming_, enthalpy});
         if (heat.held()) heat.add(host_.mass * part * reduce("sum_numbers", {count(), by_walls_, parts_}).sum);
@@ -72,8 +75,8 @@ template void DeviceFluid<2>::feed(Heat<2>&, real);
 template void DeviceFluid<3>::feed(Heat<3>&, real);
 template void DeviceFluid<2>::hold();
 template void DeviceFluid<3>::hold();
-template void DeviceFluid<2>::hold_prediction();
-template void DeviceFluid<3>::hold_prediction();
+template void DeviceFluid<2>::hold_prediction(real);
+template void DeviceFluid<3>::hold_prediction(real);
 template void DeviceFluid<2>::hold_places();
 template void DeviceFluid<3>::hold_places();
 template void DeviceFluid<2>::conduct(Heat<2>&, real);

@@ -37,7 +37,7 @@ LatticeSums lattice_sums(const Scheme& scheme, real spacing) {
 
 HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>& conductivity) {
     constexpr real far = 1e300;
-    HeatStates s{far, far, far, far, {0, 0, 0}, {0, 0, 0}, 0};
+    HeatStates s{far, far, far, far, {0, 0, 0}, {0, 0, 0}, 0, 0};
     for (int i = 0; i < curve.states(); ++i) {
         const auto state = static_cast<std::size_t>(curve.state(i));
         s.per_c[state] = 1 / curve.heat_capacity(i);
@@ -84,7 +84,9 @@ int Heat<D>::count_frozen(const Fluid<D>& fluid) {
 
 template <int D>
 std::string Heat<D>::concern() const {
-    return frozen_ > 0 ? std::to_string(frozen_) + " particles are frozen: they are held where they are, ice neither floats nor sinks" : "";
+    return frozen_ > 0 && !free_
+               ? std::to_string(frozen_) + " particles are frozen: they are held where they are, ice neither floats nor sinks"
+               : "";
 }
 
 template <int D>

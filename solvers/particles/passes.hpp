@@ -62,6 +62,7 @@ struct PbfPass {
     const float* solid = nullptr;  // of each particle: part of the kernel inside solids, and its gradient
     float* density = nullptr;      // rho / rho0
     float* multiplier = nullptr;   // sum of lambda over the iterations; null: not kept
+    const float* rest = nullptr;   // rest density of each over rho0; null: 1 of all
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
     ClampTally* clamps = nullptr;  // of the corrections

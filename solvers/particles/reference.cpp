@@ -146,7 +146,8 @@ std::vector<double> ReferencePbf::lambdas(const std::vector<Point>& x, std::vect
             neighbours2 += slope * slope * r2;
             for (std::size_t a = 0; a < 3; ++a) own[a] += slope * d[a];
         });
-        const double before = multiplier ? (*multiplier)[i] : 0, sum = muller::pbf_multiplier(before, rho, neighbours2, square(own), &p);
+        const double before = multiplier ? (*multiplier)[i] : 0, at_rest = rest.empty() ? 1 : rest[i];
+        const double sum = muller::pbf_multiplier(before, rho, at_rest, neighbours2, square(own), &p);
         if (multiplier) (*multiplier)[i] = sum;
         lambda[i] = sum - before;
     }
@@ -186,12 +187,13 @@ std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
 std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
                                         double rho0) const {
     std::vector<double> rate(x.size());
+    const auto of = [&](std::size_t i) { return rest.empty() ? rho0 : rho0 * rest[i]; };
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
         double relative = 2 * (wall[0] * v[i][0] + wall[1] * v[i][1] + wall[2] * v[i][2]), spread = 0;
         for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
-            double excess = (rho[j] - rho0) - (rho[i] - rho0);
+            double excess = (rho[j] - of(j)) - (rho[i] - of(i));
             for (std::size_t b = 0; b < 3; ++b) excess += p.layers[b] * d[b];
             relative += functions[kernel].sph_rate(apart2(d, p), d[0] * u[0] + d[1] * u[1] + d[2] * u[2], 1 / rho[j], &p);
             spread += functions[kernel].sph_diffusion(apart2(d, p), excess, 1 / rho[j], &p);

@@ -30,9 +30,8 @@ protected:
     /// That the method's own arrays take.
     virtual std::size_t own_bytes() const = 0;
     void end_step();
-    /// As on threads.
-    void hold();
-    bool held(std::size_t i) const { return this->heat_ && this->heat_->frozen(fluid_.enthalpy[i]); }
+    /// Where particles freeze to something of another density.
+    void set_rest();
     /// Between particles that are at x, whose neighbours are known.
     void conduct_at(const std::vector<Point>& x, real dt);
 

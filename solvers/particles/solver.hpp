@@ -7,8 +7,7 @@
 #include "particles/emitters.hpp"
 #include "particles/fluid.hpp"
 #include "particles/heat.hpp"
-
-#include <memory>
+#include "particles/ice.hpp"
 
 #include <memory>
 
@@ -61,7 +60,13 @@ protected:
     virtual void conduct(real dt) = 0;
 
     Passes passes_;
+    /// Its rest density over the liquid's; 1 where nothing freezes to another one.
+    real rest_of(const Fluid<D>& fluid, int i) const {
+        return heat_ && heat_->free() ? heat_->rest(fluid.enthalpy[static_cast<std::size_t>(i)]) : 1;
+    }
+
     std::shared_ptr<Heat<D>> heat_;  // where the scene names a substance
+    std::unique_ptr<Ice<D>> ice_;    // where what is frozen moves
 };
 
 /// A particle solver whose state is in the processor's memory.
@@ -84,6 +89,18 @@ protected:
     real speed() const final { return fluid_.max_speed(); }
     void save_state(Checkpoint& to) const final;
     void restore_state(const Checkpoint& from) final;
+    void take_heat(const scene::Scene& scene);
+    /// Particles that are frozen do not move, or move with their pieces, which it finds: forgets what else was done to their velocities.
+    void hold();
+    /// The same where nothing has melted or frozen since.
+    void hold_again();
+    /// Whether particle i of the state is frozen and does not move, where hold() has found any.
+    bool held(int i) const {
+        if (!this->heat_ || this->heat_->frozen() == 0) return false;
+        return this->ice_ ? this->ice_->fixed(i) : this->heat_->frozen(fluid_.enthalpy[static_cast<std::size_t>(i)]);
+    }
+    /// Whether pieces of ice move in this step.
+    bool ice_moves() const { return this->ice_ && this->heat_->frozen() > 0; }
 
     Fluid<D> fluid_;
     Emitters<D> emitters_;

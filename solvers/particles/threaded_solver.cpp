@@ -11,7 +11,7 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
       flow_{fluid_, pairs_, kernels_, {}, {}, scheme.kernel()} {
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
-    if (fluid_.warm) this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain), this->heat_->count_frozen(fluid_);
+    this->take_heat(scene);
     this->hand_ = geometry::make_hand(scene);
     if (!this->hand_) return;
     auto hand = std::make_unique<HandOnParticles<D>>(this->hand_);
@@ -23,14 +23,6 @@ template <int D>
 void ThreadedSolver<D>::end_step() {
     if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
     fluid_.cross_sides();
-}
-
-template <int D>
-void ThreadedSolver<D>::hold() {
-    if (!this->heat_ || this->heat_->count_frozen(fluid_) == 0) return;
-    parallel_for(0, fluid_.count(), [&](int i) {
-        if (held(i)) Fluid<D>::put(fluid_.v, i, Vec<D>{});
-    });
 }
 
 template <int D>
@@ -67,7 +59,8 @@ void ThreadedSolver<D>::conduct(real dt) {
 template <int D>
 std::size_t ThreadedSolver<D>::bytes() const {
     return fluid_.bytes() + pairs_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes() +
-           (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + (this->heat_ ? this->heat_->bytes() : 0);
+           (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + (this->heat_ ? this->heat_->bytes() : 0) +
+           (this->ice_ ? this->ice_->bytes() : 0);
 }
 
 template class ThreadedSolver<2>;

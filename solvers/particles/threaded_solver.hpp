@@ -34,12 +34,6 @@ protected:
     void end_step();
     /// Where the passes of the step were: their positions are the pairs'.
     void conduct(real dt) final;
-    /// Particles that are frozen do not move: forgets what was done to their velocities.
-    void hold();
-    /// Whether particle i of the state is frozen, where hold() has found any.
-    bool held(int i) const {
-        return this->heat_ && this->heat_->frozen() > 0 && this->heat_->frozen(fluid_.enthalpy[static_cast<std::size_t>(i)]);
-    }
 
     using HostSolver<D>::fluid_;
     single::PbfParams kernels_{};  // the method's, as PBF, XSPH and vorticity read them

@@ -23,16 +23,17 @@ Fluid<D> start_of(const scene::Scene& scene) {
 }  // namespace
 
 template <int D>
-ReferencePbfSolver<D>::ReferencePbfSolver(const scene::Scene& scene) : ReferencePbfSolver(Options(scene), start_of<D>(scene)) {
-    this->take(scene, pbf::effects());
+ReferencePbfSolver<D>::ReferencePbfSolver(const scene::Scene& scene) : ReferencePbfSolver(Options(scene), start_of<D>(scene), &scene) {
     Fluid<D> unsettled = start_of<D>(scene);
     step_ = even_step(scene, unsettled);  // as on threads
 }
 
 template <int D>
-ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start) : Base(options, std::move(start)) {
+ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start, const scene::Scene* scene)
+    : Base(options, std::move(start)) {
     reference_.p = pbf_params<particles::plain::PbfParams, D>(options_, fluid_.domain.spacing);
     reference_.least_back = particles::least_clamp * fluid_.domain.spacing;
+    if (scene) this->take(*scene, pbf::effects());
     this->settle();
 }
 
@@ -52,7 +53,7 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
     if (options_.warm_start > 0)
         for (std::size_t i = 0; i < multiplier_.size(); ++i) fluid_.carried[i] = multiplier_[i] / (slow * slow);
     update(dt, slow);  // 20-21, 23-24
-    this->hold();
+    this->hold_again();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
     const real speed = speed_ = fluid_.max_speed();
@@ -75,12 +76,17 @@ void ReferencePbfSolver<D>::predict(real dt) {
         const auto timed = passes_.time("predict");
         fluid_.time += dt;
         fluid_.domain.solids.set_time(fluid_.time);
+        for (int i = 0; i < fluid_.count(); ++i) Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * fluid_.gravity);
+        this->hold();  // what is frozen
         predicted_.clear(), x_star_.clear();
-        for (int i = 0; i < fluid_.count(); ++i) {
-            Fluid<D>::put(fluid_.v, i, this->held(static_cast<std::size_t>(i)) ? Vec<D>{} : fluid_.velocity(i) + dt * fluid_.gravity);
+        for (int i = 0; i < fluid_.count(); ++i)
             predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
-            x_star_.push_back(particles::point_of(predicted_.back() - fluid_.domain.centre()));
+        if (this->ice_moves()) {
+            this->ice_->fly(dt);
+            this->ice_->each_place([&](int i, const Vec<D>& place) { predicted_[static_cast<std::size_t>(i)] = place; });
         }
+        for (const Vec<D>& x : predicted_) x_star_.push_back(particles::point_of(x - fluid_.domain.centre()));
+        this->set_rest();
     }
     const auto timed = passes_.time("neighbours");
     reference_.find_neighbours(x_star_);
@@ -116,7 +122,11 @@ void ReferencePbfSolver<D>::correct() {
     if (!fluid_.domain.solids.empty())
         for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x), fluid_.clamps) - centre);
     for (std::size_t i = 0; i < x_star_.size(); ++i)
-        if (this->held(i)) x_star_[i] = particles::point_of(predicted_[i] - centre);
+        if (this->held(static_cast<int>(i))) x_star_[i] = particles::point_of(predicted_[i] - centre);
+    if (!this->ice_moves()) return;
+    this->ice_->follow(
+        [&](int i, const Vec<D>& from) { return centre + particles::vec_of<D>(x_star_[static_cast<std::size_t>(i)]) - from; });
+    this->ice_->each_place([&](int i, const Vec<D>& to) { x_star_[static_cast<std::size_t>(i)] = particles::point_of(to - centre); });
 }
 
 /// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone. slow: see PbfSolver.
@@ -133,6 +143,7 @@ void ReferencePbfSolver<D>::update(real dt, real slow) {
         Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[at] = fluid_.rho0 * density_[at];
     }
+    if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
 }
 
 template <int D>

@@ -37,6 +37,8 @@ private:
 
     std::array<std::vector<real>, D> x_star_;
     std::vector<float> density_;     // rho / rho0 of each sorted particle
+    std::vector<float> rest_;        // density of each sorted particle over rho0, where ice moves
+    std::vector<int> sorted_;        // where each particle of the state stands then
     std::vector<float> multiplier_;  // sum of lambda of each sorted particle over this step, with warm start
 };
 

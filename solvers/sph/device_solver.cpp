@@ -68,7 +68,7 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     fluid_.finish(dt);  // XSPH, vorticity
-    fluid_.hold();
+    fluid_.hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = fluid_.max_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.density, fluid_.parts()});
@@ -91,7 +91,11 @@ void DeviceSphSolver<D>::find_pressures() {
     const auto& f = fluid_;
     const real c2 = options_.sound * options_.sound;
     const std::array<double, 2> state{options_.gamma == 1 ? c2 : c2 * rho_rest_ / options_.gamma, options_.gamma};
-    fluid_.run("find_pressures", {f.count(), f.stride(), state, rho_rest_, f.order, f.v, f.density, f.carried, f.a, velocities_});
+    if (f.moving_ice())
+        fluid_.run("find_pressures", {f.count(), f.stride(), state, rho_rest_, f.order, f.v, f.density, f.carried, f.a, velocities_,
+                                      f.enthalpy, f.heat_states});
+    else
+        fluid_.run("find_pressures", {f.count(), f.stride(), state, rho_rest_, f.order, f.v, f.density, f.carried, f.a, velocities_});
 }
 
 template <int D>
@@ -120,7 +124,11 @@ void DeviceSphSolver<D>::kick(real dt) {
 template <int D>
 void DeviceSphSolver<D>::advance_densities(real dt) {
     const auto& f = fluid_;
-    fluid_.run("load_excess", {f.count(), f.stride(), f.rest_density(), f.order, f.v, f.density, velocities_});
+    if (f.moving_ice())
+        fluid_.run("load_excess",
+                   {f.count(), f.stride(), f.rest_density(), f.order, f.v, f.density, velocities_, f.enthalpy, f.heat_states});
+    else
+        fluid_.run("load_excess", {f.count(), f.stride(), f.rest_density(), f.order, f.v, f.density, velocities_});
     fluid_.run("advance_densities", {f.count(), f.stride(), f.state_params, f.poses, f.near_solid, params_, f.wall_params, f.terms, dt,
                                      f.rest_density(), f.a, velocities_, f.neighbours, f.list, f.order, f.density});
 }
@@ -130,6 +138,7 @@ template <int D>
 void DeviceSphSolver<D>::drift(real dt) {
     fluid_.pass_time(dt);
     fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.clamps, fluid_.x, fluid_.v});
+    fluid_.carry_ice(dt);
 }
 
 template class DeviceSphSolver<2>;

@@ -46,12 +46,19 @@ protected:
     void sum_up(std::vector<Integral>& list) const final {
         const auto& fluid = this->state();
         list.push_back({"elastic_energy", "J", particles::block_sum(fluid.count(), [&](int i) {
-                            return fluid.mass * options_.elastic_energy(fluid.density[static_cast<std::size_t>(i)], rho_rest_);
+                            return fluid.mass *
+                                   options_.elastic_energy(fluid.density[static_cast<std::size_t>(i)], rho_rest_ * this->rest_of(fluid, i));
                         })});
     }
     void save_more(Checkpoint& to) const final { to.put_value("sph.max_acceleration", max_acceleration_); }
     void restore_more(const Checkpoint& from) final { max_acceleration_ = from.get_value<real>("sph.max_acceleration"); }
 
+    /// After the drift of particles: pieces of ice go as bodies do.
+    void carry_ice(real dt) {
+        if (!this->ice_moves()) return;
+        this->ice_->fly(dt);
+        this->ice_->arrive(this->fluid_, dt);
+    }
     StepReport report(real dt, real speed, const Compression& c) const {
         return {.dt = dt,
                 .cfl = dt * (speed + options_.sound) / this->setting().domain.spacing,

@@ -56,6 +56,7 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     this->hold();                                    // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(fluid_, dt);
+    this->carry_ice(dt);
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = fluid_.max_speed();
     real sum = 0, worst = 0;
@@ -88,8 +89,11 @@ template <int D>
 void ReferenceSphSolver<D>::find_densities() {
     const auto timed = passes_.time("density");
     if (!options_.continuity) fluid_.density = reference_.densities(x_);
-    std::transform(fluid_.density.begin(), fluid_.density.end(), fluid_.carried.begin(),
-                   [&](real rho) { return options_.pressure(rho, rho_rest_); });
+    for (int i = 0; i < fluid_.count(); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        fluid_.carried[at] = options_.pressure(fluid_.density[at], rho_rest_ * this->rest_of(fluid_, i));
+    }
+    this->set_rest();
 }
 
 template <int D>

@@ -55,7 +55,7 @@ StepReport SphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
-    this->hold();
+    this->hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = fluid_.max_speed();
     const Compression c = particles::compression_of(fluid_, rho_rest_);
@@ -107,7 +107,7 @@ void SphSolver<D>::find_densities() {
 template <int D>
 void SphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");
-    load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0; });
+    load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0 * this->rest_of(fluid_, i); });
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
     const auto rate = table.rate[options_.diffusion > 0];
@@ -148,7 +148,7 @@ void SphSolver<D>::load(F&& more) {
 template <int D>
 void SphSolver<D>::find_pressures() {
     load([&](int k, int i) {
-        const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], rho_rest_);
+        const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], rho_rest_ * this->rest_of(fluid_, i));
         if (!pairs_.is_image(k)) fluid_.carried[static_cast<std::size_t>(i)] = pressure;
         return pressure;
     });
@@ -204,6 +204,7 @@ template <int D>
 void SphSolver<D>::drift(real dt) {
     const auto timed = passes_.time("integrate");
     sph::drift(fluid_, dt);
+    this->carry_ice(dt);
 }
 
 template <int D>

@@ -17,9 +17,18 @@ __kernel void start_multipliers(int count, double factor, __global const int* or
 
 __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
                      __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to,
-                     __global float* density, __global float* multiplier) {
+                     __global float* density, __global float* multiplier
+#ifdef WEIR_ICE
+                     , __global const int* order, __global const double* enthalpy, __constant HeatStates* states
+#endif
+                     ) {
     const int i = get_global_id(0);
     if (i >= count) return;
+#ifdef WEIR_ICE
+    const float rest = (float)heat_rest(enthalpy[order[i]], states);
+#else
+    const float rest = 1;
+#endif
     float4 me = from[i];
     float rho = p->self, neighbours2 = 0, gx = 0, gy = 0, gz = 0;
     const int n = neighbours[i];
@@ -44,7 +53,7 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
 #else
     const float before = 0;
 #endif
-    const float sum = pbf_multiplier(before, rho, neighbours2, own2, p);
+    const float sum = pbf_multiplier(before, rho, rest, neighbours2, own2, p);
 #ifdef WEIR_KEEP
     multiplier[i] = sum;
 #endif

@@ -29,7 +29,8 @@ static void lambda(const PbfPass& a, const ListChunk& chunk) {
         gz += w.z;
         const vf own2 = dot3(gx, gy, gz, gx, gy, gz);
         const vf before = a.multiplier ? load_numbers(a.multiplier, first) : broadcast(0);
-        const vf sum = pbf_multiplier(before, rho, neighbours2, own2, p);
+        const vf rest = a.rest ? load_numbers(a.rest, first) : broadcast(1);
+        const vf sum = pbf_multiplier(before, rho, rest, neighbours2, own2, p);
         if (a.multiplier) store_numbers(a.multiplier, first, live(first, a.count), sum);
         store(a.to, first, live(first, a.count), {i.x, i.y, i.z, sum - before});
         store_numbers(a.density, first, live(first, a.count), rho);

@@ -32,10 +32,21 @@ WEIR_FN float4 velocity_of(int i, int stride, __global const double* v, double m
 /* The equation of state, and what the force pass reads. tait: (c^2 rho0 / gamma, gamma); linear: (c^2, 1)               eq. 12 */
 __kernel void find_pressures(int count, int stride, double2 state, double rest, __global const int* order, __global const double* v,
                              __global const double* density, __global double* pressure, __global float4* at,
-                             __global float4* velocities) {
+                             __global float4* velocities
+#ifdef WEIR_ICE
+                             , __global const double* enthalpy, __constant HeatStates* states
+#endif
+                             ) {
     const int k = get_global_id(0);
     if (k >= count) return;
     const int i = order[k];
+#ifdef WEIR_ICE
+    const double swollen = heat_rest(enthalpy[i], states);
+    rest *= swollen;
+#ifdef WEIR_TAIT
+    state.x *= swollen;
+#endif
+#endif
 #ifdef WEIR_TAIT
     double p = state.x * (pow(density[i] / rest, state.y) - 1);
 #else
@@ -182,9 +193,17 @@ __kernel void accelerations(int count, __global const float4* acceleration, __gl
 #ifdef WEIR_CONTINUITY
 /* The new velocities and the density's excess, as the rate reads them. */
 __kernel void load_excess(int count, int stride, double rho0, __global const int* order, __global const double* v,
-                          __global const double* density, __global float4* velocities) {
+                          __global const double* density, __global float4* velocities
+#ifdef WEIR_ICE
+                          , __global const double* enthalpy, __constant HeatStates* states
+#endif
+                          ) {
     const int k = get_global_id(0);
-    if (k < count) velocities[k] = velocity_of(order[k], stride, v, density[order[k]] - rho0);
+    if (k >= count) return;
+#ifdef WEIR_ICE
+    rho0 *= heat_rest(enthalpy[order[k]], states);
+#endif
+    velocities[k] = velocity_of(order[k], stride, v, density[order[k]] - rho0);
 }
 
 /* d rho / dt = rate, from the new velocities and the old places (Colagrossi & Landrini 2003, eq. 10). Behind a wall the velocity's image moves
