@@ -28,7 +28,7 @@ figures_need=(gnuplot-nox)
 python_needs=(python3-dev pybind11-dev python3-numpy)
 docs_need=(mkdocs libjs-katex)
 films_need=(ffmpeg)
-tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
+tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libpetsc-real-dev pkgconf libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
             python3-pytest python3-matplotlib)
 
 install_missing() { # PACKAGE...

@@ -16,7 +16,7 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 
 Runner::Runner(Session& session, bool real_time, bool paused) : session_(session), real_time_(real_time), paused_(paused) {
     wishes_.paused = paused;
-    field_ = first_field(session.simulation().fields());
+    field_ = view::main_field(field_names(session.simulation().fields()));
     counted_from_ = clock::now();
     publish();
     thread_ = std::thread([this] { run(); });

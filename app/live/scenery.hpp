@@ -1,7 +1,9 @@
-// What stands in the window of a session: all particles in one draw call, a grid as a coloured sheet (2D) or a cloud (3D), columns as their
-// surface, solids as meshes, the brush, and lines of text. Actors are made once; a frame changes their data alone.
+// What stands in the window of a session: all particles in one draw call, a grid as a coloured sheet (2D) or a cloud (3D), columns on their
+// ground, liquids that a level set bounds, solids as meshes, the brush, and lines of text. Actors are made once; a frame changes their data
+// alone.
 #pragma once
 #include "app/live/snapshot.hpp"
+#include "app/view/looks.hpp"
 #include "scene/scene.hpp"
 
 #include <vtkNew.h>
@@ -13,16 +15,23 @@ class vtkActor;
 class vtkFloatArray;
 class vtkImageActor;
 class vtkImageData;
-class vtkLookupTable;
 class vtkPoints;
 class vtkPolyData;
 class vtkPolyDataMapper;
 class vtkRenderer;
-class vtkScalarBarActor;
 class vtkTextActor;
 class vtkVolume;
 
 namespace weir::live {
+
+/// A mesh that changes from frame to frame.
+struct Mesh {
+    vtkNew<vtkActor> actor;
+    vtkNew<vtkPolyDataMapper> mapper;
+    Mesh();
+    /// Nothing is shown of a null pointer.
+    void show(vtkPolyData* mesh, view::Scale* coloured = nullptr);
+};
 
 class Scenery {
 public:
@@ -30,46 +39,44 @@ public:
     ~Scenery();
 
     vtkRenderer* renderer() { return renderer_; }
-    int dim() const { return scene_.dim(); }
-    const std::array<real, 6>& domain() const { return domain_; }
-    real cell() const { return cell_; }
+    const view::Domain& domain() const { return domain_; }
+    int dim() const { return domain_.dim; }
+    real cell() const { return domain_.cell; }
     void show(const Snapshot& snapshot);
     void show_brush(const Vec<3>& centre, real radius, bool acts);
-    void look_at_all();
+    void look_at_all() { view::look_at_all(renderer_, domain_); }
     void tell(const std::string& figures, const std::string& help);
-    std::array<real, 2> range() const { return {low_, high_}; }
+    std::array<real, 2> range() const { return scale_.range(); }
 
 private:
-    void add_outline();
     void add_particles();
     void add_sheet();
     void add_cloud();
-    void add_columns();
+    void add_meshes();
     void add_brush();
     void add_texts();
     void set_solids(const Snapshot& s);
     void set_particles(const Snapshot& s);
     void set_sheet(const Snapshot& s);
     void set_cloud(const Snapshot& s);
-    void set_columns(const Snapshot& s);
+    void set_water(const Snapshot& s);
+    void set_rows(const Snapshot& s);
     void set_colours(const Snapshot& s);
 
     scene::Scene scene_;
-    std::array<real, 6> domain_{};  // x0 x1 y0 y1 z0 z1 [m]
-    real cell_ = 1;                 // shortest side of a cell [m]
+    view::Domain domain_;
     vtkNew<vtkRenderer> renderer_;
-    vtkNew<vtkLookupTable> colours_;
-    vtkNew<vtkScalarBarActor> scale_;
+    view::Scale scale_;
     vtkNew<vtkTextActor> figures_, help_;
-    vtkNew<vtkPolyData> particles_, columns_, solids_;
+    vtkNew<vtkPolyData> particles_;
     vtkNew<vtkFloatArray> particle_places_, particle_values_, cloud_values_;
     vtkNew<vtkImageData> sheet_, cloud_;
-    vtkNew<vtkActor> particle_actor_, column_actor_, solid_actor_, brush_;
+    vtkNew<vtkActor> particle_actor_, brush_;
     vtkNew<vtkImageActor> sheet_actor_;
     vtkNew<vtkVolume> volume_;
-    bool solids_move_ = false, has_solids_ = false;
+    Mesh solids_, ground_, water_, lines_, rows_, boxes_;
+    bool solids_move_ = false, solids_are_missing_ = false;
     std::string field_;
-    real low_ = infinity, high_ = -infinity;
 };
 
 }  // namespace weir::live

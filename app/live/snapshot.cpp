@@ -16,7 +16,7 @@ std::string array_of(const std::string& field) { return field == "speed" ? "velo
 /// The particle set that stands for the fluid, or nullptr.
 const FieldView* positions_of(const FieldSet& fields) {
     for (const auto& f : fields.fields)
-        if (f.where == Where::particle && f.name == "position" && f.set != rigid::body_set_name) return &f;
+        if (f.where == Where::particle && f.name == "position" && f.set != rigid::body_set_name && f.set != box_set_name) return &f;
     return nullptr;
 }
 
@@ -69,6 +69,47 @@ void take_cells(const FieldSet& fields, const std::string& array, Snapshot& into
     for (std::size_t i = 0; i < cells; ++i) into.of_cells[i] = length(*f, i);
 }
 
+void take_bodies(const FieldSet& fields, Snapshot& into) {
+    for (const auto& f : fields.fields)
+        if (f.set == rigid::body_set_name) {
+            auto& components = into.bodies[f.name];
+            components.clear();
+            for (const auto& values : f.data) components.emplace_back(values.begin(), values.end());
+        }
+    into.boxes.clear();
+    const FieldView *at = fields.find(box_set_name, "position"), *size = fields.find(box_set_name, "size");
+    for (std::size_t b = 0; at && size && b < at->data[0].size(); ++b) {
+        view::FloatingBox box{};
+        for (std::size_t a = 0; a < at->data.size(); ++a) box.middle[a] = at->data[a][b], box.size[a] = size->data[a][b];
+        into.boxes.push_back(box);
+    }
+}
+
+/// Columns on their bed, or a liquid that a level set alone tells of; in place of the grid's cells.
+void take_water(const FieldSet& fields, bool has_points, Snapshot& into) {
+    into.columns.nx = 0, into.level.phi.clear();
+    const GridView& grid = fields.grid;
+    const auto list = [](const FieldView& f, std::vector<float>& to) { to.assign(f.data[0].begin(), f.data[0].end()); };
+    const FieldView *depth = fields.find("", column_depth_name), *bed = fields.find("", "bed"), *phi = fields.find("", level_set_name);
+    if (depth && bed && grid.cells[1] == 1) {
+        view::Columns& c = into.columns;
+        c.nx = grid.cells[0], c.nz = grid.cells[2];
+        c.dx = grid.spacing[0], c.dz = grid.spacing[2], c.x0 = grid.origin[0], c.z0 = grid.origin[2];
+        list(*depth, c.depth), list(*bed, c.bed);
+        c.values = into.of_cells;
+    } else if (phi && !has_points) {
+        view::Level& level = into.level;
+        level.cells = grid.cells;
+        for (std::size_t a = 0; a < 3; ++a) level.origin[a] = grid.origin[a], level.spacing[a] = grid.spacing[a];
+        list(*phi, level.phi);
+        level.values = into.of_cells;
+        if (const FieldView* tall = fields.find("", "cell_height"))
+            list(*tall, level.heights);
+        else
+            level.heights.clear();
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> field_names(const FieldSet& fields) {
@@ -80,28 +121,17 @@ std::vector<std::string> field_names(const FieldSet& fields) {
     return names;
 }
 
-std::string first_field(const FieldSet& fields) {
-    const auto names = field_names(fields);
-    for (const char* name : {"smoke", "temperature", "speed"})
-        if (std::find(names.begin(), names.end(), name) != names.end()) return name;
-    return names.empty() ? "" : names.front();
-}
-
 void take_fields(const FieldSet& fields, const std::string& field, Snapshot& into) {
     const std::string array = array_of(field);
     into.field = field;
-    into.points.clear(), into.of_points.clear(), into.of_cells.clear(), into.heights.clear();
-    for (const auto& f : fields.fields)
-        if (f.set == rigid::body_set_name) {
-            auto& components = into.bodies[f.name];
-            components.clear();
-            for (const auto& values : f.data) components.emplace_back(values.begin(), values.end());
-        }
+    into.points.clear(), into.of_points.clear(), into.of_cells.clear(), into.sheet = {0, 0};
+    take_bodies(fields, into);
     const FieldView* x = positions_of(fields);
     if (x) take_points(fields, *x, array, into);
-    const FieldView* surface = fields.find("", surface_height_name);
-    if (surface && fields.grid.cells[1] == 1) into.heights.assign(surface->data[0].begin(), surface->data[0].end());
+    for (const auto& sheet : fields.sheets)
+        if (x && sheet.set == x->set) into.sheet = sheet.points;
     if (!x || into.of_points.empty()) take_cells(fields, array, into);  // a grid behind particles only where it says more than they do
+    take_water(fields, x != nullptr, into);
 }
 
 }  // namespace weir::live

@@ -1,5 +1,6 @@
 // What a window shows of a moment: plain numbers, copied from a solver between two steps, so that it may step on while they are drawn.
 #pragma once
+#include "app/view/water.hpp"
 #include "sim/simulation.hpp"
 
 #include <array>
@@ -27,13 +28,17 @@ struct Snapshot {
     std::array<int, 3> cells{0, 0, 0};
     std::vector<float> of_cells;                                   // the field in cells, x fastest; empty: nothing of the grid is shown
     std::map<std::string, std::vector<std::vector<real>>> bodies;  // fields of the set of bodies: their poses
-    std::vector<float> heights;                                    // of columns: their surface's y [m], x fastest
+    view::Columns columns;                                         // nx = 0: none
+    view::Level level;                                             // where it alone tells where the liquid is; empty phi: none
+    std::array<int, 2> sheet{0, 0};                                // points in rows that are the corners of a surface; 0: they are not
+    std::vector<view::FloatingBox> boxes;
+
+    /// Whether cells are shown as they are: neither columns nor a liquid that a level set bounds.
+    bool grid_shown() const { return !of_cells.empty() && columns.nx == 0 && level.phi.empty(); }
 };
 
 /// Fields by which a solver's state can be coloured; "speed" stands for a velocity.
 std::vector<std::string> field_names(const FieldSet& fields);
-/// The field that the scene is about: smoke, temperature, speed, or the first.
-std::string first_field(const FieldSet& fields);
 /// Points and values of the field; whatever does not have it is shown plain.
 void take_fields(const FieldSet& fields, const std::string& field, Snapshot& into);
 

@@ -1,16 +1,11 @@
 #include "app/live/window.hpp"
 
 #include "core/error.hpp"
-#include "output/atomic_file.hpp"
 
-#include <vtkCamera.h>
 #include <vtkCommand.h>
-#include <vtkPNGWriter.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +18,7 @@ namespace weir::live {
 
 namespace {
 
-constexpr int milliseconds_between_looks = 8;
 constexpr double told_every = 0.25;  // [s]: text is dear to draw
-/// A mouse that has not moved for so long stands still.
-constexpr double still_after = 0.06;  // [s]
-/// Pulled fluid crosses the brush so often a second.
-constexpr real pulls = 4;  // [1/s]
 
 const char* const help_text =
     "left drag    the hand acts in its brush\n"
@@ -55,7 +45,7 @@ double cpu_seconds() {
 
 Window::Window(Session& session, const WindowOptions& options)
     : session_(session), options_(options), scenery_(session.scene()), knobs_(session.scene()), paused_(options.paused) {
-    const auto& box = scenery_.domain();
+    const auto& box = scenery_.domain().box;
     real shortest = infinity;
     for (std::size_t a = 0; a < 3; ++a)
         if (box[2 * a + 1] > box[2 * a]) shortest = std::min(shortest, box[2 * a + 1] - box[2 * a]);
@@ -184,120 +174,9 @@ void Window::on_timer() {
     if (has_end_ && clock::now() >= ends_) interactor_->TerminateApp();
 }
 
-void Window::on_left_press() {
-    acts_ = true;
-    at_ = place_under_mouse();
-    velocity_ = {};
-    moved_ = clock::now();
-    tell_hand();
-}
-
-void Window::on_left_release() {
-    acts_ = false;
-    tell_hand();
-}
-
-void Window::on_right_press() { turns_camera_ = true, interactor_->GetEventPosition(mouse_.data()); }
-void Window::on_right_release() { turns_camera_ = false; }
-
-void Window::on_move() {
-    if (turns_camera_) {
-        std::array<int, 2> now{};
-        interactor_->GetEventPosition(now.data());
-        turn_camera(now[0] - mouse_[0], now[1] - mouse_[1]);
-        mouse_ = now;
-    }
-    follow_mouse();
-}
-
-void Window::on_wheel_forward() { interactor_->GetControlKey() ? zoom(1.1) : resize_brush(1.15); }
-void Window::on_wheel_backward() { interactor_->GetControlKey() ? zoom(1 / 1.1) : resize_brush(1 / 1.15); }
-
-/// The camera turns about the middle of the domain; over a flat scene it glides.
-void Window::turn_camera(int dx, int dy) {
-    vtkCamera* camera = scenery_.renderer()->GetActiveCamera();
-    const int* size = window_->GetSize();
-    if (scenery_.dim() == 3) {
-        camera->Azimuth(-180.0 * dx / size[0]);
-        camera->Elevation(std::clamp(-90.0 * dy / size[1], -5.0, 5.0));
-        camera->OrthogonalizeViewUp();
-    } else {
-        const real metres = 2 * camera->GetParallelScale() / size[1];
-        double focus[3], from[3];
-        camera->GetFocalPoint(focus), camera->GetPosition(from);
-        camera->SetFocalPoint(focus[0] - metres * dx, focus[1] - metres * dy, focus[2]);
-        camera->SetPosition(from[0] - metres * dx, from[1] - metres * dy, from[2]);
-    }
-    stale_ = true;
-}
-
-void Window::zoom(double by) {
-    vtkCamera* camera = scenery_.renderer()->GetActiveCamera();
-    if (scenery_.dim() == 3)
-        camera->Dolly(by);
-    else
-        camera->SetParallelScale(camera->GetParallelScale() / by);
-    stale_ = true;
-}
-
-void Window::resize_brush(real by) {
-    radius_ = std::max(radius_ * by, scenery_.cell());
-    follow_mouse();
-}
-
-/// On the plane through the camera's focus that faces it.
-Vec<3> Window::place_under_mouse() {
-    vtkRenderer* renderer = scenery_.renderer();
-    double focus[3];
-    renderer->GetActiveCamera()->GetFocalPoint(focus);
-    renderer->SetWorldPoint(focus[0], focus[1], focus[2], 1);
-    renderer->WorldToDisplay();
-    const double depth = renderer->GetDisplayPoint()[2];
-    int at[2];
-    interactor_->GetEventPosition(at);
-    renderer->SetDisplayPoint(at[0], at[1], depth);
-    renderer->DisplayToWorld();
-    const double* world = renderer->GetWorldPoint();
-    return {{world[0] / world[3], world[1] / world[3], scenery_.dim() == 2 ? 0 : world[2] / world[3]}};
-}
-
-std::array<int, 2> Window::pixel(const Vec<3>& place) {
-    vtkRenderer* renderer = scenery_.renderer();
-    renderer->SetWorldPoint(place[0], place[1], place[2], 1);
-    renderer->WorldToDisplay();
-    const double* at = renderer->GetDisplayPoint();
-    return {static_cast<int>(std::lround(at[0])), static_cast<int>(std::lround(at[1]))};
-}
-
-/// The hand is as fast as the mouse: over the clock's time, whatever the simulation keeps up with.
-void Window::follow_mouse() {
-    const Vec<3> now = place_under_mouse();
-    const double since = seconds(clock::now() - moved_);
-    if (norm(now - at_) > 0) {
-        velocity_ = (now - at_) / std::max(since, 1e-3 * milliseconds_between_looks);
-        at_ = now;
-        moved_ = clock::now();
-    } else if (since > still_after) {
-        velocity_ = {};
-    }
-    tell_hand();
-}
-
-void Window::tell_hand() {
-    if (!session_.has_hand()) return;
-    HandKey key;
-    if (acts_) key = {0, tool_, at_, radius_, velocity_, tool_ == HandKind::pull ? pulls * radius_ : 0};
-    scenery_.show_brush(at_, radius_, acts_);
-    stale_ = true;
-    runner_->wish([&](Wishes& w) { w.hand = key; });
-}
-
 void Window::next_field() {
-    const auto& names = shown_->fields;
-    if (names.empty()) return;
-    const auto at = std::find(names.begin(), names.end(), shown_->field);
-    const std::string next = at == names.end() || at + 1 == names.end() ? names.front() : *(at + 1);
-    runner_->wish([&](Wishes& w) { w.field = next; });
+    if (shown_->fields.empty()) return;
+    runner_->wish([&](Wishes& w) { w.field = view::next_field(shown_->fields, shown_->field); });
 }
 
 void Window::picture() {
@@ -306,16 +185,6 @@ void Window::picture() {
     write(*pictured_);
 }
 
-void Window::write(const std::filesystem::path& png) {
-    vtkNew<vtkWindowToImageFilter> pixels;
-    pixels->SetInput(window_);
-    pixels->ReadFrontBufferOff();
-    vtkNew<vtkPNGWriter> writer;
-    writer->SetInputConnection(pixels->GetOutputPort());
-    writer->WriteToMemoryOn();
-    writer->Write();
-    vtkUnsignedCharArray* bytes = writer->GetResult();
-    output::write_file(png, {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfValues())});
-}
+void Window::write(const std::filesystem::path& png) { view::write_png(window_, png); }
 
 }  // namespace weir::live

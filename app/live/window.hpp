@@ -18,6 +18,8 @@ class vtkRenderWindowInteractor;
 
 namespace weir::live {
 
+inline constexpr int milliseconds_between_looks = 8;
+
 struct WindowOptions {
     int width = 1100, height = 800;
     bool paused = false;

@@ -1,6 +1,6 @@
 #include "app/picture/canvas.hpp"
 
-#include "output/read_frame.hpp"
+#include "output/image_file.hpp"
 
 #include <map>
 #include <string>

@@ -1,22 +1,15 @@
-// What the viewer's stage shows in space: clouds of a 3D grid's field, the scene's solids, the outline of the domain.
+// What the viewer's stage shows in space: clouds of a 3D grid's field, and the scene's solids.
 #include "rigid/bodies.hpp"
 #include "app/view/solid_mesh.hpp"
 #include "app/view/stage.hpp"
 
 #include <vtkActor.h>
 #include <vtkClipDataSet.h>
-#include <vtkColorTransferFunction.h>
 #include <vtkContourFilter.h>
 #include <vtkFloatArray.h>
 #include <vtkGeometryFilter.h>
 #include <vtkImageData.h>
-#include <vtkLookupTable.h>
-#include <vtkOutlineSource.h>
-#include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
-#include <vtkPolyDataMapper.h>
-#include <vtkProperty.h>
-#include <vtkRenderer.h>
 #include <vtkSmartVolumeMapper.h>
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
@@ -85,53 +78,23 @@ void Stage::add_solids(const Frame& frame) {
         if (std::string_view(field) == "position") return points->GetPoint(point)[component];
         return points->GetPointData()->GetArray(field)->GetComponent(point, static_cast<int>(component));
     };
-    const auto mesh = solid_mesh(scene_, frame.time, pose, domain_, cell_);
-    if (!mesh) return;
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(mesh);
-    mapper->ScalarVisibilityOff();
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(0.55, 0.57, 0.61);
-    if (dim() == 2) actor->GetProperty()->LightingOff(), actor->SetPosition(0, 0, cell_);  // in front of markers
-    add(actor.Get());
+    if (const auto mesh = solid_mesh(scene_, frame.time, pose, domain_.box, domain_.cell))
+        add_mesh(mesh, false, [&](vtkActor* actor) { paint_solids(actor, domain_); });
 }
 
 void Stage::add_cloud(const Frame& frame, const std::string& field) {
     const auto shown = coloured(frame.grid, frame, field);
     if (!shown) return;
     widen(shown);
-    set_colours(field);
-    vtkNew<vtkColorTransferFunction> colour;
-    vtkNew<vtkPiecewiseFunction> opacity;
-    for (int i = 0; i <= 16; ++i) {
-        const real value = low_ + (high_ - low_) * i / 16;
-        double rgb[3];
-        colours_->GetColor(value, rgb);
-        colour->AddRGBPoint(value, rgb[0], rgb[1], rgb[2]);
-        opacity->AddPoint(value, 0.6 * (low_ < 0 ? std::abs(2 * i / 16.0 - 1) : i / 16.0));
-    }
+    scale_.set(field);
     vtkNew<vtkVolume> volume;
-    volume->GetProperty()->SetColor(colour);
-    volume->GetProperty()->SetScalarOpacity(opacity);
+    scale_.colour(volume->GetProperty());
     volume->GetProperty()->SetInterpolationTypeToLinear();
-    volume->GetProperty()->SetScalarOpacityUnitDistance(4 * cell_);
+    volume->GetProperty()->SetScalarOpacityUnitDistance(4 * domain_.cell);
     vtkNew<vtkSmartVolumeMapper> mapper;
     mapper->SetInputData(shown);
     volume->SetMapper(mapper);
     add(volume.Get());
-}
-
-void Stage::add_outline() {
-    vtkNew<vtkOutlineSource> outline;
-    outline->SetBounds(domain_.data());
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputConnection(outline->GetOutputPort());
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(0.35, 0.38, 0.42);
-    actor->GetProperty()->LightingOff();
-    renderer_->AddActor(actor);
 }
 
 }  // namespace weir::view

@@ -1,18 +1,15 @@
-// What the viewer's stage shows of columns of water: the ground, the water on it, and boxes that float.
+// What the viewer's stage shows of water that no particles stand for: columns on their ground, boxes that float in them, and the inside of
+// a level set, with the tall cells that it was solved on.
 #include "app/view/stage.hpp"
+#include "app/view/water.hpp"
 
 #include <vtkActor.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCubeSource.h>
 #include <vtkDataArray.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 
 #include <algorithm>
@@ -21,66 +18,13 @@ namespace weir::view {
 
 namespace {
 
-constexpr double film = 1e-3;  // of the deepest water: thinner films are shown as dry
-
-struct Columns {
-    vtkImageData* grid;
-    vtkDataArray *bed, *depth;
-    int nx, nz;
-    double dx, dz, x0, z0;
-    explicit Columns(vtkImageData* g) : grid(g), bed(g->GetCellData()->GetArray("bed")), depth(g->GetCellData()->GetArray("depth")) {
-        const int* points = grid->GetDimensions();
-        nx = points[0] - 1, nz = std::max(1, points[2] - 1);
-        dx = grid->GetSpacing()[0], dz = grid->GetSpacing()[2], x0 = grid->GetOrigin()[0], z0 = grid->GetOrigin()[2];
-    }
-    vtkIdType at(int i, int k) const { return static_cast<vtkIdType>(k) * nx + i; }
-    double ground(vtkIdType c) const { return bed->GetComponent(c, 0); }
-    double top(vtkIdType c) const { return ground(c) + std::max(0.0, depth->GetComponent(c, 0)); }
-};
-
-/// A line of columns: an upright strip each, from `low` to `high`; `wanted` says of which.
-template <class Low, class High, class Wanted>
-vtkSmartPointer<vtkPolyData> strips(const Columns& c, vtkFloatArray* values, Low&& low, High&& high, Wanted&& wanted) {
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> cells;
-    vtkNew<vtkFloatArray> shown;
-    for (int i = 0; i < c.nx; ++i) {
-        if (!wanted(i)) continue;
-        const double x = c.x0 + i * c.dx;
-        const vtkIdType corner[] = {points->InsertNextPoint(x, low(i), 0), points->InsertNextPoint(x + c.dx, low(i), 0),
-                                    points->InsertNextPoint(x + c.dx, high(i), 0), points->InsertNextPoint(x, high(i), 0)};
-        cells->InsertNextCell(4, corner);
-        if (values) shown->InsertNextValue(values->GetValue(i));
-    }
-    auto surface = vtkSmartPointer<vtkPolyData>::New();
-    surface->SetPoints(points);
-    surface->SetPolys(cells);
-    if (values) surface->GetCellData()->SetScalars(shown);
-    return surface;
+std::vector<float> numbers(vtkDataArray* array) {
+    std::vector<float> list;
+    for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i) list.push_back(static_cast<float>(array->GetComponent(i, 0)));
+    return list;
 }
 
-/// A plane of columns: a surface through their middles at a height, where all four columns about a piece are wanted.
-template <class Height, class Wanted>
-vtkSmartPointer<vtkPolyData> relief(const Columns& c, vtkFloatArray* values, Height&& height, Wanted&& wanted) {
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> cells;
-    for (int k = 0; k < c.nz; ++k)
-        for (int i = 0; i < c.nx; ++i) points->InsertNextPoint(c.x0 + (i + 0.5) * c.dx, height(c.at(i, k)), c.z0 + (k + 0.5) * c.dz);
-    for (int k = 0; k + 1 < c.nz; ++k)
-        for (int i = 0; i + 1 < c.nx; ++i) {
-            const vtkIdType corner[] = {c.at(i, k), c.at(i, k + 1), c.at(i + 1, k + 1), c.at(i + 1, k)};
-            if (std::any_of(std::begin(corner), std::end(corner), wanted)) cells->InsertNextCell(4, corner);
-        }
-    auto surface = vtkSmartPointer<vtkPolyData>::New();
-    surface->SetPoints(points);
-    surface->SetPolys(cells);
-    if (values) surface->GetPointData()->SetScalars(values);
-    vtkNew<vtkPolyDataNormals> normals;
-    normals->SetInputData(surface);
-    normals->SplittingOff();
-    normals->Update();
-    return normals->GetOutput();
-}
+std::vector<float> numbers(const Frame& frame, const char* field) { return numbers(frame.grid->GetCellData()->GetArray(field)); }
 
 }  // namespace
 
@@ -89,54 +33,67 @@ bool is_of_columns(const Frame& frame) {
            frame.grid->GetCellData()->HasArray("depth");
 }
 
+bool is_of_liquid(const Frame& frame) {
+    return frame.grid && frame.grid->GetCellData()->HasArray(level_set_name) && frame.particles.empty();
+}
+
+void Stage::add_mesh(vtkPolyData* mesh, bool coloured, const std::function<void(vtkActor*)>& paint) {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(mesh);
+    colour(mapper, coloured ? mesh : nullptr);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    paint(actor);
+    add(actor.Get());
+}
+
 void Stage::add_columns(const Frame& frame, const std::string& field) {
-    const Columns c(frame.grid);
-    const auto values = numbers_of_cells(frame, field);
-    const double thin = film * c.depth->GetRange()[1];
-    const auto wet = [&](vtkIdType at) { return c.depth->GetComponent(at, 0) > thin; };
-    const auto any = [](vtkIdType) { return true; };
-    const auto bed = [&](vtkIdType at) { return c.ground(at); };
-    const auto top = [&](vtkIdType at) { return c.top(at); };
-    const auto floor = [&](vtkIdType) { return std::min(domain_[2], c.bed->GetRange()[0]); };
-    const bool flat = dim() == 2;
-    const auto ground = flat ? strips(c, nullptr, floor, bed, any) : relief(c, nullptr, bed, any);
-    const auto water = flat ? strips(c, values, bed, top, wet) : relief(c, values, top, wet);
-    const auto shown = [&](vtkPolyData* surface, vtkDataSet* colours, const std::array<double, 3>& plain) {
-        vtkNew<vtkPolyDataMapper> mapper;
-        mapper->SetInputData(surface);
-        colour(mapper, colours);
-        vtkNew<vtkActor> actor;
-        actor->SetMapper(mapper);
-        actor->GetProperty()->SetColor(plain[0], plain[1], plain[2]);
-        if (flat)
-            actor->GetProperty()->LightingOff(), actor->SetPosition(0, 0, -0.5 * cell_);
-        else
-            actor->GetProperty()->SetSpecular(0.3);
-        add(actor.Get());
-    };
-    shown(ground, nullptr, {0.60, 0.54, 0.43});
-    shown(water, values ? water.Get() : nullptr, {0.16, 0.42, 0.66});
+    const int* points = frame.grid->GetDimensions();
+    const double *spacing = frame.grid->GetSpacing(), *origin = frame.grid->GetOrigin();
+    const Columns columns{points[0] - 1,
+                          std::max(1, points[2] - 1),
+                          spacing[0],
+                          spacing[2],
+                          origin[0],
+                          origin[2],
+                          numbers(frame, "bed"),
+                          numbers(frame, "depth"),
+                          numbers(numbers_of_cells(frame, field))};
+    add_mesh(ground_mesh(columns, domain_), false, [&](vtkActor* actor) { paint_columns(actor, domain_, ground_colour); });
+    add_mesh(water_mesh(columns, domain_), !columns.values.empty(), [&](vtkActor* actor) { paint_columns(actor, domain_, liquid_colour); });
+}
+
+void Stage::add_liquid(const Frame& frame, const std::string& field, Show what) {
+    const int* points = frame.grid->GetDimensions();
+    Level level;
+    level.phi = numbers(frame, level_set_name), level.values = numbers(numbers_of_cells(frame, field));
+    for (std::size_t a = 0; a < 3; ++a) {
+        level.cells[a] = std::max(1, points[a] - 1);
+        level.origin[a] = frame.grid->GetOrigin()[a], level.spacing[a] = frame.grid->GetSpacing()[a];
+    }
+    add_mesh(liquid_mesh(level, domain_), !level.values.empty(),
+             [&](vtkActor* actor) { domain_.flat() ? paint_columns(actor, domain_, liquid_colour) : paint_liquid(actor); });
+    level.heights = numbers(frame, "cell_height");
+    if (what == Show::particles || level.heights.empty()) return;
+    add_mesh(cell_lines(level, domain_), false, [](vtkActor* actor) {
+        actor->GetProperty()->SetColor(ink[0], ink[1], ink[2]);
+        actor->GetProperty()->LightingOff();
+    });
 }
 
 /// Each point is the middle of a box, with its extent beside it.
 void Stage::add_boxes(vtkPolyData* points) {
     vtkDataArray* size = points->GetPointData()->GetArray("size");
+    std::vector<FloatingBox> boxes;
     for (vtkIdType b = 0; b < points->GetNumberOfPoints(); ++b) {
-        const double* at = points->GetPoint(b);
-        vtkNew<vtkCubeSource> box;
-        box->SetCenter(at[0], at[1], dim() == 2 ? cell_ : at[2]);
-        box->SetXLength(size->GetComponent(b, 0));
-        box->SetYLength(size->GetComponent(b, 1));
-        box->SetZLength(dim() == 2 ? 0.1 * cell_ : size->GetComponent(b, 2));
-        vtkNew<vtkPolyDataMapper> mapper;
-        mapper->SetInputConnection(box->GetOutputPort());
-        mapper->ScalarVisibilityOff();
-        vtkNew<vtkActor> actor;
-        actor->SetMapper(mapper);
-        actor->GetProperty()->SetColor(0.71, 0.47, 0.25);
-        if (dim() == 2) actor->GetProperty()->LightingOff();
-        add(actor.Get());
+        FloatingBox box{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            box.middle[a] = points->GetPoint(b)[a];
+            box.size[a] = static_cast<int>(a) < size->GetNumberOfComponents() ? size->GetComponent(b, static_cast<int>(a)) : 0;
+        }
+        boxes.push_back(box);
     }
+    add_mesh(mesh_of(boxes, domain_), false, [&](vtkActor* actor) { paint_boxes(actor, domain_); });
 }
 
 }  // namespace weir::view

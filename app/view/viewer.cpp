@@ -1,17 +1,13 @@
 #include "app/view/viewer.hpp"
 
 #include "core/error.hpp"
-#include "output/atomic_file.hpp"
 
 #include <vtkCommand.h>
 #include <vtkInteractorStyleImage.h>
 #include <vtkInteractorStyleTrackballCamera.h>
-#include <vtkPNGWriter.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
 
@@ -28,10 +24,7 @@ std::string chosen_field(const std::string& asked, const Frame& frame) {
     const auto has = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
     if (!asked.empty() && !has(asked))
         throw BadInput(fmt::format("this run has no field \"{}\"; known: {}", asked, fmt::join(names, ", ")));
-    if (!asked.empty()) return asked;
-    for (const char* name : {"smoke", "temperature", "speed"})
-        if (has(name)) return name;
-    return names.empty() ? "" : names.front();
+    return asked.empty() ? main_field(names) : asked;
 }
 
 }  // namespace
@@ -103,10 +96,7 @@ void Viewer::on_timer() {
 }
 
 void Viewer::next_field() {
-    const auto names = field_names(shown_);
-    if (names.empty()) return;
-    const auto at = std::find(names.begin(), names.end(), field_);
-    field_ = at == names.end() || at + 1 == names.end() ? names.front() : *(at + 1);
+    field_ = view::next_field(field_names(shown_), field_);
     stage_.forget_range();
     draw();
 }
@@ -116,18 +106,6 @@ void Viewer::grab() {
     write(*grabbed_);
     std::printf("%s\n", grabbed_->c_str());
     std::fflush(stdout);
-}
-
-void Viewer::write(const std::filesystem::path& png) {
-    vtkNew<vtkWindowToImageFilter> pixels;
-    pixels->SetInput(window_);
-    pixels->ReadFrontBufferOff();
-    vtkNew<vtkPNGWriter> writer;
-    writer->SetInputConnection(pixels->GetOutputPort());
-    writer->WriteToMemoryOn();
-    writer->Write();
-    vtkUnsignedCharArray* bytes = writer->GetResult();
-    output::write_file(png, {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfValues())});
 }
 
 }  // namespace weir::view

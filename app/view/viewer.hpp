@@ -37,7 +37,7 @@ public:
     void press(const std::string& key);
     /// Shows frame `number`.
     void show(std::size_t number);
-    void write(const std::filesystem::path& png);
+    void write(const std::filesystem::path& png) { write_png(window_, png); }
 
     std::size_t frame() const { return number_; }
     bool playing() const { return playing_; }

@@ -86,7 +86,7 @@ bool is_obstacle(const std::string& name) { return name.find("box") == std::stri
 
 /// Why a solver is not run on a problem, or nothing.
 std::optional<std::string> reason_to_skip(const std::string& solver, const std::string& name, int dim, std::int64_t unknowns, bool quick) {
-    const bool slow = solver == "cholmod" || solver == "eigen_iccg";
+    const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "petsc_icc";
     if (solver == "dct" && name != "box") return "whole boxes only";
     if (quick && slow && unknowns > 100000) return "takes seconds (--quick)";
     if (solver == "cholmod" && dim == 3 && unknowns > 300000) return "its factor would take more than 8 GB and minutes";
@@ -114,7 +114,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         return row;
     }
     set_threads(threads);
-    const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0";
+    const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0" || solver.starts_with("petsc");
     const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
     row.setup_ms = row.solve_ms = infinity;
     for (int k = 0; k < (slow ? std::min(2, choice.repeat) : choice.repeat); ++k) {
@@ -136,7 +136,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
 }
 
 void print_head() {
-    std::printf("%-13s %3s %5s %2s %-11s %10s %10s %5s %9s %9s %8s %8s\n", "case", "dim", "n", "t", "solver", "setup ms", "solve ms",
+    std::printf("%-13s %3s %5s %2s %-15s %10s %10s %5s %9s %9s %8s %8s\n", "case", "dim", "n", "t", "solver", "setup ms", "solve ms",
                 "iter", "residual", "ns/unk", "B/unk", "/PFMG");
 }
 
@@ -149,7 +149,7 @@ void print_csv(const Row& r) {
 }
 
 void print(const Row& r, double pfmg_ms) {
-    std::printf("%-13s %3d %5d %2d %-11s ", r.name.c_str(), r.dim, r.n, r.threads, r.solver.c_str());
+    std::printf("%-13s %3d %5d %2d %-15s ", r.name.c_str(), r.dim, r.n, r.threads, r.solver.c_str());
     if (!r.skipped.empty()) {
         std::printf("skipped: %s\n", r.skipped.c_str());
     } else {
@@ -169,17 +169,24 @@ void run_case(const std::string& name, int n, int threads, const Choice& choice)
         solvers = {"pfmg_cg", "multigrid", "cholmod"};
         if (is_obstacle(name)) solvers.push_back("cg_mic0");
         if (name == "box" || name == "wavy") solvers.insert(solvers.end(), {"eigen_iccg", "dct"});
+        if (poisson::has_petsc() && threads == 1) solvers.insert(solvers.end(), {"petsc_gamg", "petsc_boomeramg", "petsc_icc"});
     }
     const auto problem = bench::make<D>(name, n);
     double pfmg_ms = 0;
     std::map<std::string, Grid<real, D>> answers;
+    std::map<std::string, double> milliseconds;
     for (const auto& solver : solvers) {
         Grid<real, D> p(problem.b.extent());
         const Row row = measure<D>(solver, name, problem, threads, choice, p);
         if (solver == "pfmg_cg") pfmg_ms = row.solve_ms;
         choice.csv ? print_csv(row) : print(row, pfmg_ms);
+        if (row.skipped.empty()) milliseconds[solver] = row.solve_ms;
         if (row.skipped.empty() && solver != "pfmg_cg") answers.emplace(solver, std::move(p));
     }
+    if (!choice.csv && milliseconds.contains("multigrid"))
+        for (const auto& [solver, ms] : milliseconds)
+            if (solver.starts_with("petsc"))
+                std::printf("    %s takes %.1f times multigrid's time\n", solver.c_str(), ms / milliseconds.at("multigrid"));
     if (choice.csv || !answers.contains("cholmod")) return;
     const auto& exact = answers.at("cholmod");
     const real scale = max_over<D>(exact.extent(), [&](const Index<D>& I) { return std::abs(exact(I)); });

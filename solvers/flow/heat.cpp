@@ -13,20 +13,6 @@ namespace {
 
 using poisson::Cell;
 
-/// The largest f(q) of all cells; NaN where q is not finite.
-template <int D, class F>
-real largest(const Grid<real, D>& q, F&& f) {
-    const int planes = q.extent()[D - 1];
-    const std::size_t plane = q.size() / static_cast<std::size_t>(planes);
-    return ordered_max(planes, [&](int k) {
-        const real* at = q.data() + static_cast<std::size_t>(k) * plane;
-        real most = -infinity, poison = 0;  // x - x is 0, or NaN where x is not finite
-#pragma omp simd reduction(max : most) reduction(+ : poison)
-        for (std::size_t i = 0; i < plane; ++i) most = std::max(most, f(at[i])), poison += at[i] - at[i];
-        return most + poison;
-    });
-}
-
 }  // namespace
 
 /// Temperature and share of liquid that belong to the enthalpies.
@@ -37,17 +23,23 @@ void Heat<D>::note(MacState<D>& s) {
     const Melting m = melting_;
     const real per_solid = 1 / m.c_solid, per_liquid = 1 / m.c_liquid;
     const real per_heat = 1 / std::max(m.h_liquid - m.h_solid, std::numeric_limits<real>::min());
-    for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
-        const real* at = &h(first);
-        real *t = &T(first), *f = &liquid_(first);
-#pragma omp simd
-        for (int i = 0; i < count; ++i) {
+    const int planes = s.extent()[D - 1];
+    const std::size_t plane = h.size() / static_cast<std::size_t>(planes);
+    const real hottest = ordered_max(planes, [&](int k) {
+        const std::size_t first = static_cast<std::size_t>(k) * plane;
+        const real* at = h.data() + first;
+        real *t = T.data() + first, *f = liquid_.data() + first;
+        real most = -infinity, least = infinity, poison = 0;  // x - x is 0, or NaN where x is not finite
+#pragma omp simd reduction(max : most) reduction(min : least) reduction(+ : poison)
+        for (std::size_t i = 0; i < plane; ++i) {
             t[i] = m.T + ((std::min(at[i], m.h_solid) - m.h_solid) * per_solid + (std::max(at[i], m.h_liquid) - m.h_liquid) * per_liquid);
             f[i] = std::clamp((at[i] - m.h_solid) * per_heat, real(0), real(1));
+            most = std::max(most, at[i]), least = std::min(least, at[i]), poison += at[i] - at[i];
         }
+        coldest_[static_cast<std::size_t>(k)] = least;
+        return most + poison;
     });
-    const real colder = largest(h, [&](real at) { return m.h_liquid - at; }), hottest = largest(h, [](real at) { return at; });
-    any_ice_ = colder > 0;
+    any_ice_ = *std::min_element(coldest_.begin(), coldest_.end()) < m.h_liquid;
     if (!(hottest <= m.boils_above))
         throw NumericalFailure("temperature", std::isnan(hottest) ? "the enthalpy is not finite"
                                                                   : "the liquid begins to boil, and solver \"mac\" has no vapour");
@@ -98,9 +90,12 @@ template <int D>
 void Heat<D>::give_back(MacState<D>& s) const {
     if (!slows_) return;
     for (int a = 0; a < D; ++a) {
-        const auto& beta = s.mobility[static_cast<std::size_t>(a)];
-        for_each_cell(s.u[a].extent(), [&](const Index<D>& I) {
-            if (beta(I) < 1) s.u[a](I) = (1 - beta(I)) * slowed_[a](I) + beta(I) * s.u[a](I);
+        const auto& mobility = s.mobility[static_cast<std::size_t>(a)];
+        for_each_row(Index<D>{}, s.u[a].extent(), [&](const Index<D>& first, int count) {
+            const real *beta = &mobility(first), *held = &slowed_[a](first);
+            real* u = &s.u[a](first);
+#pragma omp simd
+            for (int i = 0; i < count; ++i) u[i] = beta[i] < 1 ? (1 - beta[i]) * held[i] + beta[i] * u[i] : u[i];
         });
     }
 }
@@ -143,8 +138,7 @@ void Heat<D>::restore(const Checkpoint& from, MacState<D>& s) {
 
 template <int D>
 std::size_t Heat<D>::bytes() const {
-    std::size_t count = slowed_.bytes() + conduction_.bytes() + supply_.bytes() + liquid_.size() * sizeof(real);
-    return count;
+    return slowed_.bytes() + conduction_.bytes() + supply_.bytes() + (liquid_.size() + coldest_.size()) * sizeof(real);
 }
 
 template class Heat<2>;

@@ -64,6 +64,7 @@ private:
     Conduction<D> conduction_;
     HeatSupply<D> supply_;
     Grid<real, D> liquid_;
+    std::vector<real> coldest_;             // of each plane [J/kg]
     MacVelocity<D> slowed_;                 // β u*
     bool any_ice_ = false, slows_ = false;  // anywhere; and in the last step
     real added_ = 0;                        // by sides and heaters since the start [J, in 2D a metre]

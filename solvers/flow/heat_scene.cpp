@@ -76,6 +76,7 @@ Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
     auto& temperature = s.field("temperature");
     temperature.derived = true;
     liquid_ = Grid<real, D>(s.extent());
+    coldest_.resize(static_cast<std::size_t>(s.extent()[D - 1]));
     conduction_ = Conduction<D>(melting_, s.extent(), s.u.h, s.rho, temperature.boundary);
     supply_ = HeatSupply<D>(scene, s, melting_, conduction_);
     supply_.refuse_heaters_without_fluid(scene, s);

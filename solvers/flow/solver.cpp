@@ -143,6 +143,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
                          "scheme.advection: semi_lagrangian, maccormack");
         bodies_->start(state_, solids_);
     }
+    for (auto& field : state_.fields)
+        if (!field.derived) carried_fields_.push_back({&field.before, &field.boundary, &field.values});
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
     clear_solids();
@@ -216,12 +218,9 @@ template <int D>
 void FlowSolver<D>::advect_fields(real dt) {
     if (state_.fields.empty()) return;
     const auto timed = passes_.time("advect fields");
+    if (options_.scheme != Scheme::conservative) return characteristics_.advect(carried_fields_, all_cells<D>(state_.extent()), trace_, dt);
     for (auto& field : state_.fields) {
         if (field.derived) continue;
-        if (options_.scheme != Scheme::conservative) {
-            characteristics_.advect(field.before, field.boundary, all_cells<D>(state_.extent()), trace_, dt, field.values);
-            continue;
-        }
         if (solids_.moving())  // a cell that a body leaves begins with what is continued into it
             for_each_cell(state_.extent(), [&](const Index<D>& I) {
                 if (state_.cells(I) == poisson::Cell::solid) field.values(I) = field.before(I);

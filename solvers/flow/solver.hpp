@@ -75,6 +75,7 @@ private:
     std::unique_ptr<Heat<D>> heat_;  // none where the scene names no substance
     AdvectionOptions options_;
     CharacteristicAdvection<D> characteristics_;
+    std::vector<Carried<D>> carried_fields_;
     GridBacktrace<D> trace_;
     std::array<StageBlend<D>, D> velocity_blend_;
     std::vector<StageBlend<D>> field_blend_;

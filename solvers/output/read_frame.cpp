@@ -1,7 +1,6 @@
 #include "output/read_frame.hpp"
 
 #include "core/error.hpp"
-#include "output/atomic_file.hpp"
 #include "output/series_file.hpp"
 
 #ifdef WEIR_HAS_VTK
@@ -9,10 +8,8 @@
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkPNGWriter.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 #endif
@@ -104,29 +101,10 @@ FrameData read_frame(const std::filesystem::path& folder, std::size_t frame, int
     return data;
 }
 
-void write_png(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& rgb) {
-    vtkNew<vtkImageData> image;
-    image->SetDimensions(width, height, 1);
-    image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-    auto* to = static_cast<std::uint8_t*>(image->GetScalarPointer());
-    const auto row = static_cast<std::size_t>(3 * width);
-    for (int y = 0; y < height; ++y)  // VTK's images stand on their feet, ours hang from the top
-        std::copy_n(rgb.data() + row * static_cast<std::size_t>(height - 1 - y), row, to + row * static_cast<std::size_t>(y));
-    vtkNew<vtkPNGWriter> writer;
-    writer->SetInputData(image);
-    writer->WriteToMemoryOn();
-    writer->Write();
-    vtkUnsignedCharArray* bytes = writer->GetResult();
-    write_file(file, {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfValues())});
-}
-
 #else
 
 FrameData read_frame(const std::filesystem::path&, std::size_t, int) {
     throw BadInput("this weir was built without VTK (WEIR_VTK=OFF) and reads no frames");
-}
-void write_png(const std::filesystem::path&, int, int, const std::vector<std::uint8_t>&) {
-    throw BadInput("this weir was built without VTK (WEIR_VTK=OFF) and draws no pictures");
 }
 
 #endif

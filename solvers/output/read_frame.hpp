@@ -1,10 +1,9 @@
-// A frame read back from its VTK files into plain arrays, and pictures as PNG: what the makers of pictures need of VTK.
+// A frame read back from its VTK files into plain arrays: what the makers of pictures need of VTK.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -29,8 +28,5 @@ FrameData read_frame(const std::filesystem::path& folder, std::size_t frame, int
 
 /// The frame that a solver's fields of the moment would be.
 FrameData frame_of(const FieldSet& fields, real t);
-
-/// 8-bit RGB, row by row from the top.
-void write_png(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace weir::output

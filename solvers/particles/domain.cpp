@@ -1,5 +1,7 @@
 #include "particles/domain.hpp"
 
+#include "rigid/bodies.hpp"
+
 namespace weir::particles {
 
 template <int D>
@@ -17,6 +19,14 @@ Domain<D>::Domain(const scene::Scene& scene) : sides(scene), solids(scene.root()
     for (int a = 1; a < D; ++a)
         if (std::abs(size[a] / cells[a] - spacing) > 1e-6 * spacing)
             scene.refuse("grid.cells", "particles need cubic cells: their width is the particles' spacing");
+    if (!scene.has("bodies") || scene.root().tables("bodies").empty()) return;
+    bodies = std::make_shared<rigid::Bodies<D>>(scene);
+    bodies->join(solids);
+}
+
+template <int D>
+std::size_t Domain<D>::first_body() const {
+    return solids.count() - (bodies ? bodies->count() : 0);
 }
 
 template <int D>
@@ -89,7 +99,9 @@ void refuse_idle_walls(const scene::Scene& scene, const Domain<D>& domain, bool 
         }
     for (std::size_t i = 0; i < domain.solids.count(); ++i)
         if (domain.solids[i].no_slip && !viscous)
-            scene.refuse("solids[" + std::to_string(i) + "]", "without viscosity no liquid sticks to a solid", instead);
+            scene.refuse(domain.solids[i].free ? "bodies[" + std::to_string(i - domain.first_body()) + "]" : "solids[" + std::to_string(i) + "]",
+                         domain.solids[i].free ? "without viscosity no liquid sticks to a body" : "without viscosity no liquid sticks to a solid",
+                         instead);
 }
 
 template void refuse_idle_walls(const scene::Scene&, const Domain<2>&, bool, const std::string&);

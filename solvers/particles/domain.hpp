@@ -10,7 +10,13 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string>
+
+namespace weir::rigid {
+template <int D>
+class Bodies;
+}
 
 namespace weir::particles {
 
@@ -22,9 +28,10 @@ struct Domain {
     geometry::Solids<D> solids;
     real spacing = 0;  // of particles at rest [m]
     real margin = 0;   // no particle comes closer to a wall or solid [m]
+    std::shared_ptr<rigid::Bodies<D>> bodies;  // they stand behind the solids; none where the scene names none
 
     Domain() = default;
-    /// From "grid" (whose cells must be cubes: their width is the particle spacing), "sides" and "solids".
+    /// From "grid" (whose cells must be cubes: their width is the particle spacing), "sides", "solids" and "bodies".
     explicit Domain(const scene::Scene& scene);
 
     bool walled(int axis, int end) const {
@@ -32,6 +39,8 @@ struct Domain {
         return kind == geometry::SideKind::wall || kind == geometry::SideKind::moving_wall;
     }
     Vec<D> centre() const { return 0.5 * (lo + hi); }
+    /// Its number among the solids.
+    std::size_t first_body() const;
     Frame frame() const;
     /// The nearest place inside the walls and outside the solids.
     Vec<D> kept(Vec<D> x) const {

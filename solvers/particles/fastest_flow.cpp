@@ -1,5 +1,7 @@
 #include "particles/fastest_flow.hpp"
 
+#include "rigid/bodies.hpp"
+
 namespace weir::particles {
 
 namespace {
@@ -51,6 +53,8 @@ real fastest_flow(const scene::Scene& scene, Fluid<D>& fluid) {
         const Vec<D> r = field->number("omega") * (x - field->template vec<D>("centre"));
         squared = std::max(squared, dot(r, r));
     }
+    if (fluid.domain.bodies)
+        for (const auto& body : fluid.domain.bodies->all()) fall = std::max(fall, depth_below(fluid, body.at));
     for (const auto& emitter : scene.root().tables("emitters")) {
         const Vec<D> u = emitter.has("velocity") ? emitter.template vec<D>("velocity") : Vec<D>{};
         squared = std::max(squared, dot(u, u));
@@ -59,6 +63,7 @@ real fastest_flow(const scene::Scene& scene, Fluid<D>& fluid) {
         fall = std::max(fall, depth_below(fluid, top));
     }
     real fastest = std::max(std::sqrt(squared), fastest_solid(fluid, scene.number("time.end")));
+    if (fluid.domain.bodies) fastest = std::max(fastest, fluid.domain.bodies->max_rate(1));
     for (int a = 0; a < D; ++a)
         for (int end = 0; end < 2; ++end) fastest = std::max(fastest, norm(fluid.domain.sides.side(a, end).velocity));
     return std::sqrt(fastest * fastest + 2 * fall);

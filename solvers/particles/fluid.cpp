@@ -1,6 +1,7 @@
 #include "particles/fluid.hpp"
 
 #include "core/error.hpp"
+#include "particles/beside_bodies.hpp"
 
 #include <algorithm>
 
@@ -12,13 +13,19 @@ Fluid<D>::Fluid(const scene::Scene& scene) : domain(scene), rho0(scene.number("f
     if (const auto* g = scene.effect("gravity")) gravity = g->template vec<D>("g");
     const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     const Index<D> cells = scene.index<D>("grid.cells");
+    std::vector<Vec<D>> beside;
     Index<D> at{};
     for (std::size_t c = 0; c < product(cells); ++c) {
         const Vec<D> centre = domain.lo + domain.spacing * (to_vec(at) + Vec<D>::constant(0.5));
         const bool wet = std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s->contains(centre); });
-        if (wet && (domain.solids.empty() || domain.solids.distance(centre) > 0.25 * domain.spacing)) add(centre, Vec<D>{});
+        if (wet && domain.bodies && away_from_bodies(domain, centre) < 0.5 * std::sqrt(1.0 * D) * domain.spacing)
+            beside.push_back(centre);
+        else if (wet && (domain.solids.empty() || domain.solids.distance(centre) > 0.25 * domain.spacing))
+            add(centre, Vec<D>{});
         for (int a = 0; a < D && ++at[a] == cells[a]; ++a) at[a] = 0;
     }
+    if (!beside.empty())
+        for (const Vec<D>& place : places_beside_bodies(domain, beside)) add(place, Vec<D>{});
     scratch_.reserve(id.size());  // of reorder(), which must not allocate in a step
 }
 

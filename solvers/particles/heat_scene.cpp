@@ -162,7 +162,7 @@ void Heat<D>::set_ice(const scene::Scene& scene, const Domain<D>& domain, const 
     if (!substance.has(thermo::Boundary::melting))
         scene.refuse("heat.frozen", std::string(substance.name()) + " never freezes",
                      "substance.fusion and a triple point make one that does");
-    if (scene.has("bodies"))
+    if (!scene.root().tables("bodies").empty())
         scene.refuse("heat.frozen", "pieces of ice do not meet bodies that move, and this scene has both", "heat.frozen = \"held\"");
     for (int a = 0; a < D; ++a)
         if (domain.sides.periodic(a))

@@ -1,6 +1,7 @@
 #include "particles/kind.hpp"
 
 #include "particles/heat.hpp"
+#include "rigid/bodies.hpp"
 #include "scene/surface_keys.hpp"
 
 namespace weir::particles {
@@ -11,6 +12,8 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
     initial.keys.push_back(initial_temperature_key());
     own.keys.push_back(std::move(initial));
     own.keys.push_back(sinks_key());
+    own.keys.push_back(rigid::bodies_key());
+    own.keys.push_back(rigid::probe_key());
     for (scene::Key& key : heat_keys()) own.keys.push_back(std::move(key));
     own.keys.push_back(scene::surface_key_of_particles());
     const auto shared = effect_schemas();

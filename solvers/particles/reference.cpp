@@ -322,6 +322,21 @@ void add_solids(ReferencePairs& reference, const Domain<D>& domain, const std::v
     }
 }
 
+template <int D>
+void meet_bodies(const ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x, std::vector<Meeting<D>>& to) {
+    to.clear();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const Vec<D> at = domain.centre() + vec_of<D>(x[i]);
+        if (reference.solid_part[i] == 0 || domain.solids.nearest(at) < domain.first_body()) continue;
+        Meeting<D> m;
+        m.particle = static_cast<int>(i), m.body = static_cast<std::ptrdiff_t>(domain.solids.nearest(at) - domain.first_body());
+        m.at = at;
+        for (int a = 0; a < D; ++a) m.open *= 1 - wall_part(x[i][static_cast<std::size_t>(a)], &reference.walls, a);
+        m.pull = m.open * vec_of<D>(reference.solid[i]), m.part = m.open * reference.solid_part[i];
+        to.push_back(m);
+    }
+}
+
 Pairs::NeighbourCounts counts_of(const Neighbours& neighbours) {
     std::size_t sum = 0, most = 0;
     for (const auto& list : neighbours) sum += list.size(), most = std::max(most, list.size());
@@ -334,6 +349,8 @@ std::size_t bytes_of(const Neighbours& neighbours) {
     return sum;
 }
 
+template void meet_bodies(const ReferencePairs&, const Domain<2>&, const std::vector<Point>&, std::vector<Meeting<2>>&);
+template void meet_bodies(const ReferencePairs&, const Domain<3>&, const std::vector<Point>&, std::vector<Meeting<3>>&);
 template void add_solids(ReferencePairs&, const Domain<2>&, const std::vector<Point>&);
 template void add_solids(ReferencePairs&, const Domain<3>&, const std::vector<Point>&);
 

@@ -2,6 +2,7 @@
 // vectors. It compiles the same text of the pair physics as the fast path and defines what is right. Steps made of it are the backend
 // "reference" (reference_solver.hpp); its time grows with the square of the number of particles.
 #pragma once
+#include "particles/bodies_in_liquid.hpp"
 #include "particles/domain.hpp"
 
 #include <array>
@@ -78,6 +79,10 @@ Vec<D> vec_of(const Point& p) {
 /// What solids add at each place (solid_terms.hpp); nothing where the domain has none.
 template <int D>
 void add_solids(ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x);
+
+/// Who of them meets a body, after add_solids.
+template <int D>
+void meet_bodies(const ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x, std::vector<Meeting<D>>& to);
 
 Pairs::NeighbourCounts counts_of(const Neighbours& neighbours);
 std::size_t bytes_of(const Neighbours& neighbours);

@@ -58,7 +58,8 @@ void ReferenceSolver<D, Physics>::conduct_at(const std::vector<Point>& x, real d
 
 template <int D, class Physics>
 std::size_t ReferenceSolver<D, Physics>::bytes() const {
-    return fluid_.bytes() + own_bytes() + bytes_of(reference_.neighbours) + (this->heat_ ? this->heat_->bytes() : 0);
+    return fluid_.bytes() + own_bytes() + bytes_of(reference_.neighbours) + (this->heat_ ? this->heat_->bytes() : 0) +
+           (this->bodies_ ? this->bodies_->bytes() : 0);
 }
 
 template class ReferenceSolver<2, ReferencePbf>;

@@ -45,6 +45,26 @@ const float* SolidTerms<D>::at(const Pairs&, const float* positions) {
 }
 
 template <int D>
+void SolidTerms<D>::meet(const float* positions, std::vector<Meeting<D>>& to) const {
+    const std::size_t bodies = domain_.first_body();
+    to.resize(near_.size());
+    parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
+        Meeting<D>& m = to[static_cast<std::size_t>(i)];
+        m = {};
+        const int k = m.particle = near_[static_cast<std::size_t>(i)];
+        const float* term = terms_.data() + 4 * k;
+        if (term[3] == 0) return;
+        m.at = world(positions + 4 * k);
+        const std::size_t solid = domain_.solids.nearest(m.at);
+        if (solid < bodies) return;
+        m.body = static_cast<std::ptrdiff_t>(solid - bodies);
+        for (int a = 0; a < D; ++a) m.open *= 1 - wall_part(static_cast<real>(positions[4 * k + a]), &walls_, a);
+        for (int a = 0; a < D; ++a) m.pull[a] = m.open * static_cast<real>(term[a]);
+        m.part = m.open * static_cast<real>(term[3]);
+    });
+}
+
+template <int D>
 void SolidTerms<D>::push_out(const Pairs& pairs, float* positions, Clamps& clamps) const {
     if (domain_.solids.empty()) return;
     parallel_for(0, static_cast<int>(near_.size()), [&](int i) {

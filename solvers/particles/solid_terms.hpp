@@ -2,6 +2,7 @@
 // kernel's part inside a solid at distance phi is its part behind a plane at that distance. Only particles that start the step near a
 // solid are visited, and solids far away cost nothing.
 #pragma once
+#include "particles/bodies_in_liquid.hpp"
 #include "particles/domain.hpp"
 
 #include <vector>
@@ -22,6 +23,8 @@ public:
     void each_near(const float* positions, F&& f) const {
         for (const int k : near_) f(k, world(positions + 4 * k), terms_.data() + 4 * k);
     }
+    /// Of each particle that can meet a solid, the body next to it, if one is, and its term as walls beside it let the particle see it.
+    void meet(const float* positions, std::vector<Meeting<D>>& to) const;
     /// Moves marked particles out of solids.
     void push_out(const Pairs& pairs, float* positions, Clamps& clamps) const;
 

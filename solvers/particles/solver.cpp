@@ -21,6 +21,7 @@ FieldSet ParticleSolver<D>::fields() const {
     fluid.show(set);
     show(fluid, set);
     if (heat_) heat_->show(fluid, set);
+    if (bodies_) bodies_->bodies().show(set);
     return set;
 }
 
@@ -33,6 +34,10 @@ std::vector<Integral> ParticleSolver<D>::integrals() const {
     if (const Hand* hand = this->hand()) geometry::sum_up(*hand, D, list);
     sum_up(list);
     if (heat_) heat_->sum_up(state(), list);
+    if (bodies_) {
+        const auto more = bodies_->bodies().integrals(bodies_->gravity());
+        list.insert(list.end(), more.begin(), more.end());
+    }
     return list;
 }
 
@@ -41,6 +46,7 @@ void ParticleSolver<D>::save(Checkpoint& to) const {
     save_state(to);
     save_more(to);
     if (heat_) heat_->save(to);
+    if (bodies_) bodies_->save(to);
 }
 template <int D>
 void ParticleSolver<D>::restore(const Checkpoint& from) {
@@ -61,6 +67,7 @@ void HostSolver<D>::restore_state(const Checkpoint& from) {
     fluid_.restore(from);
     emitters_.restore(from);
     if (hand_ && from.has("hand")) hand_->restore(from);
+    if (this->bodies_) this->bodies_->restore(from, fluid_.domain);
     const std::string key = std::string(this->method()) + ".speed";
     speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // the device does not keep it
 }

@@ -4,12 +4,11 @@
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
+#include "particles/bodies_in_liquid.hpp"
 #include "particles/emitters.hpp"
 #include "particles/fluid.hpp"
 #include "particles/heat.hpp"
 #include "particles/ice.hpp"
-
-#include <memory>
 
 namespace weir::particles {
 
@@ -65,8 +64,9 @@ protected:
         return heat_ && heat_->free() ? heat_->rest(fluid.enthalpy[static_cast<std::size_t>(i)]) : 1;
     }
 
-    std::shared_ptr<Heat<D>> heat_;  // where the scene names a substance
-    std::unique_ptr<Ice<D>> ice_;    // where what is frozen moves
+    std::shared_ptr<Heat<D>> heat_;              // where the scene names a substance
+    std::unique_ptr<Ice<D>> ice_;                // where what is frozen moves
+    std::shared_ptr<BodiesInLiquid<D>> bodies_;  // where it names bodies
 };
 
 /// A particle solver whose state is in the processor's memory.
@@ -83,10 +83,14 @@ public:
     Hand* hand() const final { return hand_.get(); }
 
 protected:
-    explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) {}
+    explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) { this->bodies_ = BodiesInLiquid<D>::make(fluid_); }
     const Fluid<D>& state() const final { return fluid_; }
     const Fluid<D>& setting() const final { return fluid_; }
-    real speed() const final { return fluid_.max_speed(); }
+    /// Of bodies too.
+    real speed() const final {
+        const real fastest = fluid_.max_speed();
+        return this->bodies_ ? std::max(fastest, this->bodies_->speed()) : fastest;
+    }
     void save_state(Checkpoint& to) const final;
     void restore_state(const Checkpoint& from) final;
     void take_heat(const scene::Scene& scene);
@@ -105,7 +109,7 @@ protected:
     Fluid<D> fluid_;
     Emitters<D> emitters_;
     std::shared_ptr<Hand> hand_;   // none where the scene names none
-    real speed_ = not_applicable;  // of the fastest particle after the last step; not known before the first [m/s]
+    real speed_ = not_applicable;  // of the fastest particle or body after the last step; not known before the first [m/s]
 };
 
 }  // namespace weir::particles

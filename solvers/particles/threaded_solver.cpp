@@ -60,7 +60,7 @@ template <int D>
 std::size_t ThreadedSolver<D>::bytes() const {
     return fluid_.bytes() + pairs_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes() +
            (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + (this->heat_ ? this->heat_->bytes() : 0) +
-           (this->ice_ ? this->ice_->bytes() : 0);
+           (this->ice_ ? this->ice_->bytes() : 0) + (this->bodies_ ? this->bodies_->bytes() : 0);
 }
 
 template class ThreadedSolver<2>;

@@ -45,6 +45,20 @@ Params pbf_params(const Options& o, real spacing) {
 }
 
 template <int D>
+real give_at_walls(const Options& o, real spacing) {
+    const auto w = particles::gradient_kernel<D>(o, spacing);
+    const int reach = static_cast<int>(std::ceil(o.support));
+    real sum = 0;
+    for (int i = -reach; i <= reach; ++i)
+        for (int j = -reach; j <= reach; ++j)
+            for (int k = D == 2 ? 0 : -reach; k <= (D == 2 ? 0 : reach); ++k) {
+                const real r = spacing * std::sqrt(1.0 * (i * i + j * j + k * k));
+                if (r > 0 && r < w.support()) sum += std::pow(particles::cell_volume<D>(spacing) * w.derivative(r), 2);
+            }
+    return o.relaxation / (0.5 * sum + o.cfm / (w.support() * w.support()));
+}
+
+template <int D>
 real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid) {
     const real distance = scene.number("time.cfl") * fluid.domain.spacing, g = norm(fluid.gravity);
     const real speed = particles::fastest_flow(scene, fluid);
@@ -64,6 +78,8 @@ template StepLimit stable_step(const Options&, const particles::Fluid<2>&, real)
 template StepLimit stable_step(const Options&, const particles::Fluid<3>&, real);
 template real even_step(const scene::Scene&, particles::Fluid<2>&);
 template real even_step(const scene::Scene&, particles::Fluid<3>&);
+template real give_at_walls<2>(const Options&, real);
+template real give_at_walls<3>(const Options&, real);
 template particles::Fluid<2> first_fluid(const scene::Scene&);
 template particles::Fluid<3> first_fluid(const scene::Scene&);
 template particles::single::PbfParams pbf_params<particles::single::PbfParams, 2>(const Options&, real);

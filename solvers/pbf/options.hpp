@@ -26,6 +26,11 @@ struct Options : particles::Scheme {
 template <int D>
 real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid);
 
+/// How much of what a wall gives a particle in one iteration it takes off again where the wall gives way by one: the part of a multiplier's
+/// denominator that a particle beside a wall has, half of the lattice's, relaxed [m^2].
+template <int D>
+real give_at_walls(const Options& options, real spacing);
+
 /// A particle that crosses its support in a step passes those that should have stopped it before a correction sees them.
 template <int D>
 StepLimit stable_step(const Options& options, const particles::Fluid<D>& fluid, real speed);

@@ -12,6 +12,7 @@ template <int D>
 PbfSolver<D>::PbfSolver(const scene::Scene& scene) : Base(Options(scene), scene, first_fluid<D>(scene)) {
     kernels_ = pbf_params<particles::single::PbfParams, D>(options_, fluid_.domain.spacing);
     step_ = even_step(scene, fluid_);
+    give_ = give_at_walls<D>(options_, fluid_.domain.spacing);
     if (scene.effect("artificial_pressure")) effects_.declare({.name = "artificial_pressure", .inside = "correct"});
     this->settle();
 }
@@ -21,7 +22,8 @@ template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     this->pour_and_drain(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
-    this->hold();       // what is frozen
+    this->hold();  // what is frozen
+    if (bodies_) start_bodies(dt);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
     warm_start(dt);
@@ -29,17 +31,19 @@ StepReport PbfSolver<D>::step(real dt) {
     for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && compression().mean <= options_.tolerance) break;
+        if (bodies_) carry_bodies();
         correct();  // 12-15
         collide();  // 16-19
     }
     const real slow = std::max(dt, last_dt_);
     keep_multipliers(slow);
-    update(dt, slow);                                   // 20-21, 23-24
+    update(dt, slow);  // 20-21, 23-24
+    if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
-    const real speed = speed_ = fluid_.max_speed();
+    const real speed = speed_ = this->speed();
     const Compression c = compression();
     this->end_step();
     return this->report(dt, speed, iterations, c);
@@ -67,6 +71,7 @@ void PbfSolver<D>::predict(real dt) {
     parallel_for(0, fluid_.count(), [&](int i) {
         particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
     });
+    if (carried_dt_ > 0) push_bodies_ahead();
     if (!this->ice_moves()) return;
     this->ice_->fly(dt);
     this->ice_->each_place([&](int i, const Vec<D>& place) { particles::Fluid<D>::put(x_star_, i, place); });
@@ -120,6 +125,7 @@ void PbfSolver<D>::warm_start(real dt) {
         for (int a = 0; a < 3; ++a) x[4 * k + a] = from[4 * k + a];
         x[4 * k + 3] = before;
     });
+    if (carried_dt_ > 0) solids_.at(pairs_, x), carry_bodies();
     correct();
     collide();
 }
@@ -182,9 +188,99 @@ void PbfSolver<D>::hold_places() {
 
 template <int D>
 void PbfSolver<D>::collide() {
-    solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
+    if (carried_dt_ > 0)
+        push_bodies();
+    else
+        solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
     hold_places();
     pairs_.refresh_images(pairs_.a(), true);
+}
+
+/// Bodies fall by their weight, and go where their velocities take them.
+template <int D>
+void PbfSolver<D>::start_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    carried_dt_ = dt;
+    bodies_->begin(fluid_.domain, dt);
+    bodies_->exchange(fluid_.domain, dt, true);
+    fluid_.domain.solids.set_time(fluid_.time + dt);
+    bodies_->move(fluid_.domain, dt);
+}
+
+/// Particles whose prediction would be inside a body push it.
+template <int D>
+void PbfSolver<D>::push_bodies_ahead() {
+    const auto timed = passes_.time("bodies");
+    auto& meetings = bodies_->meetings();
+    const real dt = carried_dt_;
+    meetings.clear();
+    for (int i = 0; i < fluid_.count(); ++i) {
+        const Vec<D> free = fluid_.position(i) + dt * fluid_.velocity(i), kept = particles::Fluid<D>::get(x_star_, i);
+        if (norm(kept - free) > 0) bodies_->push_out(fluid_.domain, i, free, dt);
+    }
+    if (meetings.empty()) return;
+    bodies_->exchange(fluid_.domain, dt, false);
+    bodies_->move(fluid_.domain, dt);
+    for (const auto& m : meetings)
+        particles::Fluid<D>::put(x_star_, m.particle, particles::Fluid<D>::get(x_star_, m.particle) + dt * bodies_->back(m));
+}
+
+/// In one iteration bodies go as far as the multipliers of the particles beside them push, which change by what they give way.
+template <int D>
+void PbfSolver<D>::carry_bodies() {
+    const auto timed = passes_.time("bodies");
+    float* four = pairs_.b();
+    auto& meetings = bodies_->meetings();
+    solids_.meet(four, meetings);
+    for (auto& m : meetings) {
+        if (m.body < 0) continue;
+        const real lambda = static_cast<real>(four[4 * m.particle + 3]);
+        const real sum = options_.warm_start > 0 ? static_cast<real>(multiplier_[static_cast<std::size_t>(m.particle)]) : lambda;
+        m.given = lambda / carried_dt_ * m.pull;
+        m.stiff = sum < 0 ? give_ : 0;  // a liquid is pushed, never pulled
+    }
+    bodies_->exchange(fluid_.domain, carried_dt_, false);
+    for (const auto& m : meetings) {
+        if (m.body < 0 || m.stiff == 0) continue;
+        const auto change = static_cast<float>(carried_dt_ * m.stiff * bodies_->closing(m));
+        four[4 * m.particle + 3] += change;
+        if (options_.warm_start > 0) multiplier_[static_cast<std::size_t>(m.particle)] += change;
+    }
+}
+
+/// Bodies to where they go, and particles out of them, which pushes them on.
+template <int D>
+void PbfSolver<D>::push_bodies() {
+    const auto timed = passes_.time("bodies");
+    const real dt = carried_dt_;
+    bodies_->move(fluid_.domain, dt);
+    float* x = pairs_.a();
+    before_push_.clear();
+    solids_.each_near(x, [&](int k, const Vec<D>&, const float*) { before_push_.insert(before_push_.end(), x + 4 * k, x + 4 * k + D); });
+    solids_.push_out(pairs_, x, fluid_.clamps);
+    auto& meetings = bodies_->meetings();
+    meetings.clear();
+    std::size_t at = 0;
+    solids_.each_near(x, [&](int k, const Vec<D>&, const float*) {
+        const float* before = before_push_.data() + D * at++;
+        if (std::equal(before, before + D, x + 4 * k)) return;
+        Vec<D> free;
+        for (int a = 0; a < D; ++a) free[a] = static_cast<real>(before[a]) + fluid_.domain.centre()[a];
+        bodies_->push_out(fluid_.domain, k, free, dt);
+    });
+    if (meetings.empty()) return;
+    bodies_->exchange(fluid_.domain, dt, false);
+    bodies_->move(fluid_.domain, dt);
+    for (const auto& m : meetings) {
+        const Vec<D> back = dt * bodies_->back(m);
+        for (int a = 0; a < D; ++a) x[4 * m.particle + a] += static_cast<float>(back[a]);
+    }
+}
+
+template <int D>
+void PbfSolver<D>::end_bodies(real dt, real slow) {
+    bodies_->end(fluid_.domain, dt, slow);
+    carried_dt_ = 0;
 }
 
 /// v = (x* - x) / dt, x = x*; with dt = 0 only the latter. The move that the iterations made in single precision is added to the prediction

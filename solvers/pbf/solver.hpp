@@ -18,7 +18,7 @@ public:
 private:
     using Base = Pbf<particles::ThreadedSolver<D>>;
     using Base::fluid_, Base::kernels_, Base::walls_, Base::pairs_, Base::solids_, Base::flow_, Base::effects_;
-    using Base::passes_, Base::options_, Base::speed_, Base::step_, Base::last_dt_;
+    using Base::passes_, Base::options_, Base::bodies_, Base::speed_, Base::step_, Base::last_dt_;
 
     void stay() override;
     void iterate_afresh() override;
@@ -30,16 +30,24 @@ private:
     void correct();
     void collide();
     void hold_places();
+    void start_bodies(real dt);
+    void push_bodies_ahead();
+    void carry_bodies();
+    void push_bodies();
+    void end_bodies(real dt, real slow);
     void update(real dt, real slow) override;
     Compression compression() const override;
     particles::PbfPass pass(const float* from, float* to);
     std::size_t own_bytes() const override;
 
     std::array<std::vector<real>, D> x_star_;
-    std::vector<float> density_;     // rho / rho0 of each sorted particle
-    std::vector<float> rest_;        // density of each sorted particle over rho0, where ice moves
-    std::vector<int> sorted_;        // where each particle of the state stands then
-    std::vector<float> multiplier_;  // sum of lambda of each sorted particle over this step, with warm start
+    std::vector<float> density_;      // rho / rho0 of each sorted particle
+    std::vector<float> rest_;         // density of each sorted particle over rho0, where ice moves
+    std::vector<int> sorted_;         // where each particle of the state stands then
+    std::vector<float> before_push_;  // places of particles near solids, before they are put out of them
+    real give_ = 0;                   // of walls that give way [m^2]
+    real carried_dt_ = 0;             // length of the step where bodies move in it, else 0 [s]
+    std::vector<float> multiplier_;   // sum of lambda of each sorted particle over this step, with warm start
 };
 
 }  // namespace weir::pbf

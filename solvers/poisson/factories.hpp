@@ -25,5 +25,11 @@ template <int D>
 Made<D> make_jacobi(const Options& options);
 template <int D>
 Made<D> make_dct(const Options& options);
+template <int D>
+Made<D> make_petsc_gamg(const Options& options);
+template <int D>
+Made<D> make_petsc_boomeramg(const Options& options);
+template <int D>
+Made<D> make_petsc_icc(const Options& options);
 
 }  // namespace weir::poisson

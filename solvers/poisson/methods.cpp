@@ -17,6 +17,9 @@ const std::vector<Method>& methods() {
         {.name = "red_black", .doc = "red-black Gauss-Seidel"},
         {.name = "jacobi", .doc = "damped Jacobi"},
         {.name = "dct", .doc = "cosine transforms (FFTW); whole closed boxes only", .iterative = false, .whole_box_only = true},
+        {.name = "petsc_gamg", .doc = "PETSc's conjugate gradients with its smoothed aggregation", .needs_petsc = true},
+        {.name = "petsc_boomeramg", .doc = "PETSc's conjugate gradients with hypre's BoomerAMG", .needs_petsc = true},
+        {.name = "petsc_icc", .doc = "PETSc's conjugate gradients with its incomplete Cholesky", .needs_petsc = true},
     };
     return list;
 }
@@ -27,8 +30,9 @@ template <int D>
 using Maker = Made<D> (*)(const Options&);
 
 template <int D>
-constexpr std::array<Maker<D>, 9> makers = {make_multigrid<D>, make_cg_mic0<D>,   make_cg_jacobi<D>, make_cg<D>, make_eigen_iccg<D>,
-                                            make_cholmod<D>,   make_red_black<D>, make_jacobi<D>,    make_dct<D>};
+constexpr std::array<Maker<D>, 12> makers = {make_multigrid<D>,  make_cg_mic0<D>,    make_cg_jacobi<D>,       make_cg<D>,
+                                             make_eigen_iccg<D>, make_cholmod<D>,    make_red_black<D>,       make_jacobi<D>,
+                                             make_dct<D>,        make_petsc_gamg<D>, make_petsc_boomeramg<D>, make_petsc_icc<D>};
 
 }  // namespace
 

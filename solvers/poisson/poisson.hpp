@@ -75,12 +75,16 @@ struct Method {
     std::string doc;
     bool iterative = true;
     bool whole_box_only = false;  // needs every cell fluid, uniform weights and closed sides (dct)
+    bool needs_petsc = false;     // see has_petsc()
 };
 
-/// multigrid, cg_mic0, cg_jacobi, cg, eigen_iccg, cholmod, red_black, jacobi, dct: always in this order.
+/// multigrid, cg_mic0, cg_jacobi, cg, eigen_iccg, cholmod, red_black, jacobi, dct, and PETSc's petsc_gamg, petsc_boomeramg, petsc_icc:
+/// always in this order, whatever this weir was built with.
 const std::vector<Method>& methods();
+/// Can PETSc's methods be made here? Loads its library at the first question.
+bool has_petsc();
 
-/// Throws BadInput for an unknown name, naming the known ones.
+/// Throws BadInput for an unknown name, naming the known ones, and for one of PETSc's where weir was built without it.
 template <int D>
 std::unique_ptr<Solver<D>> make_solver(std::string_view method, const Options& options);
 

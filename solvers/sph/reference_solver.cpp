@@ -55,10 +55,12 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     kick(dt);                                        // eq. 10 and 14
     this->hold();                                    // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
+    if (bodies_) move_bodies(dt);
     drift(fluid_, dt);
+    if (bodies_) give_back();  // of what pushed
     this->carry_ice(dt);
     this->conduct(dt);  // only where a substance is named
-    const real speed = speed_ = fluid_.max_speed();
+    const real speed = speed_ = this->speed();
     real sum = 0, worst = 0;
     for (const real rho : fluid_.density) sum += std::max<real>(0, rho / rho_rest_ - 1), worst = std::max(worst, rho / rho_rest_ - 1);
     const real mean = fluid_.count() ? sum / fluid_.count() : 0;
@@ -129,10 +131,44 @@ void ReferenceSphSolver<D>::add_drag_of_solids(Points& to) const {
 /// v += dt a, with gravity.
 template <int D>
 void ReferenceSphSolver<D>::kick(real dt) {
-    const Points a = accelerations();
+    Points a = accelerations();
     const auto timed = passes_.time("integrate");
+    if (bodies_) meet_bodies(a, dt);
     for (int i = 0; i < fluid_.count(); ++i)
         Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * (particles::vec_of<D>(a[static_cast<std::size_t>(i)]) + fluid_.gravity));
+    if (!bodies_) return;
+    bodies_->exchange(fluid_.domain, dt, true);
+    give_back();
+}
+
+/// What particles feel of bodies, and what accelerations leave out of it.
+template <int D>
+void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
+    bodies_->begin(fluid_.domain, dt);
+    particles::meet_bodies(reference_, fluid_.domain, x_, bodies_->meetings());
+    beside_bodies_.clear();
+    for (auto& m : bodies_->meetings()) {
+        const Vec<D> beyond = meet_body(options_, reference_.p, fluid_, m.particle, dt, m);
+        for (int b = 0; b < D; ++b) a[static_cast<std::size_t>(m.particle)][static_cast<std::size_t>(b)] += beyond[b];
+        beside_bodies_.push_back(m.particle);
+    }
+}
+
+/// What particles get back where bodies give way.
+template <int D>
+void ReferenceSphSolver<D>::give_back() {
+    for (const auto& m : bodies_->meetings())
+        if (m.body >= 0) Fluid<D>::put(fluid_.v, m.particle, fluid_.velocity(m.particle) + bodies_->back(m));
+}
+
+/// X += dt V. Particles that would come to be inside push.
+template <int D>
+void ReferenceSphSolver<D>::move_bodies(real dt) {
+    fluid_.domain.solids.set_time(fluid_.time + dt);
+    bodies_->move(fluid_.domain, dt);
+    find_pushes(*bodies_, fluid_, beside_bodies_, dt);
+    if (!bodies_->meetings().empty()) bodies_->exchange(fluid_.domain, dt, false);
+    bodies_->end(fluid_.domain, dt, dt);
 }
 
 /// d rho / dt = rate, with the new velocities from the old places, as SphSolver does. Walls' images in solids move with them.

@@ -16,7 +16,7 @@ public:
 
 private:
     using Base = Sph<particles::ReferenceSolver<D, particles::ReferenceSph>>;
-    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_;
+    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_, Base::bodies_;
     using Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
     using Points = std::vector<particles::Point>;
 
@@ -27,10 +27,14 @@ private:
     Points accelerations();
     void add_drag_of_solids(Points& to) const;
     void kick(real dt);
+    void meet_bodies(Points& accelerations, real dt);
+    void give_back();
+    void move_bodies(real dt);
     void advance_densities(real dt);
     void conduct(real dt) override { this->conduct_at(x_, dt); }
     std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }
 
+    std::vector<int> beside_bodies_;
     Points x_;  // where the step began
 };
 

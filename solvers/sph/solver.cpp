@@ -29,7 +29,8 @@ SphSolver<D>::SphSolver(const scene::Scene& scene, Fluid<D>&& start)
 
 template <int D>
 SphSolver<D>::SphSolver(const Options& options, const scene::Scene& scene, Fluid<D>&& start)
-    : Base(options, scene, std::move(start)), params_(sph_params<SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)) {
+    : Base(options, scene, std::move(start)), params_(sph_params<SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
+      exact_(sph_params<particles::plain::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)) {
     kernels_ = smoothing_params(params_, fluid_);
     if (scene.effect("surface_tension")) effects_.add("surface_tension", std::make_unique<SurfaceTension<D>>(params_, walls_, solids_));
     for (const auto& [name, pass] : {std::pair{"viscosity", "forces"},
@@ -49,15 +50,19 @@ StepReport SphSolver<D>::step(real dt) {
     if (!options_.continuity) find_densities();        // eq. 3
     find_pressures();                                  // eq. 12
     find_forces();                                     // eq. 10 and 14
+    if (bodies_) meet_bodies(dt);                      // and on bodies
     effects_.apply(Stage::force, flow_, dt, passes_);  // gravity and other fields
     kick(dt);
+    if (bodies_) carry_bodies(dt);
     this->hold();                                    // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
+    if (bodies_) move_bodies(dt);
     drift(dt);
+    if (bodies_) give_back();  // of what pushed
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
-    const real speed = speed_ = fluid_.max_speed();
+    const real speed = speed_ = this->speed();
     const Compression c = particles::compression_of(fluid_, rho_rest_);
     this->end_step();
     return this->report(dt, speed, c);
@@ -182,6 +187,49 @@ void SphSolver<D>::drag_at_solids() {
         const real drag = 2 * options_.viscosity * plane / std::max(solids.distance(at), static_cast<real>(params_.closest));
         for (int a = 0; a < D; ++a) acceleration_[static_cast<std::size_t>(4 * k + a)] += static_cast<float>(drag * along[a]);
     });
+}
+
+/// What particles feel of bodies, and what the passes over pairs leave out of it.
+template <int D>
+void SphSolver<D>::meet_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    bodies_->begin(fluid_.domain, dt);
+    auto& meetings = bodies_->meetings();
+    solids_.meet(pairs_.a(), meetings);
+    beside_bodies_.resize(meetings.size());
+    parallel_for(0, static_cast<int>(meetings.size()), [&](int at) {
+        auto& m = meetings[static_cast<std::size_t>(at)];
+        const int k = m.particle, i = beside_bodies_[static_cast<std::size_t>(at)] = pairs_.owner(k);
+        m.particle = i;
+        if (m.body < 0) return;
+        const Vec<D> beyond = meet_body(options_, exact_, fluid_, i, dt, m);
+        for (int a = 0; a < D; ++a) acceleration_[static_cast<std::size_t>(4 * k + a)] += static_cast<float>(beyond[a]);
+    });
+}
+
+/// V += dt F / (M + K); what of F the bodies' own change takes off particles get back.
+template <int D>
+void SphSolver<D>::carry_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    bodies_->exchange(fluid_.domain, dt, true);
+    give_back();
+}
+
+template <int D>
+void SphSolver<D>::give_back() {
+    for (const auto& m : bodies_->meetings())
+        if (m.body >= 0) Fluid<D>::put(fluid_.v, m.particle, fluid_.velocity(m.particle) + bodies_->back(m));
+}
+
+/// X += dt V. Particles that would come to be inside push.
+template <int D>
+void SphSolver<D>::move_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    fluid_.domain.solids.set_time(fluid_.time + dt);
+    bodies_->move(fluid_.domain, dt);
+    find_pushes(*bodies_, fluid_, beside_bodies_, dt);
+    if (!bodies_->meetings().empty()) bodies_->exchange(fluid_.domain, dt, false);
+    bodies_->end(fluid_.domain, dt, dt);
 }
 
 /// v += dt a, and the largest a.

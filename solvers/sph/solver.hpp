@@ -19,7 +19,7 @@ public:
 private:
     using Base = Sph<particles::ThreadedSolver<D>>;
     using Base::fluid_, Base::kernels_, Base::walls_, Base::pairs_, Base::solids_, Base::flow_, Base::effects_, Base::passes_;
-    using Base::options_, Base::speed_, Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
+    using Base::options_, Base::speed_, Base::bodies_, Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
 
     SphSolver(const scene::Scene& scene, particles::Fluid<D>&& start);
     SphSolver(const Options& options, const scene::Scene& scene, particles::Fluid<D>&& start);
@@ -31,13 +31,19 @@ private:
     void load(F&& more);
     void find_forces();
     void drag_at_solids();
+    void meet_bodies(real dt);
+    void carry_bodies(real dt);
+    void give_back();
+    void move_bodies(real dt);
     void kick(real dt);
     void drift(real dt);
     particles::SphPass pass();
     std::size_t own_bytes() const override;
 
     particles::single::SphParams params_;
+    particles::plain::SphParams exact_;  // as bodies read them
     std::vector<float> velocity_, acceleration_, density_;
+    std::vector<int> beside_bodies_;     // particles of the state
     bool sticky_solids_ = false;  // whether the liquid sticks to any
 };
 

@@ -1,6 +1,7 @@
 // What a scene of SPH becomes on any backend: the rest density over time, the first pressure, kernels for the passes over velocities,
 // limits of the time step.
 #pragma once
+#include "particles/bodies_in_liquid.hpp"
 #include "particles/fluid.hpp"
 #include "particles/passes.hpp"
 #include "sph/options.hpp"
@@ -51,6 +52,16 @@ template <int D>
 StepLimit stable_step(const Options& options, const particles::Fluid<D>& fluid, real speed);
 /// What is wrong with particles of this speed, in one line; empty where nothing is.
 std::string too_fast(const Options& options, real speed, real time);
+
+/// What a body gives to a particle i that meets it, before the body's own change: the push of the pressure, which goes on inside the body as
+/// it does behind a wall, and the drag of one that the liquid sticks to. Returns the part that the passes over pairs give no solid: of the
+/// pressure behind the body what grows across its surface [m/s^2].
+template <int D>
+Vec<D> meet_body(const Options& options, const particles::plain::SphParams& params, const particles::Fluid<D>& fluid, int i, real dt,
+                 particles::Meeting<D>& m);
+/// Meetings with the bodies that particles would drift into.
+template <int D>
+void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>& fluid, const std::vector<int>& near, real dt);
 
 /// x += dt v. What would enter a wall or a solid is put back and loses its speed into it.
 template <int D>

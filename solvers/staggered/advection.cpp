@@ -72,13 +72,22 @@ std::vector<scene::Key> AdvectionOptions::keys() {
 template <int D>
 void CharacteristicAdvection<D>::advect(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes,
                                         const Backtrace<D>& trace, real dt, Grid<real, D>& q, const PressurePush<D>* on_arrival) {
-    if (options_.scheme == Scheme::semi_lagrangian) return semi_lagrangian(source, nodes, trace, dt, q);
-    if (trace.is_near(dt) && options_.interpolation == Interpolation::linear)
-        return follow_planes(source, boundary, nodes, trace, dt, q, on_arrival);
-    Padded<D>& predicted = prepare(source, nodes, source.extent()[D - 1]);
-    predict(source, nodes, trace, dt, 0);
-    fill_ghosts(predicted, boundary);
-    correct(source, nodes, trace, dt, q, on_arrival, 0);
+    one_[0] = {&source, &boundary, &q};
+    advect(one_, nodes, trace, dt, on_arrival);
+}
+
+template <int D>
+void CharacteristicAdvection<D>::advect(const std::vector<Carried<D>>& quantities, const Nodes<D>& nodes, const Backtrace<D>& trace,
+                                        real dt, const PressurePush<D>* on_arrival) {
+    if (quantities.empty()) return;
+    const Motion motion{quantities, nodes, trace, dt, on_arrival};
+    if (options_.scheme == Scheme::semi_lagrangian) return semi_lagrangian(motion);
+    if (trace.is_near(dt) && options_.interpolation == Interpolation::linear) return follow_planes(motion);
+    prepare(motion, quantities[0].source->extent()[D - 1]);
+    predict(motion, 0);
+    for (std::size_t i = 0; i < quantities.size(); ++i)
+        fill_ghosts(room_[i].predicted[static_cast<std::size_t>(nodes.axis + 1)], *quantities[i].boundary);
+    correct(motion, 0);
 }
 
 template <int D>
@@ -96,63 +105,64 @@ void CharacteristicAdvection<D>::sample(const Padded<D>& field, const Index<D>& 
 }
 
 template <int D>
-void CharacteristicAdvection<D>::semi_lagrangian(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
-                                                 Grid<real, D>& q) const {
-    for_each_row(nodes.lo, nodes.hi, [&](const Index<D>& first, int count) {
+void CharacteristicAdvection<D>::semi_lagrangian(const Motion& m) const {
+    for_each_row(m.nodes.lo, m.nodes.hi, [&](const Index<D>& first, int count) {
         Displacement<D> x;
-        trace.row(nodes.axis, first, count, dt, x);
-        sample(source, first, nodes.axis, x, count, &q(first));
+        m.trace.row(m.nodes.axis, first, count, m.dt, x);
+        for (const auto& quantity : m.quantities) sample(*quantity.source, first, m.nodes.axis, x, count, &(*quantity.q)(first));
     });
 }
 
 /// q̂ for nodes of this kind, with the values of those that are no unknowns: faces on closed sides; and room for the bounds.
 template <int D>
-Padded<D>& CharacteristicAdvection<D>::prepare(const Padded<D>& source, const Nodes<D>& nodes, int planes_of_bounds) {
-    auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
-    if (predicted.empty()) predicted = Padded<D>(source.extent());
-    Index<D> planes = source.extent();
-    planes[D - 1] = planes_of_bounds;
-    if (low_.size() < product(planes)) low_ = high_ = std::vector<real>(product(planes));
-    if (nodes.axis >= 0) copy_ends(source, nodes.axis, predicted);
-    return predicted;
+void CharacteristicAdvection<D>::prepare(const Motion& m, int planes_of_bounds) {
+    if (room_.size() < m.quantities.size()) room_.resize(m.quantities.size());
+    for (std::size_t i = 0; i < m.quantities.size(); ++i) {
+        const Padded<D>& source = *m.quantities[i].source;
+        Room& room = room_[i];
+        auto& predicted = room.predicted[static_cast<std::size_t>(m.nodes.axis + 1)];
+        if (predicted.empty()) predicted = Padded<D>(source.extent());
+        Index<D> planes = source.extent();
+        planes[D - 1] = planes_of_bounds;
+        if (room.low.size() < product(planes)) room.low = room.high = std::vector<real>(product(planes));
+        if (m.nodes.axis >= 0) copy_ends(source, m.nodes.axis, predicted);
+    }
 }
 
-namespace {
-
-/// The nodes of one plane across the last axis.
 template <int D>
-Nodes<D> plane_of(Nodes<D> nodes, int plane) {
-    nodes.lo[D - 1] = plane;
-    nodes.hi[D - 1] = plane + 1;
-    return nodes;
+typename CharacteristicAdvection<D>::Motion CharacteristicAdvection<D>::Motion::on_plane(int plane) const {
+    Motion one = *this;
+    one.nodes.lo[D - 1] = plane;
+    one.nodes.hi[D - 1] = plane + 1;
+    return one;
 }
-
-}  // namespace
 
 /// Points less than a cell away lie between neighbouring planes: a plane is corrected as soon as the next one is predicted, while what both
 /// read is still in the cache. The first and last plane of each thread's share wait for their neighbours, so that the bounds of three
 /// planes are kept at once: those of the first, and of the last two.
 template <int D>
-void CharacteristicAdvection<D>::follow_planes(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes,
-                                               const Backtrace<D>& trace, real dt, Grid<real, D>& q, const PressurePush<D>* on_arrival) {
-    const int lo = nodes.lo[D - 1], hi = nodes.hi[D - 1], shares = std::min(threads(), hi - lo);
-    Padded<D>& predicted = prepare(source, nodes, 3 * shares);
+void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
+    const int lo = m.nodes.lo[D - 1], hi = m.nodes.hi[D - 1], shares = std::min(threads(), hi - lo);
+    prepare(m, 3 * shares);
     const auto begin_of = [&](int share) { return lo + (hi - lo) * share / shares; };
     const auto bounds_from = [&](int k, int share) { return k - (3 * share + (k == begin_of(share) ? 0 : 1 + k % 2)); };
-    const auto correct_plane = [&](int k, int share) {
-        correct(source, plane_of(nodes, k), trace, dt, q, on_arrival, bounds_from(k, share));
+    const auto correct_plane = [&](int k, int share) { correct(m.on_plane(k), bounds_from(k, share)); };
+    const auto each_predicted = [&](auto&& f) {
+        for (std::size_t i = 0; i < m.quantities.size(); ++i)
+            f(room_[i].predicted[static_cast<std::size_t>(m.nodes.axis + 1)], *m.quantities[i].boundary);
     };
+    const auto fill_plane = [&](int k) { each_predicted([&](auto& q, const auto& boundary) { fill_plane_ghosts(q, boundary, k); }); };
     parallel_for(0, shares, [&](int share) {
         const int begin = begin_of(share), end = begin_of(share + 1);
         for (int k = begin; k < end; ++k) {
-            predict(source, plane_of(nodes, k), trace, dt, bounds_from(k, share));
-            fill_plane_ghosts(predicted, boundary, k);
+            predict(m.on_plane(k), bounds_from(k, share));
+            fill_plane(k);
             if (k - 1 > begin) correct_plane(k - 1, share);
         }
     });
-    for (int k = 0; k < lo; ++k) fill_plane_ghosts(predicted, boundary, k);
-    for (int k = hi; k < source.extent()[D - 1]; ++k) fill_plane_ghosts(predicted, boundary, k);
-    fill_end_planes(predicted, boundary);
+    for (int k = 0; k < lo; ++k) fill_plane(k);
+    for (int k = hi; k < m.quantities[0].source->extent()[D - 1]; ++k) fill_plane(k);
+    each_predicted([](auto& q, const auto& boundary) { fill_end_planes(q, boundary); });
     parallel_for(0, shares, [&](int share) {
         const int first = begin_of(share), last = begin_of(share + 1) - 1;
         correct_plane(first, share);
@@ -162,60 +172,74 @@ void CharacteristicAdvection<D>::follow_planes(const Padded<D>& source, const Bo
 
 /// q̂ = A(q), and the bounds that the corrected value must keep; those of plane k are stored as plane k - bounds_from.
 template <int D>
-void CharacteristicAdvection<D>::predict(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
-                                         int bounds_from) {
-    auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
-    for_each_row(nodes.lo, nodes.hi, [&](const Index<D>& first, int count) {
+void CharacteristicAdvection<D>::predict(const Motion& m, int bounds_from) {
+    const int axis = m.nodes.axis;
+    for_each_row(m.nodes.lo, m.nodes.hi, [&](const Index<D>& first, int count) {
         Displacement<D> x;
-        trace.row(nodes.axis, first, count, dt, x);
-        const RowView<D> view(source, first, nodes.axis, nodes.axis);
-        const std::size_t at = offset(source.extent(), first, bounds_from);
-        real *low = low_.data() + at, *high = high_.data() + at, *out = predicted.at(first);
-        if (x.near && options_.interpolation == Interpolation::linear) return sample_near_bounded(view, x, count, out, low, high);
-        sample(source, first, nodes.axis, x, count, out);
-        sample_bounds(view, x, count, low, high);
+        m.trace.row(axis, first, count, m.dt, x);
+        for (std::size_t i = 0; i < m.quantities.size(); ++i) {
+            const Padded<D>& source = *m.quantities[i].source;
+            const RowView<D> view(source, first, axis, axis);
+            const std::size_t at = offset(source.extent(), first, bounds_from);
+            real *low = room_[i].low.data() + at, *high = room_[i].high.data() + at;
+            real* out = room_[i].predicted[static_cast<std::size_t>(axis + 1)].at(first);
+            if (x.near && options_.interpolation == Interpolation::linear) {
+                sample_near_bounded(view, x, count, out, low, high);
+                continue;
+            }
+            sample(source, first, axis, x, count, out);
+            sample_bounds(view, x, count, low, high);
+        }
     });
 }
 
 /// q = q̂ + ½ (q − A⁻¹(q̂)), limited.
 template <int D>
-void CharacteristicAdvection<D>::correct(const Padded<D>& source, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
-                                         Grid<real, D>& q, const PressurePush<D>* on_arrival, int bounds_from) const {
-    const auto& predicted = predicted_[static_cast<std::size_t>(nodes.axis + 1)];
-    for_each_row(nodes.lo, nodes.hi, [&](const Index<D>& first, int count) {
+void CharacteristicAdvection<D>::correct(const Motion& m, int bounds_from) const {
+    const int axis = m.nodes.axis;
+    for_each_row(m.nodes.lo, m.nodes.hi, [&](const Index<D>& first, int count) {
         Displacement<D> x;
         alignas(64) real returned[row_block];
-        trace.row(nodes.axis, first, count, -dt, x);
-        sample(predicted, first, nodes.axis, x, count, returned);
-        const real *before = source.at(first), *hat = predicted.at(first);
-        const std::size_t at = offset(source.extent(), first, bounds_from);
-        const real *low = low_.data() + at, *high = high_.data() + at;
-        real* out = &q(first);
-        // The limits are pure functions of their arguments: g++ 12 mishandles variables captured in simd loops (clamped values were
-        // wrong by as much as the correction, found by the rotating_gaussian case).
-        const auto each = [&](auto limit) {
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] = limit(hat[i] + 0.5 * (before[i] - returned[i]), hat[i], low[i], high[i]);
-        };
-        switch (options_.limiter) {
-            case Limiter::clamp:
-                each([](real value, real, real least, real most) { return std::min(std::max(value, least), most); });
-                break;
-            case Limiter::revert:
-                each([](real value, real safe, real least, real most) { return value < least || value > most ? safe : value; });
-                break;
-            case Limiter::none:
-                each([](real value, real, real, real) { return value; });
-                break;
+        m.trace.row(axis, first, count, -m.dt, x);
+        for (std::size_t i = 0; i < m.quantities.size(); ++i) {
+            const auto& quantity = m.quantities[i];
+            const auto& predicted = room_[i].predicted[static_cast<std::size_t>(axis + 1)];
+            sample(predicted, first, axis, x, count, returned);
+            real* out = &(*quantity.q)(first);
+            limit(room_[i], offset(quantity.source->extent(), first, bounds_from), quantity.source->at(first), predicted.at(first),
+                  returned, count, out);
+            if (m.on_arrival) m.on_arrival->add(axis, first, count, out);
         }
-        if (on_arrival) on_arrival->add(nodes.axis, first, count, out);
     });
+}
+
+/// The limits are pure functions of their arguments: g++ 12 mishandles variables captured in simd loops (clamped values were wrong by as
+/// much as the correction, found by the rotating_gaussian case).
+template <int D>
+void CharacteristicAdvection<D>::limit(const Room& room, std::size_t at, const real* before, const real* hat, const real* returned,
+                                       int count, real* out) const {
+    const real *low = room.low.data() + at, *high = room.high.data() + at;
+    const auto each = [&](auto limited) {
+#pragma omp simd
+        for (int i = 0; i < count; ++i) out[i] = limited(hat[i] + 0.5 * (before[i] - returned[i]), hat[i], low[i], high[i]);
+    };
+    switch (options_.limiter) {
+        case Limiter::clamp:
+            return each([](real value, real, real least, real most) { return std::min(std::max(value, least), most); });
+        case Limiter::revert:
+            return each([](real value, real safe, real least, real most) { return value < least || value > most ? safe : value; });
+        case Limiter::none:
+            return each([](real value, real, real, real) { return value; });
+    }
 }
 
 template <int D>
 std::size_t CharacteristicAdvection<D>::bytes() const {
-    std::size_t total = (low_.size() + high_.size()) * sizeof(real);
-    for (const auto& field : predicted_) total += field.bytes();
+    std::size_t total = 0;
+    for (const Room& room : room_) {
+        total += (room.low.size() + room.high.size()) * sizeof(real);
+        for (const auto& field : room.predicted) total += field.bytes();
+    }
     return total;
 }
 

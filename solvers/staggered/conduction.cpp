@@ -4,6 +4,7 @@
 #include "staggered/rows.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace weir::staggered {
 
@@ -30,19 +31,10 @@ Boundary<D> without_values(Boundary<D> boundary) {
     return boundary;
 }
 
-/// sum_over's order, a row at a time.
-template <int D, class F>
-real sum_of_rows(const Index<D>& extent, F&& f) {
-    return ordered_sum(extent[D - 1], [&](int outer) {
-        Index<D> I{};
-        I[D - 1] = outer;
-        real sum = 0;
-        for (int j = 0; j < (D == 2 ? 1 : extent[1]); ++j) {
-            if constexpr (D == 3) I[1] = j;
-            sum += f(I);
-        }
-        return sum;
-    });
+template <int D>
+Index<D> rows_of(Index<D> cells) {
+    cells[0] = 1;
+    return cells;
 }
 
 /// max_over, a row at a time.
@@ -70,10 +62,12 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
       cell_volume_(1),
       boundary_(temperature),
       no_flux_(without_values(temperature)),
-      change_(cells),
-      older_(cells),
-      k_(cells),
-      T_(cells) {
+      change_{Grid<real, D>(cells), Grid<real, D>(cells)},
+      T_{Padded<D>(cells), Padded<D>(cells)},
+      alike_(rows_of(cells)),
+      arrivals_(static_cast<std::size_t>(most_in_a_pass * cells[D - 1])),
+      work_(static_cast<std::size_t>(cells[D - 1]) + 1) {
+    std::iota(work_.begin(), work_.end(), 0);
     for (int a = 0; a < D; ++a) {
         cell_volume_ *= h[a];
         Index<D> faces = cells;
@@ -98,6 +92,10 @@ void Conduction<D>::prepare(const Grid<real, D>& H, const Given& given) {
     const bool liquid = colder <= 0;
     if (known_ && !given.cells_changed && liquid && all_liquid_) return;
     set_conductances(H, given.cells);
+    const auto& cells = given.cells.values();
+    const auto exchanges = [](real alpha) { return alpha > 0; };
+    uniform_ = liquid && std::none_of(exchange_.begin(), exchange_.end(), exchanges) &&
+               std::all_of(cells.begin(), cells.end(), [](Cell cell) { return cell == Cell::fluid; });
     all_liquid_ = liquid, known_ = true;
 }
 
@@ -105,7 +103,8 @@ template <int D>
 void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>& cells) {
     const Index<D> n = H.extent();
     const real per_heat = 1 / std::max(melting_.h_liquid - melting_.h_solid, std::numeric_limits<real>::min());
-    fill_rows(k_, no_flux_, [&](const Index<D>& first, int count, real* k) {
+    Padded<D>& conductivity = T_[1];  // of cells; not needed otherwise before the first stage
+    fill_rows(conductivity, no_flux_, [&](const Index<D>& first, int count, real* k) {
         const real* at = &H(first);
         const Cell* cell = &cells(first);
 #pragma omp simd
@@ -120,12 +119,13 @@ void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>
         const real factor = 1 / (h_[a] * h_[a]);
         for_each_row(Index<D>{}, g.extent(), [&](const Index<D>& first, int count) {
             real* to = &g(first);
-            const real *above = k_.at(first), *below = above - k_.stride(a);
+            const real *above = conductivity.at(first), *below = above - conductivity.stride(a);
 #pragma omp simd
             for (int i = 0; i < count; ++i) to[i] = factor * face_conductivity(below[i], above[i]);
         });
     }
     weaken_exchanges();
+    find_rows_alike();
     most_conductance_ = max_of_rows(n, [&](const Index<D>& I) {
         std::array<const real*, D> g;
         std::array<std::ptrdiff_t, D> up;
@@ -137,6 +137,26 @@ void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>
             most = std::max(most, sum);
         }
         return most;
+    });
+}
+
+/// Away from fronts and solids all faces of a row's cells conduct alike: a stage then reads them as D numbers.
+template <int D>
+void Conduction<D>::find_rows_alike() {
+    Index<D> rows = T_[0].extent();
+    const int n = rows[0];
+    rows[0] = 1;
+    for_each_cell(rows, [&](const Index<D>& first) {
+        real apart = 0;
+        Vec<D> all;
+        for (int a = 0; a < D; ++a) {
+            const auto& faces = conductance_[static_cast<std::size_t>(a)];
+            const real *below = &faces(first), *above = below + faces.stride(a), g = all[a] = *below;
+#pragma omp simd reduction(max : apart)
+            for (int i = 0; i < n; ++i) apart = std::max({apart, std::abs(below[i] - g), std::abs(above[i] - g)});
+        }
+        if (apart > 0) all[0] = -1;
+        alike_(first) = all;
     });
 }
 
@@ -163,109 +183,25 @@ void Conduction<D>::weaken_exchanges() {
         }
 }
 
-/// T_ = T(H + D_j), or T of that from `before`, with its ghosts.
+/// By the principle of the maximum, nothing freezes where all is liquid, no side is colder than the melting point and no source takes heat
+/// away.
 template <int D>
-void Conduction<D>::take_temperature(const Grid<real, D>& H, const Padded<D>* before) {
-    const matter::Melting m = melting_;
-    const real per_solid = 1 / m.c_solid, per_liquid = 1 / m.c_liquid;
-    fill_rows(T_, boundary_, [&](const Index<D>& first, int count, real* T) {
-        const real *h = before ? before->at(first) : &H(first), *d = &change_(first);
-#pragma omp simd
-        for (int i = 0; i < count; ++i) {
-            const real at = h[i] + d[i];
-            T[i] = m.T + ((std::min(at, m.h_solid) - m.h_solid) * per_solid + (std::max(at, m.h_liquid) - m.h_liquid) * per_liquid);
-        }
-    });
-}
-
-/// out = ∇·(k ∇T) [W/m³] of a row of cells.
-template <int D>
-void Conduction<D>::flow(const Index<D>& first, int count, real* out) const {
-    const real* t = T_.at(first);
-    for (int b = 0; b < D; ++b) {
-        const auto& faces = conductance_[static_cast<std::size_t>(b)];
-        const real* g = &faces(first);
-        const std::ptrdiff_t up = faces.stride(b), next = T_.stride(b);
-        if (b == 0) {
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] = g[i + up] * (t[i + next] - t[i]) - g[i] * (t[i] - t[i - next]);
-        } else {
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] += g[i + up] * (t[i + next] - t[i]) - g[i] * (t[i] - t[i - next]);
-        }
-    }
-}
-
-/// What of it comes through the sides of the domain, over all cells.
-template <int D>
-real Conduction<D>::through_sides() const {
-    const Index<D> n = T_.extent();
-    real all = 0;
-    for (int a = 0; a < D; ++a)
-        for (int end = 0; end < 2; ++end) {
-            if (boundary_.end[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)].kind != EndRule::Kind::dirichlet) continue;
-            const auto& g = conductance_[static_cast<std::size_t>(a)];
-            Index<D> side = n;
-            side[a] = 1;
-            all += sum_over(side, [&](Index<D> I) {
-                if (end == 1) I[a] = n[a] - 1;
-                const Index<D> beyond = end == 0 ? I - e<D>(a) : I + e<D>(a);
-                return g(end == 0 ? I : beyond) * (T_(beyond) - T_(I));
-            });
-        }
-    return all;
-}
-
-/// The scheme is stable while dt times the largest eigenvalue of the conduction, at most twice what leaves a cell for a kelvin, is within
-/// s (s + 5)/3. A cell's heat capacity is the lesser one where it may have that in the course of the step: by the principle of the maximum,
-/// nothing freezes where all is liquid, no side is colder than the melting point and no source takes heat away.
-template <int D>
-int Conduction<D>::stages_for(real dt, const Grid<real, D>& source) const {
+bool Conduction<D>::may_freeze(const Grid<real, D>& source) const {
     bool freezes = !all_liquid_ || !source.empty();
     for (const auto& axis : boundary_.end)
         for (const auto& rule : axis) freezes |= rule.kind == EndRule::Kind::dirichlet && rule.value < melting_.T;
-    const real c = freezes ? std::min(melting_.c_solid, melting_.c_liquid) : melting_.c_liquid;
+    return freezes;
+}
+
+/// The scheme is stable while dt times the largest eigenvalue of the conduction, at most twice what leaves a cell for a kelvin, is within
+/// s (s + 5)/3. A cell's heat capacity is the lesser one where it may have that in the course of the step.
+template <int D>
+int Conduction<D>::stages_for(real dt, const Grid<real, D>& source) const {
+    const real c = may_freeze(source) ? std::min(melting_.c_solid, melting_.c_liquid) : melting_.c_liquid;
     const real euler_steps = dt * most_conductance_ / (rho_ * c);
     const real count = std::ceil((std::sqrt(25 + 24 * euler_steps) - 5) / 2);
     if (!(count <= most_stages)) throw NumericalFailure("temperature", "the step is too long for the conduction of heat");
     return std::max(1, static_cast<int>(count));
-}
-
-template <int D>
-real Conduction<D>::stages(Grid<real, D>& H, const Given& given, real dt, int count) {
-    const Index<D> n = H.extent();
-    const real w = 6 / (static_cast<real>(count) * (count + 5)) * dt / rho_, elsewhere = rho_ / dt;
-    real arrived = 0, arrived_before = 0;  // D_j, D_{j−1} of what comes from outside [J kg/m^D]
-    change_.fill(0), older_.fill(0);
-    const real sources = given.source.empty() ? 0 : sum_over(n, [&](const Index<D>& I) { return given.source(I); });
-    for (int j = 1; j <= count; ++j) {
-        const real mu = (2.0 * j + 3) / (j + 4), nu = (1.0 - j) / (j + 4), push = mu * w;
-        take_temperature(H, given.before);
-        arrived_before = std::exchange(arrived, mu * arrived + nu * arrived_before + push * (through_sides() + sources));
-        for_each_row(Index<D>{}, n, [&](const Index<D>& first, int width) {
-            alignas(64) real rate[row_block];
-            flow(first, width, rate);
-            if (!given.source.empty())
-                for (int i = 0; i < width; ++i) rate[i] += (&given.source(first))[i];
-            if (given.before) {
-                const real *now = &H(first), *was = given.before->at(first);
-#pragma omp simd
-                for (int i = 0; i < width; ++i) rate[i] += elsewhere * (now[i] - was[i]);
-            }
-            const real* now = &change_(first);
-            real* to = &older_(first);
-#pragma omp simd
-            for (int i = 0; i < width; ++i) to[i] = mu * now[i] + nu * to[i] + push * rate[i];
-        });
-        change_.swap(older_);
-    }
-    for_each_row(Index<D>{}, n, [&](const Index<D>& first, int width) {
-        real* h = &H(first);
-        const real *from = given.before ? given.before->at(first) : h, *d = &change_(first);
-#pragma omp simd
-        for (int i = 0; i < width; ++i) h[i] = from[i] + d[i];
-    });
-    return rho_ * cell_volume_ * arrived;
 }
 
 template <int D>
@@ -295,9 +231,9 @@ real Conduction<D>::longest_euler_step() const {
 
 template <int D>
 std::size_t Conduction<D>::bytes() const {
-    std::size_t count = 0;
-    for (const auto* grid : {&change_, &older_}) count += grid->size() * sizeof(real);
-    for (const auto* padded : {&k_, &T_}) count += padded->bytes();
+    std::size_t count = alike_.size() * sizeof(Vec<D>) + arrivals_.size() * sizeof(real) + work_.size() * sizeof(std::int64_t);
+    for (const auto& grid : change_) count += grid.size() * sizeof(real);
+    for (const auto& padded : T_) count += padded.bytes();
     for (const auto& g : conductance_) count += g.size() * sizeof(real);
     return count;
 }

@@ -16,6 +16,9 @@
 #include "poisson/poisson.hpp"
 #include "staggered/ghosts.hpp"
 
+#include <cstdint>
+#include <vector>
+
 namespace weir::staggered {
 
 template <int D>
@@ -54,12 +57,32 @@ private:
     EndRule& rule(int axis, int end) { return boundary_.end[static_cast<std::size_t>(axis)][static_cast<std::size_t>(end)]; }
     void weaken_exchanges();
     void prepare(const Grid<real, D>& H, const Given& given);
+    void find_rows_alike();
     void set_conductances(const Grid<real, D>& H, const Grid<poisson::Cell, D>& cells);
     real stages(Grid<real, D>& H, const Given& given, real dt, int count);
-    void take_temperature(const Grid<real, D>& H, const Padded<D>* before);
+    bool may_freeze(const Grid<real, D>& source) const;
     int stages_for(real dt, const Grid<real, D>& source) const;
-    void flow(const Index<D>& first, int count, real* out) const;
-    real through_sides() const;
+
+    /// One stage among those of a step.
+    struct Stage {
+        Grid<real, D>& H;
+        const Given& given;
+        int number;         // 0: T of H alone
+        bool last;          // writes H
+        real mu, nu, push;  // of its recursion
+        real elsewhere;     // ρ/dt
+        const real* from(const Index<D>& first) const { return given.before ? given.before->at(first) : &H(first); }
+    };
+    int most_stages_at_once() const;
+    void take_temperature(const Stage& stage, int plane);
+    void add_stage(const Stage& stage, int plane);
+    void add_linear_stage(const Stage& stage, int plane);
+    void flow(const Padded<D>& T, const Index<D>& first, int count, real* out) const;
+    void flow_alike(const Vec<D>& conductance, const Padded<D>& T, const Index<D>& first, int count, real* out) const;
+    void continue_row(Padded<D>& T, const Index<D>& first, bool values) const;
+    void continue_plane(Padded<D>& T, int plane, bool values) const;
+    void continue_around(Padded<D>& T) const;
+    real through_sides(const Padded<D>& T, int plane) const;
 
     matter::Melting melting_;
     Vec<D> h_{};
@@ -69,8 +92,14 @@ private:
     std::array<Grid<real, D>, D> conductance_;  // k/h² of faces [W/(m³ K)]
     real most_conductance_ = 0;                 // of all faces of a cell
     bool all_liquid_ = false, known_ = false;   // when they were set; whether they were
-    Grid<real, D> change_, older_;              // D_j, D_{j−1}
-    Padded<D> k_, T_;
+    bool uniform_ = false;                      // the same of all inner faces: all cells are of liquid
+
+    static constexpr int most_in_a_pass = 8;  // stages
+    std::array<Grid<real, D>, 2> change_;     // D_j by the parity of j
+    std::array<Padded<D>, 2> T_;              // of H + D_j
+    Grid<Vec<D>, D> alike_;                   // what all faces of a row's cells conduct, by axis; [0] is -1 where they differ
+    std::vector<real> arrivals_;              // through the sides, of each stage of a pass and each plane [W/m³, summed over cells]
+    std::vector<std::int64_t> work_;          // the number of each plane
 };
 
 }  // namespace weir::staggered

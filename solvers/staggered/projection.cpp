@@ -168,7 +168,26 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
             for (int i = 0; moves && i < count; ++i) to[i] *= (&(*moves)(first))[i];
         });
     }
+    if (!s.mobility[0].empty()) leave_out_ice();
     solver_->setup(matrix_);
+}
+
+/// A cell none of whose faces lets anything through has no pressure: to the solver it is as good as solid.
+template <int D>
+void Projection<D>::leave_out_ice() {
+    for_each_row(Index<D>{}, matrix_.cells.extent(), [&](const Index<D>& first, int count) {
+        alignas(64) real open[row_block];
+        std::fill_n(open, count, 0.0);
+        for (int a = 0; a < D; ++a) {
+            const auto& weight = matrix_.weight[static_cast<std::size_t>(a)];
+            const real* w = &weight(first);
+            const std::ptrdiff_t up = weight.stride(a);
+#pragma omp simd
+            for (int i = 0; i < count; ++i) open[i] += w[i] + w[i + up];
+        }
+        Cell* cell = &matrix_.cells(first);
+        for (int i = 0; i < count; ++i) cell[i] = open[i] > 0 ? cell[i] : Cell::solid;
+    });
 }
 
 /// rhs = scale ∇·u, everywhere: the solver looks only at fluid cells.

@@ -57,6 +57,8 @@ public:
     std::size_t bytes() const;
 
 private:
+    void leave_out_ice();
+
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Operator<D> matrix_;
     Grid<real, D> rhs_;

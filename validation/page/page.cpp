@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
+#include "output/image_file.hpp"
 #include "output/machine.hpp"
 #include "validation/page/sections.hpp"
 #include "validation/page/text.hpp"
@@ -86,6 +87,13 @@ std::string part(const char* id, const char* title, const std::string& html) {
     return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, html);
 }
 
+/// A picture as the page carries it: as JPEG where that is smaller.
+std::string picture_data(const std::filesystem::path& png) {
+    const std::string as_it_is = bytes_of(png), jpeg = output::jpeg_of(png);
+    if (jpeg.empty() || jpeg.size() >= as_it_is.size()) return "data:image/png;base64," + base64(as_it_is);
+    return "data:image/jpeg;base64," + base64(jpeg);
+}
+
 }  // namespace
 
 Section pictures_section(const std::filesystem::path& results) {
@@ -96,8 +104,8 @@ Section pictures_section(const std::filesystem::path& results) {
             std::filesystem::exists(results / scene) ? fmt::format("<a href=\"{}\">{}</a>", escaped(scene), escaped(name)) : escaped(name);
         section.html += fmt::format(
             "<figure><img class=\"opens\" tabindex=\"0\" title=\"Show it large\" loading=\"lazy\" alt=\"{}\" "
-            "src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
-            escaped(name), base64(bytes_of(file)), caption);
+            "src=\"{}\"><figcaption>{}</figcaption></figure>\n",
+            escaped(name), picture_data(file), caption);
     }
     if (!section.html.empty()) section.html = "<div class=\"pictures\">" + section.html + "</div>";
     return section;

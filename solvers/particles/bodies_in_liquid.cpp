@@ -1,0 +1,225 @@
+#include "particles/bodies_in_liquid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::particles {
+
+namespace {
+
+/// A body without mass, where no particle resists either, falls and turns as one of this part of the fluid's mass would (as in
+/// staggered/bodies_in_flow.cpp).
+constexpr real least_mass = 1e-9, least_inertia = 1e-4;
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<BodiesInLiquid<D>> BodiesInLiquid<D>::make(const Fluid<D>& fluid) {
+    return fluid.domain.bodies ? std::make_unique<BodiesInLiquid>(fluid) : nullptr;
+}
+
+template <int D>
+BodiesInLiquid<D>::BodiesInLiquid(const Fluid<D>& fluid)
+    : bodies_(fluid.domain.bodies), gravity_(fluid.gravity), mass_(fluid.mass), rho_(fluid.rho0), spacing_(fluid.domain.spacing) {
+    const std::size_t count = bodies_->count();
+    start_ = bodies_->all();
+    dry_.resize(count), wet_.resize(count);
+    impulse_.resize(count), force_.resize(count), gained_.resize(count), matrix_.resize(count);
+    free_.resize(n), velocity_.resize(n * count), before_.resize(n * count), change_.resize(n * count);
+    mobility_.resize(n * count), own_.resize(n);
+    rigid::Surroundings<D> around = bodies_->surroundings(fluid.domain.solids);
+    around.reach = 1e-3 * spacing_;
+    found_.find(bodies_->all(), around);
+    found_.mark(bodies_->all());  // what stands on something does not fall to begin with
+}
+
+template <int D>
+void BodiesInLiquid<D>::begin(const Domain<D>& domain, real dt) {
+    real fastest = 0;
+    for (std::size_t b = 0; b < bodies_->count(); ++b) {
+        rigid::Body<D>& body = (*bodies_)[b];
+        dry_[b] = body.wet == 0 && !body.touches;
+        wet_[b] = 0, body.touches = false;
+        start_[b].at = body.at, start_[b].orientation = body.orientation, start_[b].velocity = body.velocity;
+        std::copy(body.velocity.begin(), body.velocity.end(), velocity_.begin() + static_cast<std::ptrdiff_t>(n * b));
+        force_[b] = gained_[b] = Twist{};
+    }
+    fastest = speed();
+    rigid::Surroundings<D> around = bodies_->surroundings(domain.solids);
+    around.reach = 2 * dt * (fastest + dt * norm(gravity_)) + spacing_;  // a particle may push it as far as that
+    found_.find(bodies_->all(), around);
+    meetings_.clear();
+}
+
+template <int D>
+typename BodiesInLiquid<D>::Twist BodiesInLiquid<D>::seen(std::size_t b, const Vec<D>& x, const Vec<D>& along) const {
+    Twist t{};
+    const Vec<D> r = x - (*bodies_)[b].at;
+    for (std::size_t a = 0; a < D; ++a) t[a] = along[a];
+    if constexpr (D == 2)
+        t[2] = r[0] * along[1] - r[1] * along[0];
+    else
+        for (int a = 0; a < 3; ++a)
+            t[static_cast<std::size_t>(3 + a)] = r[(a + 1) % 3] * along[(a + 2) % 3] - r[(a + 2) % 3] * along[(a + 1) % 3];
+    return t;
+}
+
+template <int D>
+Vec<D> BodiesInLiquid<D>::change_at(const Meeting<D>& m) const {
+    const auto b = static_cast<std::size_t>(m.body);
+    Vec<D> u;
+    for (int a = 0; a < D; ++a) {
+        const Twist t = seen(b, m.at, Vec<D>::unit(a));
+        u[a] = 0;
+        for (std::size_t k = 0; k < n; ++k) u[a] += t[k] * change_[n * b + k];
+    }
+    return u;
+}
+
+template <int D>
+Vec<D> BodiesInLiquid<D>::across(const Meeting<D>& m) const {
+    if (m.rub == 0) return {};
+    const Vec<D> u = change_at(m);
+    return u - dot(u, m.pull) / dot(m.pull, m.pull) * m.pull;
+}
+
+template <int D>
+typename BodiesInLiquid<D>::Matrix BodiesInLiquid<D>::mass_of(std::size_t b) const {
+    const rigid::Body<D>& body = (*bodies_)[b];
+    Matrix m = body.mass_matrix();
+    const real displaced = rho_ * body.moments.volume;
+    const real least = least_inertia * displaced * body.radius * body.radius;
+    const real smallest = D == 2 ? body.principal[2] : std::min({body.principal[0], body.principal[1], body.principal[2]});
+    for (std::size_t k = 0; k < n; ++k) {
+        if (k < D) m[k][k] = std::max(m[k][k], least_mass * displaced);
+        if (k >= D && smallest < least) m[k][k] += least - smallest;
+    }
+    return m;
+}
+
+/// P and M + K, one meeting after the other.
+template <int D>
+void BodiesInLiquid<D>::sum_up() {
+    for (std::size_t b = 0; b < bodies_->count(); ++b) impulse_[b] = Twist{}, matrix_[b] = mass_of(b);
+    const auto resist = [&](Matrix& to, const Twist& t, real by) {
+        for (std::size_t k = 0; k < n; ++k)
+            for (std::size_t l = 0; l < n; ++l) to[k][l] += by * t[k] * t[l];
+    };
+    for (const Meeting<D>& m : meetings_) {
+        if (m.body < 0) continue;
+        const auto b = static_cast<std::size_t>(m.body);
+        wet_[b] = 1;
+        const Twist push = seen(b, m.at, m.given), w = seen(b, m.at, m.pull);
+        for (std::size_t k = 0; k < n; ++k) impulse_[b][k] -= mass_ * push[k];
+        const real length2 = dot(m.pull, m.pull);
+        if (m.stiff > 0 || m.rub > 0) resist(matrix_[b], w, mass_ * (m.stiff - (m.rub > 0 ? m.rub / length2 : 0)));
+        for (int a = 0; a < D && m.rub > 0; ++a) resist(matrix_[b], seen(b, m.at, Vec<D>::unit(a)), mass_ * m.rub);
+    }
+}
+
+template <int D>
+void BodiesInLiquid<D>::solve_for_velocities(real dt, bool heavy) {
+    const std::size_t count = bodies_->count();
+    std::fill(mobility_.entries.begin(), mobility_.entries.end(), 0.0);
+    before_ = velocity_;
+    for (std::size_t b = 0; b < count; ++b) {
+        const rigid::Body<D>& body = (*bodies_)[b];
+        for (std::size_t k = 0; k < n; ++k) {
+            free_[k] = !body.held[k];
+            for (std::size_t l = 0; l < n; ++l) own_(k, l) = matrix_[b][k][l];
+            if (heavy && k < D) impulse_[b][k] += dt * std::max(body.mass, least_mass * rho_ * body.moments.volume) * gravity_[k];
+        }
+        rigid::invert(own_, free_, inverse_);
+        for (std::size_t k = 0; k < n; ++k)
+            for (std::size_t l = 0; l < n; ++l) {
+                mobility_(n * b + k, n * b + l) = inverse_(k, l);
+                velocity_[n * b + k] += inverse_(k, l) * impulse_[b][l];
+            }
+    }
+    contacts_ = found_;
+    if (!contacts_.empty()) contacts_.resolve(bodies_->all(), mobility_, velocity_, dt, norm(gravity_));
+    for (std::size_t i = 0; i < velocity_.size(); ++i) change_[i] = velocity_[i] - before_[i];
+}
+
+/// What the fluid gave is the opposite of what particles have been given.
+template <int D>
+void BodiesInLiquid<D>::count_forces() {
+    for (Meeting<D>& m : meetings_) {
+        if (m.body < 0) continue;
+        const auto b = static_cast<std::size_t>(m.body);
+        m.given += back(m);
+        const Twist push = seen(b, m.at, m.given);
+        for (std::size_t k = 0; k < n; ++k) force_[b][k] -= mass_ * push[k];
+    }
+}
+
+template <int D>
+void BodiesInLiquid<D>::exchange(Domain<D>& domain, real dt, bool heavy) {
+    sum_up();
+    solve_for_velocities(dt, heavy);
+    count_forces();
+    for (std::size_t b = 0; b < bodies_->count(); ++b)
+        for (std::size_t k = 0; k < n; ++k) {
+            (*bodies_)[b].velocity[k] += change_[n * b + k];
+            if (!heavy) gained_[b][k] += change_[n * b + k];
+        }
+    bodies_->place(domain.solids);
+}
+
+template <int D>
+void BodiesInLiquid<D>::move(Domain<D>& domain, real dt) {
+    for (std::size_t b = 0; b < bodies_->count(); ++b) {
+        rigid::Body<D>& body = (*bodies_)[b];
+        body.at = start_[b].at, body.orientation = start_[b].orientation;
+        for (std::size_t k = 0; k < n; ++k) body.velocity[k] = velocity_[n * b + k];
+        body.fly(dt, dry_[b] ? -1.0 * gravity_ : Vec<D>{});  // its velocity has the weight of this step already
+    }
+    bodies_->place(domain.solids);
+}
+
+template <int D>
+void BodiesInLiquid<D>::push_out(const Domain<D>& domain, int particle, const Vec<D>& free, real dt) {
+    const auto& solids = domain.solids;
+    if (solids.distance(free) >= domain.margin) return;
+    const std::size_t solid = solids.nearest(free);
+    if (!solids[solid].free) return;
+    const Vec<D> out = solids.push_out(free, domain.margin, 1e-3 * domain.spacing), by = out - free;
+    const real length = norm(by);
+    if (length == 0) return;
+    Meeting<D> m;
+    m.particle = particle, m.body = static_cast<std::ptrdiff_t>(solid - domain.first_body()), m.at = out;
+    m.pull = by / length, m.given = by / dt, m.stiff = 1;
+    meetings_.push_back(m);
+}
+
+template <int D>
+void BodiesInLiquid<D>::end(Domain<D>& domain, real dt, real slow) {
+    for (std::size_t b = 0; b < bodies_->count(); ++b) {
+        rigid::Body<D>& body = (*bodies_)[b];
+        body.wet = wet_[b];
+        for (std::size_t k = 0; k < n; ++k) {
+            body.velocity[k] -= (1 - dt / slow) * gained_[b][k];
+            body.force[k] = force_[b][k] / dt;
+        }
+    }
+    bodies_->place(domain.solids);
+}
+
+template <int D>
+void BodiesInLiquid<D>::restore(const Checkpoint& from, Domain<D>& domain) {
+    bodies_->restore(from);
+    bodies_->place(domain.solids);
+}
+
+template <int D>
+std::size_t BodiesInLiquid<D>::bytes() const {
+    std::size_t total = bodies_->bytes() + meetings_.capacity() * sizeof(Meeting<D>) + start_.capacity() * sizeof(rigid::Body<D>);
+    total += (impulse_.capacity() + force_.capacity() + gained_.capacity()) * sizeof(Twist) + matrix_.capacity() * sizeof(Matrix);
+    for (const auto* m : {&own_, &inverse_, &mobility_}) total += m->entries.capacity() * sizeof(real);
+    return total + (velocity_.capacity() + before_.capacity() + change_.capacity()) * sizeof(real) + dry_.capacity() + wet_.capacity();
+}
+
+template class BodiesInLiquid<2>;
+template class BodiesInLiquid<3>;
+
+}  // namespace weir::particles

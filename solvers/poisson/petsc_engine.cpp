@@ -1,0 +1,184 @@
+// libweir_petsc: PETSc's conjugate gradients (KSPCG) with its algebraic multigrid (GAMG), hypre's (BoomerAMG; Henson & Yang 2002) or
+// incomplete Cholesky. None of weir's own arithmetic is in the way: an independent referee. Balay et al., PETSc/TAO Users Manual, 3.18.
+#include "poisson/petsc_engine.hpp"
+
+#include <petscksp.h>
+
+#include <malloc.h>
+
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace weir::poisson {
+
+namespace {
+
+void check(PetscErrorCode code) {
+    if (code == 0) return;
+    const char* text = nullptr;
+    PetscErrorMessage(code, &text, nullptr);
+    throw std::runtime_error(std::string("PETSc: ") + (text ? text : "unknown error"));
+}
+
+/// Once a process, on this process alone; signals stay weir's, and no file or variable of the user's changes what is solved.
+void start_petsc() {
+    static const bool started = [] {
+        PETSC_COMM_WORLD = MPI_COMM_SELF;
+        int has_mpi = 0;
+        MPI_Initialized(&has_mpi);
+        if (!has_mpi) MPI_Init(nullptr, nullptr);
+        check(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"));
+        check(PetscOptionsSetValue(nullptr, "-skip_petscrc", "true"));
+        check(PetscInitializeNoArguments());
+        check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+        // What hypre's manual recommends in space: with the 0.25 of the plane the hierarchy fills.
+        check(PetscOptionsSetValue(nullptr, "-weir_3d_pc_hypre_boomeramg_strong_threshold", "0.5"));
+        if (!has_mpi)
+            std::atexit([] {
+                PetscFinalize();
+                MPI_Finalize();
+            });
+        return true;
+    }();
+    static_cast<void>(started);
+}
+
+/// Bytes of the heap in use: what hypre holds it does not tell.
+std::size_t heap() {
+    const auto info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+class Engine final : public PetscEngine {
+public:
+    Engine(const std::string& preconditioner, int dim) : preconditioner_(preconditioner), dim_(dim) { start_petsc(); }
+    ~Engine() override { clear(); }
+
+    void prepare(const Matrix& A, std::function<void(Vector&)> remove_means) override {
+        clear();
+        if (A.size() == 0) return;
+        const std::size_t before = heap();
+        remove_means_ = std::move(remove_means);
+        take(A);
+        check(KSPCreate(PETSC_COMM_SELF, &solver_));
+        check(KSPSetType(solver_, KSPCG));
+        check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
+        check(KSPSetInitialGuessNonzero(solver_, PETSC_TRUE));
+        check(KSPSetTolerances(solver_, 0, 0, PETSC_DEFAULT, 1 << 30));
+        check(KSPSetConvergenceTest(solver_, &Engine::ask, this, nullptr));
+        check(KSPSetOperators(solver_, matrix_, matrix_));
+        choose_preconditioner();
+        check(KSPSetUp(solver_));
+        bytes_ = heap() - std::min(before, heap());
+    }
+
+    void solve(Vector& x, const Vector& b, const std::function<bool(real)>& wants_more) override {
+        if (!solver_) return;
+        wants_more_ = &wants_more;
+        check(VecPlaceArray(x_, x.data()));
+        check(VecPlaceArray(b_, b.data()));
+        const PetscErrorCode code = KSPSolve(solver_, b_, x_);
+        check(VecResetArray(x_));
+        check(VecResetArray(b_));
+        check(code);
+    }
+
+    std::size_t bytes() const override { return bytes_; }
+
+private:
+    /// Rows with their diagonal, as PETSc has them; it keeps these arrays as its own.
+    void take(const Matrix& A) {
+        const int n = A.size();
+        start_.assign(1, 0), column_.clear(), value_.clear();
+        for (int i = 0; i < n; ++i) {
+            const auto row = static_cast<std::size_t>(i);
+            bool has_diagonal = false;
+            const auto diagonal = [&] {
+                has_diagonal = true;
+                column_.push_back(i), value_.push_back(A.diagonal[row] > 0 ? A.diagonal[row] : 1);
+            };
+            for (auto k = static_cast<std::size_t>(A.start[row]); k < static_cast<std::size_t>(A.start[row + 1]); ++k) {
+                if (!has_diagonal && A.column[k] > i) diagonal();
+                column_.push_back(A.column[k]), value_.push_back(-A.weight[k]);
+            }
+            if (!has_diagonal) diagonal();
+            start_.push_back(static_cast<PetscInt>(column_.size()));
+        }
+        check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, start_.data(), column_.data(), value_.data(), &matrix_));
+        check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
+        check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, nullptr, &x_));
+        check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, nullptr, &b_));
+        if (remove_means_) {
+            MatNullSpace null = nullptr;
+            check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, 0, nullptr, &null));
+            check(MatNullSpaceSetFunction(null, &Engine::take_means_out, this));
+            check(MatSetNullSpace(matrix_, null));
+            check(MatNullSpaceDestroy(&null));
+        }
+    }
+
+    void choose_preconditioner() {
+        PC pc = nullptr;
+        check(KSPGetPC(solver_, &pc));
+        if (preconditioner_ == "gamg") {
+            check(PCSetType(pc, PCGAMG));
+        } else if (preconditioner_ == "boomeramg") {
+            check(PCSetType(pc, PCHYPRE));
+            check(PCHYPRESetType(pc, "boomeramg"));
+            check(PCSetOptionsPrefix(pc, dim_ == 3 ? "weir_3d_" : "weir_2d_"));
+            check(PCSetFromOptions(pc));
+        } else {
+            check(PCSetType(pc, PCICC));
+            // A closed component's last pivot is round-off without it.
+            check(PCFactorSetShiftType(pc, MAT_SHIFT_POSITIVE_DEFINITE));
+        }
+    }
+
+    /// PETSc's question after each iteration, and before the first.
+    static PetscErrorCode ask(KSP, PetscInt iteration, PetscReal residual, KSPConvergedReason* reason, void* self) {
+        const auto& engine = *static_cast<Engine*>(self);
+        const bool more = iteration == 0 || (*engine.wants_more_)(residual);
+        *reason = more ? KSP_CONVERGED_ITERATING : KSP_CONVERGED_RTOL;
+        return 0;
+    }
+
+    static PetscErrorCode take_means_out(MatNullSpace, ::Vec v, void* self) {
+        auto& engine = *static_cast<Engine*>(self);
+        PetscScalar* values = nullptr;
+        PetscInt n = 0;
+        VecGetLocalSize(v, &n);
+        VecGetArray(v, &values);
+        engine.work_.assign(values, values + n);
+        engine.remove_means_(engine.work_);
+        std::copy(engine.work_.begin(), engine.work_.end(), values);
+        VecRestoreArray(v, &values);
+        return 0;
+    }
+
+    void clear() {
+        KSPDestroy(&solver_);
+        MatDestroy(&matrix_);
+        VecDestroy(&x_);
+        VecDestroy(&b_);
+    }
+
+    std::string preconditioner_;
+    int dim_;
+    std::function<void(Vector&)> remove_means_;
+    const std::function<bool(real)>* wants_more_ = nullptr;
+    std::vector<PetscInt> start_, column_;
+    Vector value_, work_;
+    std::size_t bytes_ = 0;
+    KSP solver_ = nullptr;
+    Mat matrix_ = nullptr;
+    ::Vec x_ = nullptr, b_ = nullptr;
+};
+
+}  // namespace
+
+}  // namespace weir::poisson
+
+extern "C" weir::poisson::PetscEngine* weir_petsc_engine(const char* preconditioner, int dim) {
+    return new weir::poisson::Engine(preconditioner, dim);
+}
