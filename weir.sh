@@ -17,6 +17,7 @@
 #   python              the package of Python, in build/release/python
 #   docs                the book as a site, in build/docs/site
 #   install DIR         the program, its cases and the library
+#   package             the Debian packages, for any processor of this kind, in build/package/packages
 # `./weir.sh COMMAND --help` tells more. Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
 # second call re-does only what changed. The executable is build/release/weir.
 set -euo pipefail
@@ -27,9 +28,10 @@ weir_needs=(g++ cmake ninja-build git libeigen3-dev libfmt-dev libtomlplusplus-d
 figures_need=(gnuplot-nox)
 python_needs=(python3-dev pybind11-dev python3-numpy)
 docs_need=(mkdocs libjs-katex)
+package_needs=(dpkg-dev gzip lintian)
 films_need=(ffmpeg)
 tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libpetsc-real-dev pkgconf libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
-            python3-pytest python3-matplotlib)
+            python3-pytest python3-matplotlib jupyter-nbconvert python3-ipykernel doxygen dpkg-dev)
 
 install_missing() { # PACKAGE...
     if ! command -v dpkg-query >/dev/null; then
@@ -76,6 +78,19 @@ build_python() {
     echo "use it: PYTHONPATH=$here/build/release/python /usr/bin/python3"
 }
 
+# build_packages: for any processor, so in a build of its own; lintian has the last word, but for the address:
+# -DWEIR_MAINTAINER="NAME <ADDRESS>" gives one
+build_packages() {
+    install_missing "${weir_needs[@]}" "${python_needs[@]}" "${package_needs[@]}"
+    local build="$here/build/package"
+    (cd "$here" && cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DWEIR_NATIVE=OFF -DWEIR_PETSC=OFF -DWEIR_TESTS=OFF -DWEIR_BENCHMARKS=OFF -DWEIR_PYTHON=ON)
+    cmake --build "$build"
+    rm -rf "$build/packages"
+    (cd "$build" && cpack -G DEB)
+    lintian --fail-on error --allow-root --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog "$build"/packages/*.deb
+    ls "$build"/packages/*.deb
+}
+
 # build_all: the tests and benchmarks too
 build_all() {
     install_missing "${weir_needs[@]}" "${figures_need[@]}" "${python_needs[@]}" "${docs_need[@]}" "${tests_need[@]}"
@@ -110,6 +125,7 @@ case "${1:-}" in
     view | live) install_missing "${weir_needs[@]}" && build weir weir-view weir-live >&2 && exec "$here/build/release/weir" "$@" ;;
     python) build_python ;;
     docs) install_missing "${docs_need[@]}" && python3 "$here/docs/site/make.py" "$here/build/docs" ;;
+    package) build_packages ;;
     test) build_all && cd "$here/build/release" && run_tests "${@:2}" ;;
     install) [ $# -eq 2 ] || { usage >&2; exit 2; }; install_missing "${weir_needs[@]}" && build weir weir-view weir-live >&2 && exec cmake --install "$here/build/release" --prefix "$2" ;;
     help | --help | -h) usage ;;

@@ -2,6 +2,9 @@
 #pragma once
 #include <CLI/CLI.hpp>
 
+#include <string>
+#include <vector>
+
 namespace weir::app {
 
 void add_run(CLI::App& app, int& exit_code);
@@ -16,5 +19,12 @@ void add_plan(CLI::App& app, int& exit_code);
 void add_cost(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
+
+/// What `weir list` takes.
+inline const std::vector<std::string> listed{"solvers", "effects", "fields", "cases", "devices"};
+
+/// The command line as a page for man, and as completion for bash: from the commands themselves.
+std::string man_page(const CLI::App& app);
+std::string bash_completion(const CLI::App& app);
 
 }  // namespace weir::app

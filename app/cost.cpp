@@ -6,6 +6,7 @@
 #include "validation/cost/command.hpp"
 #include "validation/cost/effect_cost.hpp"
 #include "validation/cost/forecast.hpp"
+#include "validation/report/command.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -25,7 +26,7 @@ struct CostArguments : StudyArguments<validation::CostOptions> {
 int forecast(const CostArguments& arguments) {
     std::vector<scene::Override> overrides;
     for (const auto& text : arguments.set) overrides.push_back(scene::to_override(text));
-    const scene::Scene scene = scene::read(arguments.plan, sim::schemas(), overrides);
+    const scene::Scene scene = scene::read(validation::scene_named(arguments.plan), sim::schemas(), overrides);
     std::fputs(validation::forecast_text(validation::forecast(scene), scene).c_str(), stdout);
     return exit_success;
 }
@@ -55,7 +56,8 @@ void add_cost(CLI::App& app, int& exit_code) {
     command->add_option("--time-limit", options.measure.time_limit, "Seconds after which a run counts as failed")
         ->check(CLI::PositiveNumber);
     command->add_flag("--effects", arguments->effects, "What each effect of each solver costs: effects.csv and effects.md");
-    command->add_option("--plan", arguments->plan, "A scene: its memory and the time of its steps, before it runs; nothing is written");
+    command->add_option("--plan", arguments->plan,
+                        "A scene or a case: its memory and the time of its steps, before it runs; nothing is written");
     command->add_option("--set", arguments->set, "With --plan: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
     command->callback([arguments, &exit_code] { exit_code = cost(*arguments); });
 }

@@ -34,8 +34,16 @@ void add_describe(CLI::App& app, int& exit_code) {
     describe->add_option("topic", *topic,
                          "A name or a key, such as mac, buoyancy, time.cfl, sphere, substance water; without it: what there is");
     describe->add_flag("--markdown", *markdown, "The whole manual page, docs/scene.md");
-    describe->callback([topic, markdown, &exit_code] {
-        const std::string text = *markdown ? scene::manual(sim::schemas()) : text_about(*topic);
+    auto of_commands = std::make_shared<std::string>();
+    describe
+        ->add_option("--commands", *of_commands,
+                     "In place of scenes the commands, for whoever installs them: a man page, or completion for bash")
+        ->check(CLI::IsMember({"man", "bash"}));
+    describe->callback([topic, markdown, of_commands, &app, &exit_code] {
+        const std::string text = *of_commands == "man"    ? man_page(app)
+                                 : *of_commands == "bash" ? bash_completion(app)
+                                 : *markdown              ? scene::manual(sim::schemas())
+                                                          : text_about(*topic);
         std::fputs(text.c_str(), stdout);
         exit_code = exit_success;
     });

@@ -58,9 +58,7 @@ void add_list(CLI::App& app, int& exit_code) {
         app.add_subcommand("list",
                            "List the solvers, the effects of each, the fields and integrals that each shows, the cases (* where they are "
                            "validated), or the devices");
-    list->add_option("what", *what, "solvers, effects, fields, cases or devices")
-        ->required()
-        ->check(CLI::IsMember({"solvers", "effects", "fields", "cases", "devices"}));
+    list->add_option("what", *what, "solvers, effects, fields, cases or devices")->required()->check(CLI::IsMember(listed));
     list->add_option("--cases", *folder, "Folder of the cases");
     auto markdown = std::make_shared<bool>(false);
     list->add_flag("--markdown", *markdown, "Of fields: docs/fields.md");

@@ -18,7 +18,8 @@ namespace {
 
 std::string version_text() {
     const auto machine = weir::output::this_machine();
-    return "weir " + machine.version + " (" + machine.commit + ", " + machine.compiler + ", " + machine.build + ')';
+    return "weir " + machine.version + " (" + machine.commit + ", " + machine.compiler + ", " + machine.build +
+           (machine.options.empty() ? "" : ", " + machine.options) + ')';
 }
 
 int run(int argc, char** argv) {

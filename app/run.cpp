@@ -180,12 +180,6 @@ int tell_finished(const Simulation& simulation) {
     return exit_success;
 }
 
-/// What the user names: a path; or, where nothing stands there, a case.
-std::filesystem::path find_scene(const std::string& name) {
-    const bool is_path = name.find_first_of("./") != std::string::npos;
-    return is_path || std::filesystem::exists(name) ? std::filesystem::path(name) : validation::find_case_scene(name);
-}
-
 int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
@@ -196,8 +190,8 @@ int simulate(const RunArguments& arguments) {
     if (arguments.scene.empty() && !checkpoint)
         throw BadInput("weir run needs a scene (a file, a folder with a scene.toml, or the name of a case), or --restart");
 
-    scene::Scene scene =
-        arguments.scene.empty() ? scene_of(*checkpoint, overrides) : scene::read(find_scene(arguments.scene), sim::schemas(), overrides);
+    scene::Scene scene = arguments.scene.empty() ? scene_of(*checkpoint, overrides)
+                                                 : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
     if (!arguments.explain)
         sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run);
     Simulation simulation(std::move(scene));

@@ -24,6 +24,12 @@ skips=$(awk '
 # What would have let the test run is there all the same: then the skip is a mistake.
 explained() { # REASON
     case "$1" in
+        *"no dpkg-dev"*) ! has dpkg-shlibdeps ;;
+        *"another root takes root's rights"*) [ "$(id -u)" -ne 0 ] ;;
+        *"no mounts are allowed here"*) ! unshare -m true 2>/dev/null ;;
+        *"no overlay can be mounted here"*) true ;;  # the test has tried
+        *"no doxygen"*) ! has doxygen ;;
+        *"no nbconvert"*) ! /usr/bin/python3 -c 'import ipykernel, nbconvert' 2>/dev/null ;;
         *"no Xvfb"*) ! has_display ;;
         *"no chromium"*) ! has_browser ;;
         *"no valgrind"*) ! has valgrind ;;

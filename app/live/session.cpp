@@ -1,6 +1,7 @@
 #include "app/live/session.hpp"
 
 #include "geometry/hand.hpp"
+#include "geometry/mesh/mesh.hpp"
 #include "output/atomic_file.hpp"
 #include "scene/names.hpp"
 #include "sim/registry.hpp"
@@ -68,6 +69,7 @@ std::string Session::text(const std::vector<Change>& more) const {
             "file",
             std::filesystem::proximate(std::filesystem::path(scene_.file()).parent_path() / root.text("terrain.file"), folder_).string(),
             given);
+    geometry::name_meshes_from(folder_, root);
     root.erase("changes");
     std::string changes;
     auto all = simulation_->changes();

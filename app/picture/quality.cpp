@@ -58,9 +58,7 @@ Ray WideCamera::ray(real x, real y) const {
 }
 
 Surroundings::Surroundings(const View& view, const Box& domain)
-    : domain_(domain), size_(norm(domain.max - domain.min)), solids_(view.scene.root().tables("solids")) {
-    solids_.set_time(view.frame.time);
-}
+    : domain_(domain), size_(norm(domain.max - domain.min)), solids_(view, domain) {}
 
 Vec<3> Surroundings::to_sun() { return of_length_one({{-0.55, 0.75, 0.35}}); }
 
@@ -81,34 +79,21 @@ Colour Surroundings::floor(const Vec<3>& x) const {
     return !inside ? hex(0xc9c6c0) : odd ? hex(0xc4bcb0) : hex(0xdcd5ca);
 }
 
-/// Sphere tracing: a step as long as the distance never passes a surface (Hart 1996).
-real Surroundings::solid_distance(const Ray& ray, real limit) const {
-    if (solids_.empty()) return infinity;
-    const auto span = domain_.span(ray);  // solids are cut where the domain ends
-    if (!span) return infinity;
-    const real close = 2e-5 * size_;
-    real s = span->first;
-    for (int i = 0; i < 200 && s < std::min(span->second, limit); ++i) {
-        const real d = solids_.distance(ray.at(s));
-        if (d < close) return s;
-        s += d;
-    }
-    return infinity;
-}
-
 Surroundings::Hit Surroundings::first(const Ray& ray) const {
     Hit hit;
     if (ray.direction[1] < 0) {
         const real s = (domain_.min[1] - ray.origin[1]) / ray.direction[1];
         if (s > 1e-7 * size_) hit = {s, {{0, 1, 0}}, floor(ray.at(s)), true};
     }
-    if (const real s = solid_distance(ray, hit.distance); s < hit.distance)
-        hit = {s, solids_.normal(ray.at(s), 1e-4 * size_), hex(0xd98f4e), true};
+    if (const auto solid = solids_.first(ray, hit.distance))
+        hit = {solid.distance, solid.normal, solid.coloured ? solid.colour : hex(0xd98f4e), true};
     if (!hit.lit) hit.albedo = sky(ray.direction);
     return hit;
 }
 
-bool Surroundings::in_shadow(const Vec<3>& x) const { return solid_distance({x + 1e-4 * size_ * to_sun(), to_sun()}, infinity) < infinity; }
+bool Surroundings::in_shadow(const Vec<3>& x) const {
+    return static_cast<bool>(solids_.first({x + 1e-4 * size_ * to_sun(), to_sun()}, infinity));
+}
 
 Colour Surroundings::shade(const Hit& hit, const Ray& ray, const Colour& share) const {
     if (!hit.lit) return hit.albedo;

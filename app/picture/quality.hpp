@@ -1,6 +1,7 @@
 // Pictures as a camera would take them, on the processor: water that bends, mirrors and swallows light, smoke that shades itself, under a
 // sky and on a floor. No chance is in them: the same frame is the same picture, for any number of threads.
 #pragma once
+#include "app/picture/solids.hpp"
 #include "app/picture/stage.hpp"
 #include "app/picture/view.hpp"
 
@@ -9,7 +10,7 @@ namespace weir::picture {
 /// 16 to 9; view.size is the width.
 Canvas draw_quality(const View& view);
 
-/// What is around the fluid: an endless floor, a sky with a sun in it, and the scene's solids.
+/// What is around the fluid: an endless floor, a sky with a sun in it, and the scene's solids and bodies.
 class Surroundings {
 public:
     Surroundings(const View& view, const Box& domain);
@@ -31,11 +32,10 @@ public:
     Colour shade(const Hit& hit, const Ray& ray, const Colour& share) const;
 
 private:
-    real solid_distance(const Ray& ray, real limit) const;
     Colour floor(const Vec<3>& x) const;
     Box domain_;
     real size_;  // of the domain
-    geometry::Solids<3> solids_;
+    SolidRays solids_;
 };
 
 /// A camera of 16 to 9 that sees the whole domain.

@@ -39,11 +39,7 @@ Vec<2> Camera::pixel(const Vec<3>& world) const {
     return {{0.5 * width + dot(d, right) / scale, 0.5 * height - dot(d, up) / scale}};
 }
 
-Stage::Stage(const View& view, const Box& domain)
-    : domain_(domain),
-      dark_(view.field != "water"),
-      solids_(rigid::ShownSolids<3>(view.scene).at(view.frame.time, bodies_of(view.frame))),
-      bodies_(solids_.count() - view.scene.root().tables("bodies").size()) {}
+Stage::Stage(const View& view, const Box& domain) : domain_(domain), dark_(view.field != "water"), solids_(view, domain) {}
 
 Vec<3> Stage::light() { return normalised({{0.45, 1.0, 0.35}}); }
 
@@ -67,26 +63,9 @@ Colour Stage::floor_colour(const Vec<3>& x) const {
     return dark_ ? (odd ? hex(0x2a303a) : hex(0x333a46)) : (odd ? hex(0xc9c4ba) : hex(0xe4dfd5));
 }
 
-/// Sphere tracing: a step as long as the distance never passes a surface (Hart 1996).
-real Stage::solid_distance(const Ray& ray, real limit) const {
-    if (solids_.empty()) return infinity;
-    const auto span = domain_.span(ray);
-    if (!span) return infinity;
-    const real close = 1e-4 * norm(domain_.max - domain_.min);
-    real s = span->first;
-    for (int i = 0; i < 200 && s < std::min(span->second, limit); ++i) {
-        const real d = solids_.distance(ray.at(s));
-        if (d < close) return s;
-        s += d;
-    }
-    return infinity;
-}
-
-Colour Stage::solid_colour(const Vec<3>& x) const {
-    const Vec<3> n = solids_.normal(x, 1e-3 * norm(domain_.max - domain_.min));
-    const real lit = 0.35 + 0.65 * std::max(0.0, dot(n, light()));
-    if (solids_.nearest(x) >= bodies_) return lit * hex(0xf0b03c);
-    return lit * (dark_ ? hex(0xb0a494) : hex(0x9aa0a8));
+Colour Stage::solid_colour(const SolidRays::Hit& hit) const {
+    const real lit = 0.35 + 0.65 * std::max(0.0, dot(hit.normal, light()));
+    return lit * (hit.coloured ? hit.colour : hit.body ? hex(0xf0b03c) : dark_ ? hex(0xb0a494) : hex(0x9aa0a8));
 }
 
 }  // namespace weir::picture

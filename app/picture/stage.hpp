@@ -1,9 +1,9 @@
 // What stands around the fluid in 3D pictures: camera, light, sky, floor, the solids of the scene, the edges of the domain.
 #pragma once
 #include "app/picture/canvas.hpp"
+#include "app/picture/solids.hpp"
 #include "app/picture/view.hpp"
 #include "app/picture/volume.hpp"
-#include "geometry/solids.hpp"
 
 namespace weir::picture {
 
@@ -30,7 +30,7 @@ public:
     Hit trace(const Ray& ray, const Shade& shade) const {
         Hit hit{infinity, sky(ray.direction)};
         if (const real s = floor_distance(ray); s < hit.distance) hit = {s, shade(ray.at(s)) * floor_colour(ray.at(s))};
-        if (const real s = solid_distance(ray, hit.distance); s < hit.distance) hit = {s, solid_colour(ray.at(s))};
+        if (const auto solid = solids_.first(ray, hit.distance)) hit = {solid.distance, solid_colour(solid)};
         return hit;
     }
     Colour sky(const Vec<3>& direction) const;
@@ -38,14 +38,12 @@ public:
 
 private:
     real floor_distance(const Ray& ray) const;
-    real solid_distance(const Ray& ray, real limit) const;
     Colour floor_colour(const Vec<3>& x) const;
-    Colour solid_colour(const Vec<3>& x) const;
+    Colour solid_colour(const SolidRays::Hit& hit) const;
 
     Box domain_;
     bool dark_;  // smoke wants a dark stage
-    geometry::Solids<3> solids_;
-    std::size_t bodies_ = 0;  // the first of them among the solids
+    SolidRays solids_;
 };
 
 }  // namespace weir::picture

@@ -2,14 +2,22 @@
 #include "rigid/bodies.hpp"
 #include "app/view/solid_mesh.hpp"
 #include "app/view/stage.hpp"
+#include "geometry/mesh/mesh.hpp"
 
 #include <vtkActor.h>
+#include <vtkAppendPolyData.h>
+#include <vtkCellArray.h>
 #include <vtkClipDataSet.h>
 #include <vtkContourFilter.h>
 #include <vtkFloatArray.h>
 #include <vtkGeometryFilter.h>
 #include <vtkImageData.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
 #include <vtkSmartVolumeMapper.h>
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
@@ -21,28 +29,63 @@ namespace weir::view {
 
 namespace {
 
-/// Signed distance to the solids [m] on a lattice of `step` [m] over the box.
+/// Signed distance to the solids that are not meshes [m] on a lattice of `step` [m] over the box.
 template <int D>
-vtkSmartPointer<vtkImageData> distances(const scene::Scene& scene, real time, const PoseOf& pose, const std::array<real, 6>& box,
-                                        real step) {
-    rigid::ShownSolids<D> shown(scene);
-    if (shown.empty()) return nullptr;
-    const geometry::Solids<D>& solids = shown.at(time, pose);
+vtkSmartPointer<vtkImageData> distances(const geometry::Solids<D>& solids, const std::array<real, 6>& box, real step) {
     auto image = vtkSmartPointer<vtkImageData>::New();
     std::array<int, 3> n{1, 1, 1};
     for (std::size_t a = 0; a < D; ++a) n[a] = 1 + static_cast<int>(std::ceil((box[2 * a + 1] - box[2 * a]) / step - 1e-9));
     image->SetDimensions(n.data());
     image->SetOrigin(box[0], box[2], box[4]);
     image->SetSpacing(step, step, step);
+    const Vec<3> size{{box[1] - box[0], box[3] - box[2], box[5] - box[4]}};
     vtkNew<vtkFloatArray> values;
     values->SetNumberOfTuples(image->GetNumberOfPoints());
     for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
         Vec<D> x;
         for (int a = 0; a < D; ++a) x[a] = image->GetPoint(i)[a];
-        values->SetValue(i, static_cast<float>(solids.distance(x)));
+        real d = infinity;
+        for (std::size_t s = 0; s < solids.count(); ++s)
+            if (!solids[s].shape->mesh()) d = std::min(d, solids.distance(s, x));
+        values->SetValue(i, static_cast<float>(std::min(d, norm(size))));
     }
     image->GetPointData()->SetScalars(values);
     return image;
+}
+
+/// The triangles of solids that are meshes, where these are.
+vtkSmartPointer<vtkPolyData> triangles_of(const geometry::Solids<3>& solids) {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> cells;
+    for (std::size_t s = 0; s < solids.count(); ++s) {
+        const geometry::PosedMesh* posed = solids[s].shape->mesh();
+        if (!posed) continue;
+        const vtkIdType first = points->GetNumberOfPoints();
+        for (const Vec<3>& y : posed->mesh->triangles().points) points->InsertNextPoint(solids.pose(s).to_world(posed->to_scene(y)).data());
+        for (const auto& t : posed->mesh->triangles().corners) {
+            const std::array<vtkIdType, 3> corners{first + t[0], first + t[1], first + t[2]};
+            cells->InsertNextCell(3, corners.data());
+        }
+    }
+    auto mesh = vtkSmartPointer<vtkPolyData>::New();
+    mesh->SetPoints(points);
+    mesh->SetPolys(cells);
+    return mesh;
+}
+
+vtkSmartPointer<vtkPolyData> surface_of(const geometry::Solids<3>& solids, const std::array<real, 6>& box, real step) {
+    vtkNew<vtkContourFilter> surface;
+    surface->SetInputData(distances<3>(solids, box, step));
+    surface->SetValue(0, 0);
+    vtkNew<vtkAppendPolyData> both;
+    both->AddInputConnection(surface->GetOutputPort());
+    both->AddInputData(triangles_of(solids));
+    vtkNew<vtkPolyDataNormals> smooth;  // of meshes; a contour has its own
+    smooth->SetInputConnection(both->GetOutputPort());
+    smooth->SplittingOn();
+    smooth->SetFeatureAngle(45);
+    smooth->Update();
+    return smooth->GetOutput();
 }
 
 }  // namespace
@@ -52,17 +95,14 @@ vtkSmartPointer<vtkPolyData> solid_mesh(const scene::Scene& scene, real time, co
     const bool flat = scene.dim() == 2;
     const real longest = std::max({box[1] - box[0], box[3] - box[2], box[5] - box[4]});
     const real step = std::max(0.5 * cell, longest / (flat ? 600 : 160));
-    const auto image = flat ? distances<2>(scene, time, pose, box, step) : distances<3>(scene, time, pose, box, step);
-    if (!image) return nullptr;
     if (!flat) {
-        vtkNew<vtkContourFilter> surface;
-        surface->SetInputData(image);
-        surface->SetValue(0, 0);
-        surface->Update();
-        return surface->GetOutput();
+        rigid::ShownSolids<3> shown(scene);
+        return shown.empty() ? nullptr : surface_of(shown.at(time, pose), box, step);
     }
+    rigid::ShownSolids<2> shown(scene);
+    if (shown.empty()) return nullptr;
     vtkNew<vtkClipDataSet> inside;
-    inside->SetInputData(image);
+    inside->SetInputData(distances<2>(shown.at(time, pose), box, step));
     inside->SetValue(0);
     inside->InsideOutOn();
     vtkNew<vtkGeometryFilter> sheet;

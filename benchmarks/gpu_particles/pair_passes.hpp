@@ -56,7 +56,7 @@ __kernel void lambda_cells(int count, int4 cells, __constant PbfParams* p, __con
     gy += w.y;
     gz += w.z;
     const float before = multiplier[i];
-    const float sum = pbf_multiplier(before, rho, 1, neighbours2, dot3(gx, gy, gz, gx, gy, gz), p);
+    const float sum = pbf_multiplier(before, rho, neighbours2, dot3(gx, gy, gz, gx, gy, gz), p);
     multiplier[i] = sum;
     me.w = sum - before;
     to[i] = me;

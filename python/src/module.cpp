@@ -32,7 +32,8 @@ void add_exceptions(py::module_& module) {
 PYBIND11_MODULE(_weir, module) {
     const auto machine = weir::output::this_machine();
     module.attr("__version__") = machine.version;
-    module.attr("build") = machine.commit + ", " + machine.compiler + ", " + machine.build;
+    module.attr("build") =
+        machine.commit + ", " + machine.compiler + ", " + machine.build + (machine.options.empty() ? "" : ", " + machine.options);
     add_exceptions(module);
     module.def(
         "threads", [] { return weir::threads(); }, "Threads that steps take at most.");

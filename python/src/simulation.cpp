@@ -41,9 +41,7 @@ StatePtr build(scene::Scene scene) {
 
 /// As the command takes it: a path, or the name of a case.
 StatePtr from_file(const std::string& name, const Changes& changes) {
-    const bool is_path = name.find_first_of("./") != std::string::npos || std::filesystem::exists(name);
-    return build(
-        scene::read(is_path ? std::filesystem::path(name) : validation::find_case_scene(name), sim::schemas(), overrides_of(changes)));
+    return build(scene::read(validation::scene_named(name), sim::schemas(), overrides_of(changes)));
 }
 
 StatePtr from_text(const std::string& text, const std::string& name, const Changes& changes) {
@@ -106,6 +104,42 @@ void set(const StatePtr& state, const std::string& key, const std::string& value
         state->simulation.set_at(*at, {key, value});
     else
         state->simulation.set({key, value});
+}
+
+using Component = py::array_t<real, py::array::f_style | py::array::forcecast>;
+
+/// Every component of a field anew, in the shapes in which `component` gives them.
+void write(const StatePtr& state, const std::string& name, const std::vector<Component>& components) {
+    std::vector<std::vector<real>> data;
+    for (const auto& c : components) data.emplace_back(c.data(), c.data() + c.size());
+    const Change change(state);
+    const py::gil_scoped_release release;
+    state->simulation.edit(name, [&](FieldEdit& field) { field.data = std::move(data); });
+}
+
+std::vector<Vec<3>> points(const Component& rows) {
+    std::vector<Vec<3>> list(static_cast<std::size_t>(rows.shape(0)), Vec<3>{});
+    for (py::ssize_t i = 0; i < rows.shape(0); ++i)
+        for (py::ssize_t d = 0; d < rows.shape(1); ++d) list[static_cast<std::size_t>(i)][static_cast<std::size_t>(d)] = rows.at(i, d);
+    return list;
+}
+
+void add_particles(const StatePtr& state, const std::string& set, const Component& at, const Component& velocity) {
+    const auto x = points(at), u = points(velocity);
+    const Change change(state);
+    const py::gil_scoped_release release;
+    state->simulation.add_particles(set, x, u);
+}
+
+void remove_particles(const StatePtr& state, const std::string& set, const std::vector<std::size_t>& which) {
+    const Change change(state);
+    const py::gil_scoped_release release;
+    state->simulation.remove_particles(set, which);
+}
+
+std::vector<std::string> editable(const StatePtr& state) {
+    const Change change(state);  // views may be filled anew
+    return state->simulation.editable();
 }
 
 void save(const StatePtr& state, const std::filesystem::path& file) {
@@ -203,6 +237,10 @@ void add_simulation(py::module_& module) {
         .def("probe_names", probe_names)
         .def("probe", probe)
         .def("set", set)
+        .def("editable", editable)
+        .def("write", write)
+        .def("add_particles", add_particles)
+        .def("remove_particles", remove_particles)
         .def("save", save)
         .def("restore", restore)
         .def("write_frame", write_frame)

@@ -14,12 +14,12 @@ if "OMP_WAIT_POLICY" not in _os.environ:  # how long a thread spins for the next
     _os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 
 from ._weir import BadInput, NumericalFailure, OutputError, StepReport, __version__, build, set_threads, threads
-from .fields import Field, StaleField
+from .fields import Edit, Field, StaleField
 from .scene import to_toml
 from .simulation import Probe, Simulation
 from .studies import Choice, Claim, CostPoint, Plan, Verdicts, case_folder, cost, plan, validate
 
 __all__ = [
-    "BadInput", "Choice", "Claim", "CostPoint", "Field", "NumericalFailure", "OutputError", "Plan", "Probe", "Simulation", "StaleField",
+    "BadInput", "Choice", "Claim", "CostPoint", "Edit", "Field", "NumericalFailure", "OutputError", "Plan", "Probe", "Simulation", "StaleField",
     "StepReport", "Verdicts", "build", "case_folder", "cost", "plan", "set_threads", "threads", "to_toml", "validate",
 ]

@@ -20,8 +20,8 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 
     __slots__ = ("_core", "_moment", "_set", "name", "unit", "where", "_axes")
 
-    def __init__(self, core, set, name, unit, where, axes):
-        self._core, self._moment, self._set = core, core.moment, set
+    def __init__(self, core, set, name, unit, where, axes, moment=None):
+        self._core, self._moment, self._set = core, core.moment if moment is None else moment, set
         self.name, self.unit, self.where, self._axes = name, unit, where, tuple(axes)
 
     def _component(self, axis):
@@ -46,7 +46,7 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
         if len(self._axes) == 1:
             return self._component(self._axes[0])[key]
         if isinstance(key, (int, np.integer)):
-            return Field(self._core, self._set, self.name, self.unit, self.where, (self._axes[key],))
+            return self._part(self._axes[key])
         return np.asarray(self)[key]
 
     def __len__(self):
@@ -82,7 +82,11 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
     def _of(self, axis):
         if axis not in self._axes or len(self._axes) == 1:
             raise AttributeError(f'field "{self.name}" has no component {"xyz"[axis]}')
-        return Field(self._core, self._set, self.name, self.unit, self.where, (axis,))
+        return self._part(axis)
+
+    def _part(self, axis):
+        """A component, of the same moment."""
+        return Field(self._core, self._set, self.name, self.unit, self.where, (axis,), self._moment)
 
     @property
     def components(self):
@@ -118,3 +122,48 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
             return f'<stale field "{self.name}">'
         shapes = " and ".join(str(self._component(axis).shape) for axis in self._axes) if self.where == "face" else self.shape
         return f'<field "{self.name}" [{self.unit}] {self.where} {shapes}>'
+
+
+class Edit:
+    """A field that is being written, as a block: `with sim.edit("smoke") as smoke: smoke[3:5, :] = 1`.
+
+    A field of one component is written as an array; those of a vector are the arrays x, y and z, or [0], [1], [2]. At the end of the block
+    they take the field's place, unless the block raises; then nothing has changed.
+    """
+
+    def __init__(self, core, field):
+        self._core, self.name = core, f"{field._set}.{field.name}" if field._set else field.name
+        self._arrays = [np.array(field._component(axis), order="F") for axis in field._axes]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind is None:
+            self._core.write(self.name, self._arrays)
+
+    def __getitem__(self, key):
+        return self._arrays[0][key] if len(self._arrays) == 1 else self._arrays[key]
+
+    def __setitem__(self, key, value):
+        if len(self._arrays) == 1:
+            self._arrays[0][key] = value
+        else:
+            self._arrays[key][...] = value
+
+    def __array__(self, dtype=None):
+        if len(self._arrays) > 1:
+            raise ValueError(f'"{self.name}" is written by its components: .x, .y, .z')
+        return self._arrays[0] if dtype is None else self._arrays[0].astype(dtype, copy=False)
+
+    x = property(lambda self: self._of(0), lambda self, value: self.__setitem__(self._axis(0), value), doc="The array along x.")
+    y = property(lambda self: self._of(1), lambda self, value: self.__setitem__(self._axis(1), value), doc="The array along y.")
+    z = property(lambda self: self._of(2), lambda self, value: self.__setitem__(self._axis(2), value), doc="The array along z.")
+
+    def _axis(self, axis):
+        if axis >= len(self._arrays) or len(self._arrays) == 1:
+            raise AttributeError(f'"{self.name}" has no component {"xyz"[axis]}')
+        return axis
+
+    def _of(self, axis):
+        return self._arrays[self._axis(axis)]

@@ -2,7 +2,7 @@
 import math
 
 
-def to_toml(scene):
+def to_toml(scene: dict) -> str:
     """A dict as TOML, a key a line: dicts are tables, lists of dicts lists of tables, NumPy arrays and numbers what they hold."""
     if not isinstance(scene, dict):
         raise TypeError(f"a scene is a path, the name of a case, or a dict, not {type(scene).__name__}")

@@ -1,12 +1,15 @@
 """A simulation: scene in, steps, fields and probes out."""
 import collections.abc
 import os
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _weir, scene as _scene
-from .fields import Field
+from ._weir import StepReport
+from .fields import Edit, Field
 
 _reported = ("dt", "cfl", "max_divergence", "iterations", "residual_before", "residual_after", "residual_max", "density_error",
              "max_density_error")
@@ -60,7 +63,8 @@ class Simulation:
     Raises BadInput with every mistake at its line. Steps let other threads of Python run; Ctrl-C ends a run between two steps.
     """
 
-    def __init__(self, scene, set=None, backend=None, measure=None, reference=""):
+    def __init__(self, scene: "str | os.PathLike | dict", set: "dict | None" = None, backend: "str | None" = None,
+                 measure: "str | list[str] | None" = None, reference: str = ""):
         changes = [(key, _scene.value(v)) for key, v in (set or {}).items()]
         if backend is not None:
             changes.append(("scheme.backend", _scene.value(backend)))
@@ -68,22 +72,43 @@ class Simulation:
             self._core = _weir.Core.from_file(os.fspath(scene), changes)
         else:
             self._core = _weir.Core.from_text(_scene.to_toml(scene), "scene", changes)
+        self._observers = []
         if measure:
             self._core.measure([measure] if isinstance(measure, str) else list(measure), reference)
 
     # --- time
-    def step(self, count=1):
+    def step(self, count: int = 1) -> StepReport:
         """So many steps of the size that scene and solver want; the report of the last. Ctrl-C waits for all of them."""
         if count < 1:
             raise ValueError(f"{count} steps are none: at least 1")
-        return self._core.step(count)
+        if not self._observers:
+            return self._core.step(count)
+        for _ in range(count):
+            report = self._core.step(1)
+            self._look_on(report)
+        return report
 
-    def run_until(self, t, on_step=None, on_frame=None):
+    def observe(self, call: "Callable[[Simulation, StepReport], object]", every: "int | str" = "frame") -> None:
+        """From here on call(sim, report) after each frame, or after every so many steps, however the simulation is driven. It may steer:
+        set(), edit(). What it raises comes out of the call that stepped."""
+        if every != "frame" and not (isinstance(every, int) and every >= 1):
+            raise ValueError(f'every is "frame" or a number of steps, not {every!r}')
+        self._observers.append((every, call))
+
+    def _look_on(self, report):
+        for every, call in list(self._observers):
+            if self._core.at_frame if every == "frame" else self._core.steps % every == 0:
+                call(self, report)
+
+    def run_until(self, t: float, on_step: "Callable[[Simulation, StepReport], object] | None" = None,
+                  on_frame: "Callable[[Simulation], object] | None" = None) -> np.ndarray:
         """Steps until time t [s] is reached exactly. on_step(sim, report) is called after every step, on_frame(sim) at frames: True ends
         the run there. Returns the reports as a structured array (step, time, dt, cfl, iterations, ...)."""
         core, rows = self._core, []
         while not core.reached(t):
             report = core.step_until(t)
+            if self._observers:
+                self._look_on(report)
             rows.append((core.steps, core.time) + tuple(getattr(report, name) for name in _reported))
             stop = on_step(self, report) if on_step else False
             stop = (on_frame(self) if on_frame and core.at_frame else False) or stop
@@ -91,7 +116,8 @@ class Simulation:
                 break
         return np.array(rows, dtype=_report_dtype)
 
-    def run(self, on_step=None, on_frame=None):
+    def run(self, on_step: "Callable[[Simulation, StepReport], object] | None" = None,
+            on_frame: "Callable[[Simulation], object] | None" = None) -> np.ndarray:
         """Steps to the end of the scene; as run_until."""
         stopped = [False]
 
@@ -101,7 +127,7 @@ class Simulation:
 
         return self.run_until(self.end_time, watch, on_frame)
 
-    def frames(self):
+    def frames(self) -> "Iterator[Simulation]":
         """Steps from frame to frame, as output.every says; at each, the first one too, the simulation itself."""
         yield self
         while not self.finished:
@@ -110,10 +136,45 @@ class Simulation:
                 self.step()
             yield self
 
-    def set(self, key, value, at=None):
+    def set(self, key: str, value: object, at: "float | None" = None) -> None:
         """Changes a key of the scene while it runs, now or at the time `at` [s], which a step then hits: sim.set("effects.gravity.g",
         [0, -1.6]). Keys that may change are marked so in the manual; others raise BadInput with the reason."""
         self._core.set(key, _scene.value(value), at)
+
+    # --- a hand in it
+    @property
+    def editable(self) -> "list[str]":
+        """The fields that edit() takes."""
+        return self._core.editable()
+
+    def edit(self, name: str) -> Edit:
+        """A field to be written: `with sim.edit("velocity") as u: u.x[3, :] = 1`. What is in the arrays at the end of the block takes the
+        field's place, all of it or nothing, and the solver makes good what every step leaves behind: a velocity on a grid comes out free
+        of divergence and at rest at walls. BadInput where a value is not finite or cannot be."""
+        return Edit(self._core, self[name])
+
+    def add_particles(self, position: "npt.ArrayLike", velocity: "npt.ArrayLike" = 0.0, set: "str | None" = None) -> None:
+        """New particles at places [m], a row each, with a velocity [m/s], of each or of all. Markers bring liquid with them."""
+        position = np.atleast_2d(np.asarray(position, float))
+        if position.shape[1] != self.dim:
+            raise ValueError(f"a place has {self.dim} coordinates, not {position.shape[1]}")
+        self._core.add_particles(set or self._particles(), position, np.broadcast_to(np.asarray(velocity, float), position.shape))
+
+    def remove_particles(self, which: "npt.ArrayLike", set: "str | None" = None) -> None:
+        """Takes out particles: a mask over all of them, or their places in the arrays."""
+        which = np.asarray(which)
+        if which.dtype == bool and which.shape != self[(set or self._particles()) + ".position"].x.shape:
+            raise ValueError("a mask has one entry a particle")
+        which = np.flatnonzero(which) if which.dtype == bool else which.ravel()
+        if which.size and which.min() < 0:
+            raise IndexError("places of particles count from 0")
+        self._core.remove_particles(set or self._particles(), [int(i) for i in which])
+
+    def _particles(self):
+        for field in self._core.fields():
+            if field[1] == "position" and field[0] in ("particles", "markers"):
+                return field[0]
+        raise _weir.BadInput(f'solver "{self.solver}" has no particles that come and go')
 
     time = property(lambda self: self._core.time, doc="Simulated time [s].")
     end_time = property(lambda self: self._core.end_time, doc="The scene's end [s].")
@@ -122,7 +183,7 @@ class Simulation:
     next_dt = property(lambda self: self._core.next_dt, doc="Size of the step to come [s].")
 
     # --- what there is
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Field:
         """A field by its name, or of a set of particles as "markers.position" where the name alone could be several."""
         matches = [f for f in self._core.fields() if name in (f[1], f"{f[0]}.{f[1]}" if f[0] else f[1])]
         if not matches:
@@ -133,21 +194,21 @@ class Simulation:
     def __contains__(self, name):
         return any(name in (f[1], f"{f[0]}.{f[1]}" if f[0] else f[1]) for f in self._core.fields())
 
-    def keys(self):
+    def keys(self) -> "list[str]":
         """Names of the fields."""
         return [f"{f[0]}.{f[1]}" if f[0] else f[1] for f in self._core.fields()]
 
     @property
-    def probes(self):
+    def probes(self) -> "collections.abc.Mapping[str, Probe]":
         """What the scene's probes have measured, by name."""
         return _Probes(self._core)
 
     @property
-    def integrals(self):
+    def integrals(self) -> "dict[str, float]":
         """Sums and extrema over the domain, by name."""
         return self._core.integrals()
 
-    def measured(self):
+    def measured(self) -> "dict[str, float]":
         """The metrics of the run as it stands, and what it cost: ms_per_step, seconds_per_second."""
         return self._core.measured()
 
@@ -158,26 +219,26 @@ class Simulation:
     threads = property(lambda self: self._core.threads, doc="Threads that a step takes.")
     nbytes = property(lambda self: self._core.bytes, doc="Memory that the solver holds [bytes].")
 
-    def centres(self, axis):
+    def centres(self, axis: "int | str") -> np.ndarray:
         """Places of the cells' centres along an axis, 0 to 2 or "x" to "z" [m]."""
         axis = "xyz".index(axis) if isinstance(axis, str) else axis
         _, cells, origin, spacing = self._core.grid
         return origin[axis] + (np.arange(cells[axis]) + 0.5) * spacing[axis]
 
     # --- files and pictures
-    def save(self, file):
+    def save(self, file: "str | os.PathLike") -> None:
         """A checkpoint, from which restore() and `weir run --restart` go on bit for bit."""
         self._core.save(os.fspath(file))
 
-    def restore(self, file):
+    def restore(self, file: "str | os.PathLike") -> None:
         """Goes on from a checkpoint of the same scene."""
         self._core.restore(os.fspath(file))
 
-    def write_frame(self, folder):
+    def write_frame(self, folder: "str | os.PathLike") -> list:
         """Adds a frame to the VTK series in a folder, begun anew by the first; the .pvd files."""
         return self._core.write_frame(os.fspath(folder))
 
-    def picture(self, field="", size=900):
+    def picture(self, field: str = "", size: int = 900) -> bytes:
         """A picture of the moment as PNG bytes."""
         return self._core.picture(field, size)
 

@@ -1,5 +1,8 @@
 """weir validate, cost and plan: what the commands print, as objects."""
+import os
+import pathlib
 import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from . import _weir
@@ -89,25 +92,28 @@ class Plan:
     prices: str
 
 
-def validate(case, size="ci", variants=(), out=None, progress=None):
+def validate(case: "str | os.PathLike", size: str = "ci", variants: "Sequence[str]" = (), out: "str | os.PathLike | None" = None,
+             progress: "Callable[[str], object] | None" = None) -> Verdicts:
     """Runs a case, or those of its variants that are named, and judges its claims. Frames go to the folder `out`; without one they are not kept. progress(text) before each run."""
     with tempfile.TemporaryDirectory() as scratch:
         result = _weir.validate(str(case), size, list(variants), str(out or scratch), progress)
     return Verdicts(**{**result, "claims": [Claim(**claim) for claim in result["claims"]]})
 
 
-def cost(case, size="ci", methods=(), progress=None):
+def cost(case: "str | os.PathLike", size: str = "ci", methods: "Sequence[str]" = (),
+         progress: "Callable[[str], object] | None" = None) -> "list[CostPoint]":
     """What accuracy costs in time: every method of a study (or those named) at every setting, as CostPoints."""
     return [CostPoint(**point) for point in _weir.cost(str(case), size, list(methods), progress)]
 
 
-def plan(case, error="", budget="", frame="", tables="results/cost"):
+def plan(case: "str | os.PathLike", error: "str | float" = "", budget: "str | float" = "", frame: "str | float" = "",
+         tables: "str | os.PathLike" = "") -> Plan:
     """Which setting to take for an error ("2%") and a budget of computing a frame ("16ms"), out of the tables of `weir cost`."""
     result = _weir.plan(str(case), _text(error), _text(budget), _text(frame), str(tables))
     return Plan(take=result["take"] and Choice(**result["take"]), nearest=[Choice(**c) for c in result["nearest"]], prices=result["prices"])
 
 
-def case_folder(name):
+def case_folder(name: "str | os.PathLike") -> pathlib.Path:
     """The folder of a case by its name: its scene, its claims and the data that it is compared with."""
     return _weir.case_folder(str(name))
 

@@ -96,6 +96,14 @@ struct Integral {
     real value = 0;
 };
 
+/// A field that may be written between two steps: the solver's own numbers, as FieldView lays them out. Values beyond [min, max] of their
+/// component are refused by whoever writes, as are those that are not finite.
+struct EditableField {
+    std::string set, name;
+    std::vector<std::span<real>> data;
+    std::array<real, 3> min{-infinity, -infinity, -infinity}, max{infinity, infinity, infinity};
+};
+
 /// The step beyond which a method breaks, whatever its accuracy, and what it is that breaks.
 struct StepLimit {
     real dt = infinity;  // [s]
@@ -122,6 +130,18 @@ public:
     virtual std::vector<Integral> integrals() const = 0;
     /// The hand that pushes the fluid, where the scene names it and the solver has it (effects.hand).
     virtual Hand* hand() const { return nullptr; }
+    /// The fields that may be written; none where what is shown is no state of its own.
+    virtual std::vector<EditableField> editable() { return {}; }
+    /// After such a field was written: makes good what every step leaves behind (a velocity without divergence that meets walls, the
+    /// liquid's ledger). Throws BadInput where what is written cannot be; then the state is whatever it has become.
+    virtual void edited(const EditableField&) {}
+    /// New particles of a set at places inside the domain [m] with their velocities [m/s]; false: this solver has no such set, or another
+    /// part of the scene would not know of them. Throws BadInput as above.
+    virtual bool add_particles(std::string_view /*set*/, std::span<const Vec<3>> /*at*/, std::span<const Vec<3>> /*velocity*/) {
+        return false;
+    }
+    /// Takes out the particles i of a set for which gone[i] is not 0.
+    virtual bool remove_particles(std::string_view /*set*/, std::span<const unsigned char> /*gone*/) { return false; }
     /// Simulated time [s].
     virtual real time() const = 0;
     /// Everything the next step depends on, exactly: restore(save()) continues bit for bit.

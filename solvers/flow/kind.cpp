@@ -41,7 +41,8 @@ scene::SolverKind kind() {
     schema.doc = "Incompressible fluid that fills the domain, on a staggered grid: laminar flows, smoke, heat, moving obstacles.";
     std::vector<Key> methods = AdvectionOptions::keys();
     methods.push_back(PoissonChoice::key());
-    schema.keys = {rigid::bodies_key(), rigid::probe_key(), scheme_key(std::move(methods)), sides_key(), initial_keys()};
+    schema.keys = {rigid::bodies_key(), rigid::joints_key(), rigid::probe_key(), scheme_key(std::move(methods)),
+                   sides_key(),         initial_keys()};
     for (Key& key : Heat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = schemas_of(effect_kinds());
     schema.effects.push_back(geometry::hand_schema());

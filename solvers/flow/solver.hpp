@@ -31,6 +31,8 @@ public:
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     Hand* hand() const override { return hand_.get(); }
+    std::vector<EditableField> editable() override;
+    void edited(const EditableField& field) override;
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }

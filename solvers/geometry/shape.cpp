@@ -1,6 +1,8 @@
 #include "geometry/shape.hpp"
 
+#include "core/error.hpp"
 #include "core/hex_number.hpp"
+#include "geometry/mesh/mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -140,6 +142,25 @@ struct Difference final : Shape<D> {
     }
 };
 
+struct OfTriangles final : Shape<3> {
+    PosedMesh posed;
+    explicit OfTriangles(PosedMesh p) : posed(std::move(p)) {}
+    real distance(const Vec<3>& x) const override { return posed.scale * posed.mesh->distance(posed.to_file(x)); }
+    Vec<3> centre() const override { return posed.to_scene(posed.mesh->centre()); }
+    std::string code() const override {
+        throw BadInput("a shape \"mesh\" is known to threads and not to devices: scheme.backend = \"threads\" runs it");
+    }
+    const PosedMesh* mesh() const override { return &posed; }
+};
+
+template <int D>
+ShapePtr<D> triangles(const scene::Table& table) {
+    if constexpr (D == 3)
+        return std::make_shared<OfTriangles>(make_mesh(table));
+    else
+        throw BadInput("a shape \"mesh\" has three dimensions, and this scene has two");
+}
+
 }  // namespace
 
 template <int D>
@@ -184,6 +205,7 @@ ShapePtr<D> make_shape(const scene::Table& table) {
     if (kind == "wave") return wave<D>(table.number("level"), table.number("amplitude"), table.number("wavelength"));
     if (kind == "capsule") return capsule<D>(table.vec<D>("from"), table.vec<D>("to"), table.number("radius"));
     if (kind == "cylinder") return cylinder<D>(table.vec<D>("from"), table.vec<D>("to"), table.number("radius"));
+    if (kind == "mesh") return triangles<D>(table);
     if (kind == "union") return unite<D>(make_shapes<D>(table.tables("of")));
     if (kind == "difference") return subtract<D>(make_shape<D>(table.table("from")), make_shapes<D>(table.tables("minus")));
     throw std::logic_error("shape \"" + kind + "\" is in the schema but has no maker");

@@ -11,6 +11,8 @@
 
 namespace weir::geometry {
 
+struct PosedMesh;
+
 /// A closed region of space at rest. Immutable, cheap to copy by pointer.
 template <int D>
 class Shape {
@@ -22,6 +24,8 @@ public:
     virtual Vec<D> centre() const = 0;
     /// distance(x) for devices: an expression of OpenCL C over the functions of particles/kernels/shapes.cl.
     virtual std::string code() const = 0;
+    /// Its triangles, where it is given by some: for those who draw or weigh it.
+    virtual const PosedMesh* mesh() const { return nullptr; }
     bool contains(const Vec<D>& x) const { return distance(x) < 0; }
 };
 

@@ -13,18 +13,35 @@ Solids<D>::Solids(const std::vector<scene::Table>& tables) {
         solid.no_slip = table.text_or("slip", "free") == "no";
         solids_.push_back(std::move(solid));
     }
-    poses_.resize(solids_.size());
+    poses_.resize(solids_.size()), balls_.resize(solids_.size()), middles_.resize(solids_.size());
     set_time(0);
 }
 
 template <int D>
-void Solids<D>::add_free(ShapePtr<D> shape, bool no_slip) {
+void Solids<D>::add_free(ShapePtr<D> shape, bool no_slip, const Ball<D>& ball) {
     Solid<D> solid;
     solid.shape = std::move(shape);
     solid.no_slip = no_slip;
     solid.free = true;
     solids_.push_back(std::move(solid));
     poses_.emplace_back();
+    balls_.push_back({ball.middle, ball.radius * (1 + 1e-12)});
+    middles_.push_back(ball.middle);
+}
+
+template <int D>
+void Solids<D>::place(std::size_t solid, const Pose<D>& pose) {
+    poses_[solid] = pose;
+    balls_[solid].middle = pose.to_world(middles_[solid]);
+}
+
+/// No point of a ball is nearer than its middle less its radius.
+template <int D>
+bool Solids<D>::may_be_nearer(std::size_t solid, const Vec<D>& x, real than) const {
+    const real reach = than + balls_[solid].radius;
+    if (reach == infinity) return true;
+    const Vec<D> r = x - balls_[solid].middle;
+    return reach > 0 && dot(r, r) < reach * reach;
 }
 
 template <int D>
@@ -41,7 +58,8 @@ void Solids<D>::set_time(real t) {
 template <int D>
 real Solids<D>::distance(const Vec<D>& x) const {
     real d = infinity;
-    for (std::size_t i = 0; i < solids_.size(); ++i) d = std::min(d, distance(i, x));
+    for (std::size_t i = 0; i < solids_.size(); ++i)
+        if (may_be_nearer(i, x, d)) d = std::min(d, distance(i, x));
     return d;
 }
 
@@ -49,8 +67,10 @@ template <int D>
 std::size_t Solids<D>::nearest(const Vec<D>& x) const {
     std::size_t best = 0;
     real d = infinity;
-    for (std::size_t i = 0; i < solids_.size(); ++i)
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+        if (!may_be_nearer(i, x, d)) continue;
         if (const real di = distance(i, x); di < d) d = di, best = i;
+    }
     return best;
 }
 

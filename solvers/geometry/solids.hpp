@@ -18,6 +18,13 @@ struct Solid {
     bool free = false;  // whoever moves it says where it is (place)
 };
 
+/// A ball that holds a solid; without end where none is known.
+template <int D>
+struct Ball {
+    Vec<D> middle{};
+    real radius = infinity;
+};
+
 /// All solids; set_time() places them, every query speaks of that time.
 template <int D>
 class Solids {
@@ -31,9 +38,11 @@ public:
     /// Whether any solid moves: otherwise fractions never change.
     bool moving() const;
     void set_time(real t);
-    /// A solid that moves as it is told to: its place is the last one given, at any time.
-    void add_free(ShapePtr<D> shape, bool no_slip);
-    void place(std::size_t solid, const Pose<D>& pose) { poses_[solid] = pose; }
+    /// A solid that moves as it is told to: its place is the last one given, at any time. `ball` holds it where it rests.
+    void add_free(ShapePtr<D> shape, bool no_slip, const Ball<D>& ball);
+    void place(std::size_t solid, const Pose<D>& pose);
+    /// Holds the solid where it is.
+    const Ball<D>& ball(std::size_t solid) const { return balls_[solid]; }
     const Solid<D>& operator[](std::size_t i) const { return solids_[i]; }
 
     /// Signed distance to the nearest solid [m], negative inside; +infinity without solids.
@@ -50,8 +59,12 @@ public:
     const Pose<D>& pose(std::size_t solid) const { return poses_[solid]; }
 
 private:
+    bool may_be_nearer(std::size_t solid, const Vec<D>& x, real than) const;
+
     std::vector<Solid<D>> solids_;
     std::vector<Pose<D>> poses_;
+    std::vector<Ball<D>> balls_;   // where they are
+    std::vector<Vec<D>> middles_;  // of the balls, where they rest
 };
 
 /// Fraction of a segment where a linear function of the end values is positive (outside the solid), in [0, 1].

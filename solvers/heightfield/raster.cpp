@@ -1,16 +1,14 @@
 #include "heightfield/raster.hpp"
 
 #include "core/error.hpp"
+#include "core/words.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -19,79 +17,6 @@ namespace weir::heightfield {
 namespace {
 
 constexpr long most_cells = 1L << 28;
-
-std::string bytes_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) throw BadInput(fmt::format("{}: cannot be read", path.string()));
-    std::ostringstream all;
-    all << file.rdbuf();
-    return all.str();
-}
-
-/// Words of a text, each with its line and column.
-class Words {
-public:
-    Words(const std::filesystem::path& path, std::string_view text, bool hash_is_comment)
-        : path_(path.string()), text_(text), comments_(hash_is_comment) {}
-    /// Empty at the end of the file.
-    std::string_view next() {
-        skip();
-        line_of_word_ = line_, column_of_word_ = static_cast<int>(at_ - begin_of_line_) + 1;
-        const std::size_t begin = at_;
-        while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
-        return text_.substr(begin, at_ - begin);
-    }
-    std::string_view peek() {
-        const Words before = *this;
-        const std::string_view word = next();
-        *this = before;
-        return word;
-    }
-    real number(const std::string& what) {
-        const std::string_view word = next();
-        if (word.empty()) fail(fmt::format("the file ends where {} is expected", what));
-        real value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-            fail(fmt::format("\"{}\" stands where {} is expected", shown(word), what));
-        return value;
-    }
-    int count(const std::string& what, real most) {
-        const real value = number(what);
-        if (value != std::floor(value) || value < 1 || value > most)
-            fail(fmt::format("{} is {}; it is a whole number from 1 to {:.0f}", what, value, most));
-        return static_cast<int>(value);
-    }
-    [[noreturn]] void fail(const std::string& what) const {
-        throw BadInput(fmt::format("{}:{}:{}: {}", path_, line_of_word_, column_of_word_, what));
-    }
-    std::size_t position() const { return at_; }
-    static std::string shown(std::string_view word) {
-        std::string text(word.substr(0, 24));
-        for (char& c : text)
-            if (!std::isprint(static_cast<unsigned char>(c))) c = '?';
-        return text;
-    }
-
-private:
-    void skip() {
-        while (at_ < text_.size()) {
-            if (text_[at_] == '\n')
-                ++line_, begin_of_line_ = ++at_;
-            else if (std::isspace(static_cast<unsigned char>(text_[at_])))
-                ++at_;
-            else if (comments_ && text_[at_] == '#')
-                while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-            else
-                break;
-        }
-    }
-    std::string path_;
-    std::string_view text_;
-    bool comments_;
-    std::size_t at_ = 0, begin_of_line_ = 0;
-    int line_ = 1, line_of_word_ = 1, column_of_word_ = 1;
-};
 
 std::string lower(std::string_view word) {
     std::string text(word);

@@ -146,6 +146,28 @@ std::vector<Integral> ShallowWater::integrals() const {
     return list;
 }
 
+/// Depths, with the velocity kept, and the velocity, which is a mean over the depth and has no part upwards.
+std::vector<EditableField> ShallowWater::editable() {
+    fields();
+    EditableField velocity{"", "velocity", {qx1_, nothing_}}, depth{"", "depth", {state_.h}};
+    if (!qz1_.empty()) velocity.data.emplace_back(qz1_);
+    velocity.min[1] = velocity.max[1] = 0;
+    depth.min[0] = 0;
+    return {std::move(velocity), std::move(depth)};
+}
+
+/// Water that was put there is counted as poured; where there is too little to move it stands still.
+void ShallowWater::edited(const EditableField&) {
+    const real before = volume_;
+    for (std::size_t c = 0; c < state_.h.size(); ++c) {
+        const real wet = state_.h[c] > state_.dry ? state_.h[c] : 0;
+        state_.qx[c] = wet * qx1_[c];
+        if (!qz1_.empty()) state_.qz[c] = wet * qz1_[c];
+    }
+    measure();
+    state_.poured += volume_ - before;
+}
+
 void ShallowWater::save(Checkpoint& to) const {
     to.put("depth", state_.h);
     to.put("discharge_x", state_.qx);

@@ -16,6 +16,8 @@ public:
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
+    std::vector<EditableField> editable() override;
+    void edited(const EditableField& field) override;
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }

@@ -48,16 +48,11 @@ Field formula_field(const Scene& scene, const std::string& path, const Plane& pl
     return values;
 }
 
-std::filesystem::path beside_scene(const Scene& scene, const std::string& path) {
-    const std::filesystem::path file = scene.text(path);
-    return file.is_absolute() ? file : std::filesystem::path(scene.file()).parent_path() / file;
-}
-
 /// What a reader of files says of them stands at the key that names the file.
 template <class Read>
 Raster raster_at(const Scene& scene, const std::string& path, Read&& read) {
     try {
-        return read(beside_scene(scene, path));
+        return read(scene.root().file(path));
     } catch (const scene::BadScene&) {
         throw;
     } catch (const BadInput& bad) {

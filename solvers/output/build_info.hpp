@@ -7,5 +7,6 @@ extern const char* const build_version;
 extern const char* const build_commit;  // with "-dirty" where the tree had changes; "unknown" outside a git clone
 extern const char* const build_type;
 extern const char* const build_compiler;
+extern const char* const build_options;  // "native, VTK, OpenCL": what was switched on
 
 }  // namespace weir::output

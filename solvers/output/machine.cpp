@@ -32,6 +32,7 @@ Machine this_machine() {
     if (uname(&name) == 0) machine.system = std::string(name.sysname) + ' ' + name.release;
     machine.compiler = build_compiler;
     machine.build = build_type;
+    machine.options = build_options;
     machine.version = build_version;
     machine.commit = build_commit;
     return machine;

@@ -1,5 +1,6 @@
-// Where particles stand at the start beside bodies: as many as the volume has room for that bodies leave of the lattice's cells, so that the
-// water stands as high beside them as the scene says. Which cells' middles a body covers would be wrong by a row of them under a flat bottom.
+// Where particles stand at the start beside bodies: as many as the volume has room for that bodies leave of the lattice's cells, so that
+// the water stands as high beside them as the scene says. Which cells' middles a body covers would be wrong by a row of them under a flat
+// bottom.
 #pragma once
 #include "particles/domain.hpp"
 

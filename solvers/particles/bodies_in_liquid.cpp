@@ -7,9 +7,9 @@ namespace weir::particles {
 
 namespace {
 
-/// A body without mass, where no particle resists either, falls and turns as one of this part of the fluid's mass would (as in
-/// staggered/bodies_in_flow.cpp).
-constexpr real least_mass = 1e-9, least_inertia = 1e-4;
+/// A body lighter than this part of the water that it takes the place of is carried as one of that part. Water pushes it and does not pull:
+/// one that weighs nothing would be thrown as fast as the first particle pushes it, and nothing that it has would bring it back.
+constexpr real least_density = 0.01;
 
 }  // namespace
 
@@ -20,9 +20,13 @@ std::unique_ptr<BodiesInLiquid<D>> BodiesInLiquid<D>::make(const Fluid<D>& fluid
 
 template <int D>
 BodiesInLiquid<D>::BodiesInLiquid(const Fluid<D>& fluid)
-    : bodies_(fluid.domain.bodies), gravity_(fluid.gravity), mass_(fluid.mass), rho_(fluid.rho0), spacing_(fluid.domain.spacing) {
+    : bodies_(fluid.domain.bodies), gravity_(fluid.gravity), mass_(fluid.mass), spacing_(fluid.domain.spacing) {
     const std::size_t count = bodies_->count();
     start_ = bodies_->all();
+    for (auto& body : start_) {
+        const real least = least_density * fluid.rho0 * body.moments.volume;
+        if (body.mass < least) body.weigh(least, body.centre);
+    }
     dry_.resize(count), wet_.resize(count);
     impulse_.resize(count), force_.resize(count), gained_.resize(count), matrix_.resize(count);
     free_.resize(n), velocity_.resize(n * count), before_.resize(n * count), change_.resize(n * count);
@@ -83,24 +87,10 @@ Vec<D> BodiesInLiquid<D>::across(const Meeting<D>& m) const {
     return u - dot(u, m.pull) / dot(m.pull, m.pull) * m.pull;
 }
 
-template <int D>
-typename BodiesInLiquid<D>::Matrix BodiesInLiquid<D>::mass_of(std::size_t b) const {
-    const rigid::Body<D>& body = (*bodies_)[b];
-    Matrix m = body.mass_matrix();
-    const real displaced = rho_ * body.moments.volume;
-    const real least = least_inertia * displaced * body.radius * body.radius;
-    const real smallest = D == 2 ? body.principal[2] : std::min({body.principal[0], body.principal[1], body.principal[2]});
-    for (std::size_t k = 0; k < n; ++k) {
-        if (k < D) m[k][k] = std::max(m[k][k], least_mass * displaced);
-        if (k >= D && smallest < least) m[k][k] += least - smallest;
-    }
-    return m;
-}
-
 /// P and M + K, one meeting after the other.
 template <int D>
 void BodiesInLiquid<D>::sum_up() {
-    for (std::size_t b = 0; b < bodies_->count(); ++b) impulse_[b] = Twist{}, matrix_[b] = mass_of(b);
+    for (std::size_t b = 0; b < bodies_->count(); ++b) impulse_[b] = Twist{}, matrix_[b] = start_[b].mass_matrix();
     const auto resist = [&](Matrix& to, const Twist& t, real by) {
         for (std::size_t k = 0; k < n; ++k)
             for (std::size_t l = 0; l < n; ++l) to[k][l] += by * t[k] * t[l];
@@ -127,7 +117,7 @@ void BodiesInLiquid<D>::solve_for_velocities(real dt, bool heavy) {
         for (std::size_t k = 0; k < n; ++k) {
             free_[k] = !body.held[k];
             for (std::size_t l = 0; l < n; ++l) own_(k, l) = matrix_[b][k][l];
-            if (heavy && k < D) impulse_[b][k] += dt * std::max(body.mass, least_mass * rho_ * body.moments.volume) * gravity_[k];
+            if (heavy && k < D) impulse_[b][k] += dt * start_[b].mass * gravity_[k];
         }
         rigid::invert(own_, free_, inverse_);
         for (std::size_t k = 0; k < n; ++k)
@@ -203,10 +193,18 @@ void BodiesInLiquid<D>::end(Domain<D>& domain, real dt, real slow) {
         }
     }
     bodies_->place(domain.solids);
+    last_dt_ = dt;
+}
+
+template <int D>
+void BodiesInLiquid<D>::save(Checkpoint& to) const {
+    bodies_->save(to);
+    to.put_value("bodies.last_dt", last_dt_);
 }
 
 template <int D>
 void BodiesInLiquid<D>::restore(const Checkpoint& from, Domain<D>& domain) {
+    last_dt_ = from.get_value<real>("bodies.last_dt");
     bodies_->restore(from);
     bodies_->place(domain.solids);
 }

@@ -3,8 +3,8 @@
 //
 // A body may be lighter than the water that it moves, or weigh nothing. What it feels in a step depends on how it moves in that step: where
 // it closes on a particle by u along the gradient w of the kernel's part inside it, the particle gets k w (w.u) less or more, with a k that
-// the method knows: of SPH the pressure that follows in one step, of PBF the multiplier that follows in one iteration. The velocities of the
-// bodies solve
+// the method knows: of SPH the pressure that follows in one step, of PBF the multiplier that follows in one iteration. The velocities of
+// the bodies solve
 //
 //     (M + K) dV = P,    K = sum over particles of m k w w^T,  as a rigid velocity sees w,    P = -sum of m times what particles are given
 //
@@ -25,10 +25,10 @@ struct Meeting {
     int particle = -1;         // its number, whatever the caller counts
     std::ptrdiff_t body = -1;  // -1: none
     Vec<D> at{};               // where the particle is [m]
-    Vec<D> pull{};             // gradient of the kernel's part inside the body, what walls hide of it taken off; or a unit normal [1/m or 1]
-    real part = 0, open = 1;   // the kernel's part inside the body, and how much of it walls do not hide
-    Vec<D> given{};            // velocity that the body gives the particle [m/s]
-    real stiff = 0;            // and how much of the body's change along `pull` [m^2 or 1], across it
+    Vec<D> pull{};            // gradient of the kernel's part inside the body, what walls hide of it taken off; or a unit normal [1/m or 1]
+    real part = 0, open = 1;  // the kernel's part inside the body, and how much of it walls do not hide
+    Vec<D> given{};           // velocity that the body gives the particle [m/s]
+    real stiff = 0;           // and how much of the body's change along `pull` [m^2 or 1], across it
     real rub = 0;
 };
 
@@ -46,10 +46,12 @@ public:
     /// Who meets whom: filled by a method before each exchange.
     std::vector<Meeting<D>>& meetings() { return meetings_; }
 
+    /// A time over the length of the last step; 0 before the first.
+    real over_last(real dt) const { return last_dt_ > 0 ? dt / last_dt_ : 0; }
     /// A step starts: remembers where bodies are, and what they may touch in a step.
     void begin(const Domain<D>& domain, real dt);
-    /// New velocities of bodies from all meetings, from their weight where `heavy`, and from what they touch. Meetings then say what particles
-    /// have been given in all.
+    /// New velocities of bodies from all meetings, from their weight where `heavy`, and from what they touch. Meetings then say what
+    /// particles have been given in all.
     void exchange(Domain<D>& domain, real dt, bool heavy);
     /// What of it came back by the body's own change.
     Vec<D> back(const Meeting<D>& m) const { return m.stiff * closing(m) * m.pull + m.rub * across(m); }
@@ -62,7 +64,7 @@ public:
     /// slow: of what particles gave in this step, velocities keep that over the longer of this step and the last (solvers/pbf).
     void end(Domain<D>& domain, real dt, real slow);
 
-    void save(Checkpoint& to) const { bodies_->save(to); }
+    void save(Checkpoint& to) const;
     void restore(const Checkpoint& from, Domain<D>& domain);
     std::size_t bytes() const;
 
@@ -74,20 +76,20 @@ private:
     Vec<D> across(const Meeting<D>& m) const;
     /// A push along `along` at x, as a rigid velocity of body b sees it.
     Twist seen(std::size_t b, const Vec<D>& x, const Vec<D>& along) const;
-    Matrix mass_of(std::size_t b) const;
     void sum_up();
     void solve_for_velocities(real dt, bool heavy);
     void count_forces();
 
     std::shared_ptr<rigid::Bodies<D>> bodies_;
     Vec<D> gravity_{};
-    real mass_ = 0, rho_ = 0, spacing_ = 0;  // of a particle [kg], of the liquid, and between particles
+    real mass_ = 0, spacing_ = 0;  // of a particle [kg], and between particles [m]
     std::vector<Meeting<D>> meetings_;
-    std::vector<rigid::Body<D>> start_;  // bodies where the step began
+    std::vector<rigid::Body<D>> start_;  // bodies where the step began, none lighter than can be carried
     std::vector<char> dry_, wet_;        // no fluid and nothing else touched it in the step before; fluid does now
     rigid::Contacts<D> found_, contacts_;
     std::vector<Twist> impulse_, force_, gained_;  // of one exchange; of the step, from the fluid; velocity, from the fluid
     std::vector<Matrix> matrix_;
+    real last_dt_ = 0;
     rigid::Mobility own_, inverse_, mobility_;
     std::vector<char> free_;
     std::vector<real> velocity_, before_, change_;

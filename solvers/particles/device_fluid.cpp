@@ -99,8 +99,13 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
         for (Memory* number : {&enthalpy, &warming_, &by_walls_}) plan_.want(*number, sizeof(double));
         heat_pairs_ = constant(effects_.heat->single_pairs());
         heat_walls_ = constant(effects_.heat->single_walls());
-        heat_states = constant(effects_.heat->states());
-        if (effects_.heat->free()) ice_ = std::make_unique<Ice<D>>(*effects_.heat, host_.domain);
+        heat_states_ = constant(effects_.heat->states());
+        if (const auto* vapour = effects_.heat->vapour()) {
+            plan_.want(shift_, sizeof(double)), plan_.want(rests, sizeof(float));
+            vapour_ = constant(vapour->params());
+            above_ = device_->alloc(static_cast<std::size_t>(vapour->columns() * (vapour->rows() + 1)) * sizeof(int));
+        }
+        if (effects_.heat->free()) ice_ = std::make_unique<Ice<D>>(*effects_.heat, host_.domain), plan_.want(rests, sizeof(float));
     }
     plan_.want(list, static_cast<std::size_t>(room_) * sizeof(int));
     state_params = constant(state_params_of(effects, host_.domain, support_));
@@ -124,6 +129,8 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     std::vector<std::string> files{"state.cl", "sort.cl", "list.cl", "finish.cl"};
     if (solid_) files.insert(files.end() - 1, "solid_terms.cl");
     if (effects_.heat) files.insert(files.end(), {"heat_params.h", "heat_state.inl", "heat_walls.inl", "heat_pair.inl", "heat.cl"});
+    const bool boils = effects_.heat && effects_.heat->vapour();
+    if (boils) files.insert(files.end(), {"vapour_params.h", "vapour.inl", "vapour.cl"});
     files.insert(files.end(), setup.files.begin(), setup.files.end());
     std::string defines = "-cl-std=CL1.2 -DWEIR_DIM=" + std::to_string(D) + " -DWEIR_KERNEL=" + std::to_string(setup.kernel) +
                           " -DWEIR_GROUP=" + std::to_string(group_) + " " + setup.defines;
@@ -131,7 +138,8 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     if (open_) defines += " -DWEIR_OPEN";
     if (!sinks.empty()) defines += " -DWEIR_SINKS";
     if (heated) defines += " -DWEIR_HEATERS";
-    if (effects_.heat && effects_.heat->free()) defines += " -DWEIR_ICE";
+    if (boils) defines += " -DWEIR_VAPOUR";
+    if (boils || (effects_.heat && effects_.heat->free())) defines += " -DWEIR_RESTS";
     if (effects_.gravity) defines += " -DWEIR_GRAVITY";
     if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
     if (effects_.xsph) defines += " -DWEIR_XSPH";

@@ -112,6 +112,8 @@ public:
     void finish(real dt);
     /// Heat over dt, between particles where a has them.
     void conduct(Heat<D>& heat, real dt);
+    /// After the neighbours are found: what density particles are to have, where the scene lets them boil.
+    void expand();
     /// What is frozen does not move: it has no velocity, and is predicted and corrected to where it is. Or it moves in pieces.
     void hold();
     void hold_again();
@@ -120,7 +122,6 @@ public:
     /// Pieces of ice after an update of positions, what moved them in dt; and by a drift of dt.
     void arrive(real dt);
     void carry_ice(real dt);
-    bool moving_ice() const { return ice_ != nullptr; }  // of the scene; any now:
     bool ice_moves() const { return ice_ && effects_.heat->frozen() > 0; }
     /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory; what has crossed a side is
     /// taken back or out.
@@ -156,7 +157,8 @@ public:
     const DevicePlan& plan() const { return plan_; }
 
     Memory x, v, x_star, density, carried;            // state, double precision
-    Memory enthalpy, heat_states;                     // where particles carry heat
+    Memory enthalpy;                                  // where particles carry heat
+    Memory rests;                                     // of sorted particles that may boil: their densities over the liquid's
     Memory order, a, b, neighbours, list;             // sorted particles: owners, float4, their neighbours
     Memory clamps;                                    // how often walls and solids put a particle back, and from how far
     Memory near_solid, terms, poses;                  // of solids: sorted particles near one, what they add there; where they are
@@ -199,7 +201,8 @@ private:
     DeviceEffects<D> effects_;
     real speed_ = 0;
     std::uint32_t clamps_seen_ = 0;
-    Memory warming_, by_walls_, heat_pairs_, heat_walls_;
+    Memory warming_, by_walls_, heat_pairs_, heat_walls_, heat_states_;
+    Memory shift_, vapour_, above_;
     Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;
     Memory start_, members_, blocks_, parts_, needed_;
     std::size_t cells_room_ = 0;

@@ -32,26 +32,39 @@ void DeviceFluid<D>::feed(Heat<D>& heat, real dt) {
 }
 
 template <int D>
+void DeviceFluid<D>::expand() {
+    if (ice_ && count() > 0) run("rests_of_ice", {count(), heat_states_, order, enthalpy, rests});
+    if (!effects_.heat || !effects_.heat->vapour() || count() == 0) return;
+    const auto& vapour = *effects_.heat->vapour();
+    const int columns = vapour.columns(), rows = vapour.rows();
+    device_->fill_zero(above_, above_.bytes);
+    run("count_in_columns", {count(), stride_, vapour_, x, above_});
+    device_->launch("sum_columns", static_cast<std::size_t>(columns), device_group, {columns, rows, above_});
+    run("find_shifts", {count(), stride_, vapour_, x, above_, shift_});
+    run("find_rests", {count(), vapour_, heat_states_, order, enthalpy, shift_, rests});
+}
+
+template <int D>
 void DeviceFluid<D>::hold() {
     if (!effects_.heat || count() == 0) return;
     if (device_is_old_) upload();
     if (ice_) return find_ice();
-    effects_.heat->set_frozen(static_cast<int>(reduce("count_frozen", {count(), heat_states, enthalpy, parts_}).sum));
-    if (effects_.heat->frozen() > 0) run("hold", {count(), stride_, heat_states, enthalpy, v});
+    effects_.heat->set_frozen(static_cast<int>(reduce("count_frozen", {count(), heat_states_, enthalpy, parts_}).sum));
+    if (effects_.heat->frozen() > 0) run("hold", {count(), stride_, heat_states_, enthalpy, v});
 }
 
 template <int D>
 void DeviceFluid<D>::hold_prediction(real dt) {
     if (ice_ && count() > 0) return predict_ice(dt);
     hold();
-    if (effects_.heat && effects_.heat->frozen() > 0) run("hold_prediction", {count(), stride_, heat_states, enthalpy, x, x_star});
+    if (effects_.heat && effects_.heat->frozen() > 0) run("hold_prediction", {count(), stride_, heat_states_, enthalpy, x, x_star});
 }
 
 template <int D>
 void DeviceFluid<D>::hold_places() {
     if (ice_moves()) return place_ice();
     if (effects_.heat && effects_.heat->frozen() > 0)
-        run("hold_places", {count(), stride_, state_params, heat_states, order, enthalpy, x, a});
+        run("hold_places", {count(), stride_, state_params, heat_states_, order, enthalpy, x, a});
 }
 
 template <int D>
@@ -61,7 +74,7 @@ void DeviceFluid<D>::conduct(Heat<D>& heat, real dt) {
     const int parts = heat.parts(dt);
     const real part = dt / parts;
     for (int p = 0; p < parts; ++p) {
-        run("load_theta", {count(), heat_states, order, enthalpy, a});
+        run("load_theta", {count(), heat_states_, order, enthalpy, shift_, a});
         run("conduct", {count(), stride_, heat_pairs_, heat_walls_, a, neighbours, list, warming_, by_walls_});
         run("warm", {count(), part, order, warming_, enthalpy});
         if (heat.held()) heat.add(host_.mass * part * reduce("sum_numbers", {count(), by_walls_, parts_}).sum);
@@ -73,6 +86,8 @@ template std::string text_of<2>(const std::vector<Heat<2>::Heater>&);
 template std::string text_of<3>(const std::vector<Heat<3>::Heater>&);
 template void DeviceFluid<2>::feed(Heat<2>&, real);
 template void DeviceFluid<3>::feed(Heat<3>&, real);
+template void DeviceFluid<2>::expand();
+template void DeviceFluid<3>::expand();
 template void DeviceFluid<2>::hold();
 template void DeviceFluid<3>::hold();
 template void DeviceFluid<2>::hold_prediction(real);

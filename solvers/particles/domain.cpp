@@ -99,9 +99,10 @@ void refuse_idle_walls(const scene::Scene& scene, const Domain<D>& domain, bool 
         }
     for (std::size_t i = 0; i < domain.solids.count(); ++i)
         if (domain.solids[i].no_slip && !viscous)
-            scene.refuse(domain.solids[i].free ? "bodies[" + std::to_string(i - domain.first_body()) + "]" : "solids[" + std::to_string(i) + "]",
-                         domain.solids[i].free ? "without viscosity no liquid sticks to a body" : "without viscosity no liquid sticks to a solid",
-                         instead);
+            scene.refuse(
+                domain.solids[i].free ? "bodies[" + std::to_string(i - domain.first_body()) + "]" : "solids[" + std::to_string(i) + "]",
+                domain.solids[i].free ? "without viscosity no liquid sticks to a body" : "without viscosity no liquid sticks to a solid",
+                instead);
 }
 
 template void refuse_idle_walls(const scene::Scene&, const Domain<2>&, bool, const std::string&);

@@ -26,8 +26,8 @@ struct Domain {
     Vec<D> keep_lo{}, keep_hi{};  // `margin` inside the walls; infinite where there is none
     geometry::Sides<D> sides;
     geometry::Solids<D> solids;
-    real spacing = 0;  // of particles at rest [m]
-    real margin = 0;   // no particle comes closer to a wall or solid [m]
+    real spacing = 0;                          // of particles at rest [m]
+    real margin = 0;                           // no particle comes closer to a wall or solid [m]
     std::shared_ptr<rigid::Bodies<D>> bodies;  // they stand behind the solids; none where the scene names none
 
     Domain() = default;

@@ -37,9 +37,9 @@ LatticeSums lattice_sums(const Scheme& scheme, real spacing) {
 
 HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>& conductivity) {
     constexpr real far = 1e300;
-    HeatStates s{far, far, far, far, {0, 0, 0}, {0, 0, 0}, 0, 0};
+    HeatStates s{far, far, far, far, {0, 0, 0}, {0, 0, 0}, 0, {conductivity[0], conductivity[1], conductivity[2]}, far, 0};
     for (int i = 0; i < curve.states(); ++i) {
-        const auto state = static_cast<std::size_t>(curve.state(i));
+        const auto state = static_cast<std::size_t>(std::min(curve.state(i), thermo::State::vapour));  // or supercritical
         s.per_c[state] = 1 / curve.heat_capacity(i);
         s.k_c[state] = conductivity[state] / curve.heat_capacity(i);
         if (curve.state(i) == thermo::State::liquid) {
@@ -63,7 +63,8 @@ void Heat<D>::set_pairs(const Scheme& scheme) {
         p.conduct = static_cast<Number>(conduct);
     };
     fill(single_pairs_), fill(plain_pairs_);
-    const real fastest = *std::max_element(std::begin(states_.k_c), std::end(states_.k_c)) / rho0_;  // [m²/s]
+    real fastest = *std::max_element(std::begin(states_.k_c), std::end(states_.k_c)) / rho0_;  // [m²/s]
+    if (vapour_) fastest = std::max(fastest, states_.k[1] * states_.per_c[2] / rho0_);         // it boils below T_vapour here and there
     stable_dt_ = fastest > 0 ? stable_part / (fastest * sums.diagonal) : infinity;
 }
 
@@ -84,9 +85,11 @@ int Heat<D>::count_frozen(const Fluid<D>& fluid) {
 
 template <int D>
 std::string Heat<D>::concern() const {
-    return frozen_ > 0 && !free_
-               ? std::to_string(frozen_) + " particles are frozen: they are held where they are, ice neither floats nor sinks"
-               : "";
+    std::string text = vapour_ ? vapour_->concern() : "";
+    if (frozen_ > 0 && !free_)
+        text += (text.empty() ? "" : "; ") + std::to_string(frozen_) +
+                " particles are frozen: they are held where they are, ice neither floats nor sinks";
+    return text;
 }
 
 template <int D>
@@ -119,17 +122,21 @@ void Heat<D>::check(const Fluid<D>& fluid) const {
 template <int D>
 void Heat<D>::check(real most) const {
     if (std::isnan(most)) throw NumericalFailure("temperature", "the enthalpy is not finite");
-    if (most > states_.liquid_end) throw NumericalFailure("temperature", "the liquid begins to boil, and this solver has no vapour");
+    if (most > states_.liquid_end && !vapour_)
+        throw NumericalFailure("temperature", "the liquid begins to boil, and the scene names no heat.vapour");
 }
 
 template <int D>
 void Heat<D>::show(const Fluid<D>& fluid, FieldSet& set) const {
-    temperature_.resize(fluid.enthalpy.size());
-    liquid_.resize(fluid.enthalpy.size());
+    place(fluid);
+    for (auto* numbers : {&temperature_, &liquid_}) numbers->resize(fluid.enthalpy.size());
+    if (vapour_) evaporated_.resize(fluid.enthalpy.size());
     parallel_for(0, fluid.count(), [&](int i) {
         const auto at = static_cast<std::size_t>(i);
-        temperature_[at] = heat_temperature(fluid.enthalpy[at], 0, &states_);
-        liquid_[at] = heat_melted(fluid.enthalpy[at], &states_) - heat_vapour(fluid.enthalpy[at], 0, &states_);
+        const real h = fluid.enthalpy[at], vapour = heat_vapour(h, shift(i), &states_);
+        temperature_[at] = heat_temperature(h, shift(i), &states_);
+        liquid_[at] = heat_melted(h, &states_) - vapour;
+        if (vapour_) evaporated_[at] = vapour;
     });
     const auto number = [&](const char* name, const char* unit, const std::vector<real>& values) {
         set.fields.push_back({name, unit, Where::particle, "particles", {std::span<const real>(values)}});
@@ -137,17 +144,24 @@ void Heat<D>::show(const Fluid<D>& fluid, FieldSet& set) const {
     number("temperature", "K", temperature_);
     number("enthalpy", "J/kg", fluid.enthalpy);
     number("liquid", "", liquid_);
+    if (vapour_) number("vapour", "", evaporated_);
 }
 
 template <int D>
 void Heat<D>::sum_up(const Fluid<D>& fluid, std::vector<Integral>& list) const {
     const char* joule = D == 2 ? "J/m" : "J";
     const auto h = [&](int i) { return fluid.enthalpy[static_cast<std::size_t>(i)]; };
-    list.push_back({"heat", joule, fluid.mass * block_sum(fluid.count(), h)});
+    const auto vapour = [&](int i) { return heat_vapour(h(i), shift(i), &states_); };
+    const real heat = fluid.mass * block_sum(fluid.count(), h);
+    list.push_back({"heat", joule, heat});
     list.push_back({"heat_added", joule, added_});
-    list.push_back({"liquid_volume", D == 2 ? "m^2" : "m^3", fluid.mass / rho0_ * block_sum(fluid.count(), [&](int i) {
-                                                                 return heat_melted(h(i), &states_) - heat_vapour(h(i), 0, &states_);
-                                                             })});
+    list.push_back({"heat_kept", joule, heat - added_});
+    const auto T = [&](int i) { return heat_temperature(h(i), shift(i), &states_); };
+    list.push_back({"warmest", "K", block_max(fluid.count(), T)});
+    list.push_back({"coldest", "K", -block_max(fluid.count(), [&](int i) { return -T(i); })});
+    list.push_back({"liquid_volume", D == 2 ? "m^2" : "m^3",
+                    fluid.mass / rho0_ * block_sum(fluid.count(), [&](int i) { return heat_melted(h(i), &states_) - vapour(i); })});
+    if (vapour_) list.push_back({"vapour_mass", D == 2 ? "kg/m" : "kg", fluid.mass * block_sum(fluid.count(), vapour)});
     list.push_back({"conduction_parts", "1", static_cast<real>(parts_)});
 }
 

@@ -8,20 +8,15 @@
 #include "particles/fluid.hpp"
 #include "particles/passes.hpp"
 #include "particles/scheme.hpp"
+#include "particles/vapour.hpp"
 #include "thermo/heat_curve.hpp"
 #include "thermo/substance.hpp"
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace weir::particles {
-
-#define WEIR_FN inline
-#define WEIR_PARAM const
-#include "particles/kernels/heat_params.h"
-#include "particles/kernels/heat_state.inl"
-#undef WEIR_FN
-#undef WEIR_PARAM
 
 /// What the sum over a lattice's pairs is for the gradient kernel of a scheme.
 struct LatticeSums {
@@ -79,7 +74,17 @@ public:
     int frozen() const { return frozen_; }
     std::string concern() const;
 
-    real theta(real h) const { return heat_theta(h, 0, &states_); }
+    /// What the scene lets boil; nullptr: nothing.
+    Vapour<D>* vapour() const { return vapour_.get(); }
+    /// How deep the particles are and what density they are to have; false: none boils.
+    bool place(const Fluid<D>& fluid) const { return vapour_ && vapour_->find(fluid, states_); }
+    /// By how much more enthalpy particle i boils than at no depth, as place() found it.
+    real shift(int i) const { return vapour_ ? vapour_->shift(i) : 0; }
+    /// Of particle i with this enthalpy.
+    real theta(int i, real h) const {
+        if (!vapour_ || h <= states_.liquid_end) return heat_theta(h, 0, &states_);  // the same below boiling, at any depth
+        return heat_theta_at(heat_temperature(h, vapour_->shift(i), &states_), &states_);
+    }
 
     /// A heater at work in (time, time + dt]: what it gives in that [J].
     struct Heater {
@@ -109,13 +114,17 @@ public:
     void check(real most) const;
 
     void show(const Fluid<D>& fluid, FieldSet& set) const;
+    /// Of particles that place() has seen.
     void sum_up(const Fluid<D>& fluid, std::vector<Integral>& list) const;
     void save(Checkpoint& to) const { to.put_value("particles.heat_added", added_); }
     void restore(const Checkpoint& from) { added_ = from.get_value<real>("particles.heat_added"); }
-    std::size_t bytes() const { return (temperature_.capacity() + liquid_.capacity()) * sizeof(real); }
+    std::size_t bytes() const {
+        return (temperature_.capacity() + liquid_.capacity() + evaporated_.capacity()) * sizeof(real) + (vapour_ ? vapour_->bytes() : 0);
+    }
 
 private:
-    void refuse_boiling(const scene::Scene& scene, const std::string& path, real T) const;
+    void refuse_boiling(const scene::Scene& scene, const std::string& path, real T, const std::string& why) const;
+    real theta_of_wall(real T) const;
     void set_pairs(const Scheme& scheme);
     void set_ice(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance);
     void read_sides(const scene::Scene& scene, const Domain<D>& domain);
@@ -136,8 +145,9 @@ private:
     int frozen_ = 0;  // particles
     std::vector<Heater> heaters_;
     std::vector<Flux> fluxes_;
-    real added_ = 0;                                  // [J]; in 2D a metre
-    mutable std::vector<real> temperature_, liquid_;  // of show()
+    std::unique_ptr<Vapour<D>> vapour_;
+    real added_ = 0;                                               // [J]; in 2D a metre
+    mutable std::vector<real> temperature_, liquid_, evaporated_;  // of show()
 };
 
 }  // namespace weir::particles

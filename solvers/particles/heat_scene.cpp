@@ -98,7 +98,7 @@ std::vector<Key> heat_keys() {
         {.name = "heat",
          .type = Type::table,
          .doc = "How a substance takes up heat. Only where `substance` is named.",
-         .keys = {matter::pressure_key(), frozen_key()}},
+         .keys = {matter::pressure_key(), frozen_key(), vapour_key()}},
         matter::heaters_key(
             "Regions that give off heat, evenly over the particles inside; while there is none, nothing. Only where `substance` is named."),
         sides};
@@ -129,7 +129,10 @@ real emitted_enthalpy(const scene::Scene& scene, std::size_t i) {
     const real T = table.number("temperature");
     matter::check_temperature(scene, path + ".temperature", T);
     const auto curve = liquid_curve(scene, *matter::substance_of(scene));
-    return curve.enthalpy(T);
+    const real h = curve.enthalpy(T);
+    if (h > heat_states(curve, {}).liquid_end)
+        scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils", "an emitter lets in a liquid");
+    return h;
 }
 
 template <int D>
@@ -147,6 +150,11 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
     states_ = heat_states(curve_, k);
     check_density(scene, *substance, states_);
     set_ice(scene, domain, *substance);
+    if (vapour_is_named(scene)) {
+        vapour_ = std::make_unique<Vapour<D>>(scene, domain, *substance, states_);
+        const real highest = vapour_->params().shift[WEIR_SHIFT_PIECES];
+        states_.T_vapour = heat_temperature(states_.liquid_end + highest, highest, &states_);
+    }
     Scheme scheme;
     scheme.read(scene);
     set_pairs(scheme);
@@ -162,6 +170,8 @@ void Heat<D>::set_ice(const scene::Scene& scene, const Domain<D>& domain, const 
     if (!substance.has(thermo::Boundary::melting))
         scene.refuse("heat.frozen", std::string(substance.name()) + " never freezes",
                      "substance.fusion and a triple point make one that does");
+    if (vapour_is_named(scene))
+        scene.refuse("heat.frozen", "ice that moves and vapour are not simulated together", "heat.frozen = \"held\", or no heat.vapour");
     if (!scene.root().tables("bodies").empty())
         scene.refuse("heat.frozen", "pieces of ice do not meet bodies that move, and this scene has both", "heat.frozen = \"held\"");
     for (int a = 0; a < D; ++a)
@@ -191,9 +201,14 @@ std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene& scene) {
 }
 
 template <int D>
-void Heat<D>::refuse_boiling(const scene::Scene& scene, const std::string& path, real T) const {
-    if (curve_.enthalpy(T) > states_.liquid_end)
-        scene.refuse(path, "at " + scene::number_text(T) + " K the liquid boils", "solver \"" + scene.solver() + "\" has no vapour");
+void Heat<D>::refuse_boiling(const scene::Scene& scene, const std::string& path, real T, const std::string& why) const {
+    if (curve_.enthalpy(T) > states_.liquid_end) scene.refuse(path, "at " + scene::number_text(T) + " K the liquid boils", why);
+}
+
+/// Beyond it the particles' own function of the temperature goes on.
+template <int D>
+real Heat<D>::theta_of_wall(real T) const {
+    return vapour_ ? heat_theta_at(T, &states_) : heat_theta(curve_.enthalpy(T), 0, &states_);
 }
 
 template <int D>
@@ -217,11 +232,11 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
                 using Number = std::remove_reference_t<decltype(w.closest)>;
                 (end ? w.hi : w.lo)[a] = static_cast<Number>((end ? domain.hi : domain.lo)[a] - domain.centre()[a]);
                 (end ? w.hi_held : w.lo_held)[a] = T.has_value();
-                if (T) (end ? w.hi_theta : w.lo_theta)[a] = static_cast<Number>(theta(curve_.enthalpy(*T)));
+                if (T) (end ? w.hi_theta : w.lo_theta)[a] = static_cast<Number>(theta_of_wall(*T));
             };
             if (T) {
                 matter::check_temperature(scene, path + ".temperature", *T);
-                refuse_boiling(scene, path + ".temperature", *T);
+                if (!vapour_) refuse_boiling(scene, path + ".temperature", *T, "the scene names no heat.vapour");
                 held_ = true;
                 freezing_[static_cast<std::size_t>(2 * a + end)] = *T < states_.T;
             }
@@ -274,16 +289,17 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
     if (!(coldest > 0))
         scene.refuse("initial.temperature", "somewhere it is " + scene::number_text(coldest) + " K at the start",
                      "temperatures are above 0 K");
-    refuse_boiling(scene, "initial.temperature", hottest);
+    refuse_boiling(scene, "initial.temperature", hottest, "particles start as a liquid");
 }
 
-#define WEIR_INSTANTIATE(D)                                                                          \
-    template Heat<D>::Heat(const scene::Scene&, const Domain<D>&);                                   \
-    template void Heat<D>::set_ice(const scene::Scene&, const Domain<D>&, const thermo::Substance&); \
-    template std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene&);                \
-    template void Heat<D>::refuse_boiling(const scene::Scene&, const std::string&, real) const;      \
-    template void Heat<D>::read_sides(const scene::Scene&, const Domain<D>&);                        \
-    template void Heat<D>::read_heaters(const scene::Scene&, const Domain<D>&);                      \
+#define WEIR_INSTANTIATE(D)                                                                                         \
+    template Heat<D>::Heat(const scene::Scene&, const Domain<D>&);                                                  \
+    template void Heat<D>::set_ice(const scene::Scene&, const Domain<D>&, const thermo::Substance&);                \
+    template std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene&);                               \
+    template void Heat<D>::refuse_boiling(const scene::Scene&, const std::string&, real, const std::string&) const; \
+    template real Heat<D>::theta_of_wall(real) const;                                                               \
+    template void Heat<D>::read_sides(const scene::Scene&, const Domain<D>&);                                       \
+    template void Heat<D>::read_heaters(const scene::Scene&, const Domain<D>&);                                     \
     template void Heat<D>::start(const scene::Scene&, Fluid<D>&) const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -60,9 +60,9 @@ struct PbfPass {
     const float* from = nullptr;  // x, y, z, lambda
     float* to = nullptr;
     const float* solid = nullptr;  // of each particle: part of the kernel inside solids, and its gradient
+    const float* rest = nullptr;   // density that each is to have, over rho0; null: 1
     float* density = nullptr;      // rho / rho0
     float* multiplier = nullptr;   // sum of lambda over the iterations; null: not kept
-    const float* rest = nullptr;   // rest density of each over rho0; null: 1 of all
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
     ClampTally* clamps = nullptr;  // of the corrections
@@ -93,7 +93,8 @@ struct SphPass {
     float* acceleration = nullptr;  // float4
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
-    bool wall_forces = false;  // gravity behind walls, or walls that are stuck to
+    bool wall_forces = false;     // gravity behind walls, or walls that are stuck to
+    const float* rest = nullptr;  // density of what stands behind walls, over p->wall_rho; null: 1
 };
 
 /// What SPH's force pass computes beside the gradient of pressure, and which form that has.

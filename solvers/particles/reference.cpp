@@ -92,6 +92,8 @@ std::array<double, 4> walls_at(const ReferencePairs& r, const Point& x, std::siz
     return {out[0], out[1], out[2], out[3]};
 }
 
+double rest_of(const ReferencePairs& r, std::size_t i) { return r.rest.empty() ? 1 : r.rest[i]; }
+
 Point difference(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 /// To the nearest image.
 Point apart(const Point& a, const Point& b, const Point& period) {
@@ -128,7 +130,7 @@ void ReferenceSph::find_neighbours(const std::vector<Point>& x) { neighbours = c
 std::vector<double> ReferencePbf::densities(const std::vector<Point>& x) const {
     std::vector<double> rho(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        rho[i] = p.self + walls_at(*this, x[i], i)[3];
+        rho[i] = p.self + rest_of(*this, i) * walls_at(*this, x[i], i)[3];
         each_neighbour(*this, x, i, [&](std::size_t, const Point&, double r2) { rho[i] += functions[kernel].density(r2, &p); });
     }
     return rho;
@@ -138,16 +140,17 @@ std::vector<double> ReferencePbf::lambdas(const std::vector<Point>& x, std::vect
     std::vector<double> lambda(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
-        double rho = p.self + wall[3], neighbours2 = 0;
-        Point own{wall[0], wall[1], wall[2]};
+        const double own_rest = rest_of(*this, i);
+        double rho = p.self + own_rest * wall[3], neighbours2 = 0;
+        Point own{own_rest * wall[0], own_rest * wall[1], own_rest * wall[2]};
         each_neighbour(*this, x, i, [&](std::size_t, const Point& d, double r2) {
             const double slope = functions[kernel].slope(r2, &p);
             rho += functions[kernel].density(r2, &p);
             neighbours2 += slope * slope * r2;
             for (std::size_t a = 0; a < 3; ++a) own[a] += slope * d[a];
         });
-        const double before = multiplier ? (*multiplier)[i] : 0, at_rest = rest.empty() ? 1 : rest[i];
-        const double sum = muller::pbf_multiplier(before, rho, at_rest, neighbours2, square(own), &p);
+        const double before = multiplier ? (*multiplier)[i] : 0,
+                     sum = muller::pbf_multiplier(before, rho + (1 - own_rest), neighbours2, square(own), &p);
         if (multiplier) (*multiplier)[i] = sum;
         lambda[i] = sum - before;
     }
@@ -158,7 +161,8 @@ std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const st
     std::vector<Point> to = x;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
-        Point move{lambda[i] * wall[0], lambda[i] * wall[1], lambda[i] * wall[2]};
+        const double push = lambda[i] * rest_of(*this, i);
+        Point move{push * wall[0], push * wall[1], push * wall[2]};
         each_neighbour(*this, x, i, [&](std::size_t j, const Point& d, double r2) {
             const double factor = functions[kernel].correction(r2, lambda[i] + lambda[j], &p);
             for (std::size_t a = 0; a < 3; ++a) move[a] += factor * d[a];
@@ -177,7 +181,7 @@ std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const st
 std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
     std::vector<double> rho(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        rho[i] = p.self + p.wall_rho * walls_at(*this, x[i], i)[3];
+        rho[i] = p.self + p.wall_rho * rest_of(*this, i) * walls_at(*this, x[i], i)[3];
         for (const std::size_t j : neighbours[i])
             rho[i] = functions[kernel].sph_add_density(rho[i], apart2(apart(x[i], x[j], period), p), &p);
     }
@@ -187,13 +191,12 @@ std::vector<double> ReferenceSph::densities(const std::vector<Point>& x) const {
 std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
                                         double rho0) const {
     std::vector<double> rate(x.size());
-    const auto of = [&](std::size_t i) { return rest.empty() ? rho0 : rho0 * rest[i]; };
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
         double relative = 2 * (wall[0] * v[i][0] + wall[1] * v[i][1] + wall[2] * v[i][2]), spread = 0;
         for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
-            double excess = (rho[j] - of(j)) - (rho[i] - of(i));
+            double excess = (rho[j] - rho0 * rest_of(*this, j)) - (rho[i] - rho0 * rest_of(*this, i));
             for (std::size_t b = 0; b < 3; ++b) excess += p.layers[b] * d[b];
             relative += functions[kernel].sph_rate(apart2(d, p), d[0] * u[0] + d[1] * u[1] + d[2] * u[2], 1 / rho[j], &p);
             spread += functions[kernel].sph_diffusion(apart2(d, p), excess, 1 / rho[j], &p);

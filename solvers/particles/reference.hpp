@@ -21,7 +21,7 @@ struct ReferencePairs {
     Point period{0, 0, 0};     // of axes that repeat, at least two supports; 0: the axis does not
     std::vector<Point> solid;  // gradient of the part inside solids at each particle; empty: no solids
     std::vector<double> solid_part;
-    std::vector<double> rest;  // density of each particle over the liquid's; empty: 1 of all
+    std::vector<double> rest;  // density that each is to have, over rho0; empty: 1
     Neighbours neighbours;
 
     /// Rates of specific enthalpy by conduction, and the part of each that comes from walls held at a temperature.

@@ -30,10 +30,11 @@ void ReferenceSolver<D, Physics>::end_step() {
 }
 
 template <int D, class Physics>
-void ReferenceSolver<D, Physics>::set_rest() {
-    if (!this->ice_) return;
+void ReferenceSolver<D, Physics>::expand() {
+    if (!this->vapour() && !this->ice_) return;
+    if (this->vapour()) this->heat_->place(fluid_);
     reference_.rest.clear();
-    for (int i = 0; i < fluid_.count(); ++i) reference_.rest.push_back(this->rest_of(fluid_, i));
+    for (int i = 0; i < fluid_.count(); ++i) reference_.rest.push_back(this->ice_ ? this->ice_rest(i) : this->vapour()->rest(i));
 }
 
 template <int D, class Physics>
@@ -46,7 +47,7 @@ void ReferenceSolver<D, Physics>::conduct_at(const std::vector<Point>& x, real d
     const real part = dt / parts;
     std::vector<double> theta(x.size());
     for (int p = 0; p < parts; ++p) {
-        for (std::size_t i = 0; i < x.size(); ++i) theta[i] = heat.theta(fluid_.enthalpy[i]);
+        for (std::size_t i = 0; i < x.size(); ++i) theta[i] = heat.theta(static_cast<int>(i), fluid_.enthalpy[i]);
         const auto warming = reference_.warming(x, theta, heat.plain_pairs(), heat.plain_walls());
         for (std::size_t i = 0; i < x.size(); ++i) {
             fluid_.enthalpy[i] += part * warming.rate[i];

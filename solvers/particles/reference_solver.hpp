@@ -30,8 +30,8 @@ protected:
     /// That the method's own arrays take.
     virtual std::size_t own_bytes() const = 0;
     void end_step();
-    /// Where particles freeze to something of another density.
-    void set_rest();
+    /// As on threads.
+    void expand();
     /// Between particles that are at x, whose neighbours are known.
     void conduct_at(const std::vector<Point>& x, real dt);
 

@@ -1,5 +1,6 @@
 #include "particles/solver.hpp"
 
+#include "core/error.hpp"
 #include "geometry/hand.hpp"
 
 #include <algorithm>
@@ -7,9 +8,12 @@
 namespace weir::particles {
 
 template <int D>
-Compression compression_of(const Fluid<D>& fluid, real rest_density) {
+Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour) {
     const int n = fluid.count();
-    const auto excess = [&](int i) { return std::max<real>(0, fluid.density[static_cast<std::size_t>(i)] / rest_density - 1); };
+    const auto excess = [&](int i) {
+        const real rest = vapour ? rest_density * vapour->rest(i) : rest_density;
+        return std::max<real>(0, fluid.density[static_cast<std::size_t>(i)] / rest - 1);
+    };
     const auto [sum, worst] = block_sum_and_max(n, excess);
     return {n ? sum / n : 0, worst};
 }
@@ -32,6 +36,7 @@ std::vector<Integral> ParticleSolver<D>::integrals() const {
     list.push_back({"mean_neighbours", "1", neighbours.mean});
     list.push_back({"max_neighbours", "1", neighbours.most});
     if (const Hand* hand = this->hand()) geometry::sum_up(*hand, D, list);
+    if (heat_) heat_->place(state());
     sum_up(list);
     if (heat_) heat_->sum_up(state(), list);
     if (bodies_) {
@@ -96,8 +101,56 @@ void HostSolver<D>::hold_again() {
     });
 }
 
-template Compression compression_of(const Fluid<2>&, real);
-template Compression compression_of(const Fluid<3>&, real);
+/// Neighbours and densities are found anew in every step: there is nothing else that would have to follow.
+template <int D>
+std::vector<EditableField> HostSolver<D>::editable() {
+    EditableField position{particle_set_name, "position", {}}, velocity{particle_set_name, "velocity", {}};
+    for (std::size_t a = 0; a < D; ++a) position.data.emplace_back(fluid_.x[a]), velocity.data.emplace_back(fluid_.v[a]);
+    for (int a = 0; a < D; ++a)
+        position.min[static_cast<std::size_t>(a)] = fluid_.domain.lo[a], position.max[static_cast<std::size_t>(a)] = fluid_.domain.hi[a];
+    return {std::move(position), std::move(velocity)};
+}
+
+/// What a particle carried from its last place is forgotten.
+template <int D>
+void HostSolver<D>::edited(const EditableField& field) {
+    if (field.name == "position") {
+        refuse_outside(0);
+        std::fill(fluid_.carried.begin(), fluid_.carried.end(), 0.0);
+    }
+    speed_ = speed();
+}
+
+template <int D>
+bool HostSolver<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) {
+    if (set != particle_set_name || fluid_.warm) return false;
+    const int before = fluid_.count();
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        Vec<D> x, u;
+        for (int a = 0; a < D; ++a) x[a] = at[i][a], u[a] = velocity[i][a];
+        fluid_.add(x, u);
+    }
+    refuse_outside(before);
+    speed_ = speed();
+    return true;
+}
+
+template <int D>
+bool HostSolver<D>::remove_particles(std::string_view set, std::span<const unsigned char> gone) {
+    if (set != particle_set_name) return false;
+    fluid_.remove_if([&](int i) { return gone[static_cast<std::size_t>(i)] != 0; });
+    return true;
+}
+
+template <int D>
+void HostSolver<D>::refuse_outside(int first) const {
+    for (int i = first; i < fluid_.count(); ++i)
+        if (fluid_.domain.outside(fluid_.position(i)))
+            throw BadInput("particle " + std::to_string(i - first) + " would stand beyond a wall or inside a solid");
+}
+
+template Compression compression_of(const Fluid<2>&, real, const Vapour<2>*);
+template Compression compression_of(const Fluid<3>&, real, const Vapour<3>*);
 template class ParticleSolver<2>;
 template class ParticleSolver<3>;
 template class HostSolver<2>;

@@ -16,9 +16,9 @@ namespace weir::particles {
 struct Compression {
     real mean = 0, worst = 0;
 };
-/// Of the densities of the last step.
+/// Of the densities of the last step; vapour: what else particles are to have than the rest density.
 template <int D>
-Compression compression_of(const Fluid<D>& fluid, real rest_density);
+Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour = nullptr);
 
 template <int D>
 class ParticleSolver : public Solver {
@@ -31,6 +31,8 @@ public:
     void restore(const Checkpoint& from) final;
     const Passes& passes() const final { return passes_; }
     Passes& passes() final { return passes_; }
+    /// Bodies in the liquid; nullptr where the scene names none.
+    const BodiesInLiquid<D>* carried() const { return bodies_.get(); }
 
 protected:
     // A backend's part.
@@ -58,12 +60,10 @@ protected:
     /// Conduction over dt [s], heaters and walls: where the scene names a substance, else nothing.
     virtual void conduct(real dt) = 0;
 
-    Passes passes_;
-    /// Its rest density over the liquid's; 1 where nothing freezes to another one.
-    real rest_of(const Fluid<D>& fluid, int i) const {
-        return heat_ && heat_->free() ? heat_->rest(fluid.enthalpy[static_cast<std::size_t>(i)]) : 1;
-    }
+    /// nullptr: nothing boils.
+    Vapour<D>* vapour() const { return heat_ ? heat_->vapour() : nullptr; }
 
+    Passes passes_;
     std::shared_ptr<Heat<D>> heat_;              // where the scene names a substance
     std::unique_ptr<Ice<D>> ice_;                // where what is frozen moves
     std::shared_ptr<BodiesInLiquid<D>> bodies_;  // where it names bodies
@@ -81,6 +81,10 @@ public:
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
     Hand* hand() const final { return hand_.get(); }
+    std::vector<EditableField> editable() final;
+    void edited(const EditableField& field) final;
+    bool add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) final;
+    bool remove_particles(std::string_view set, std::span<const unsigned char> gone) final;
 
 protected:
     explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) { this->bodies_ = BodiesInLiquid<D>::make(fluid_); }
@@ -105,6 +109,9 @@ protected:
     }
     /// Whether pieces of ice move in this step.
     bool ice_moves() const { return this->ice_ && this->heat_->frozen() > 0; }
+    /// The rest density of particle i over the liquid's where what is frozen moves; else 1.
+    real ice_rest(int i) const { return this->ice_ ? this->heat_->rest(fluid_.enthalpy[static_cast<std::size_t>(i)]) : 1; }
+    void refuse_outside(int first) const;
 
     Fluid<D> fluid_;
     Emitters<D> emitters_;

@@ -26,6 +26,19 @@ void ThreadedSolver<D>::end_step() {
 }
 
 template <int D>
+void ThreadedSolver<D>::expand() {
+    if (this->ice_) {
+        pairs_.fit(rest_, 1);
+        pairs_.each([&](int k) { rest_[static_cast<std::size_t>(k)] = static_cast<float>(this->ice_rest(pairs_.owner(k))); });
+    }
+    if (!this->heat_ || !this->heat_->vapour()) return;
+    const auto timed = this->passes_.time("vapour");
+    if (!this->heat_->place(fluid_)) return;
+    pairs_.fit(rest_, 1);
+    pairs_.each([&](int k) { rest_[static_cast<std::size_t>(k)] = static_cast<float>(this->heat_->vapour()->rest(pairs_.owner(k))); });
+}
+
+template <int D>
 void ThreadedSolver<D>::conduct(real dt) {
     if (!this->heat_) return;
     const auto timed = this->passes_.time("heat");
@@ -42,8 +55,10 @@ void ThreadedSolver<D>::conduct(real dt) {
     const real part = dt / parts;
     for (int p = 0; p < parts; ++p) {
         float* x = pairs_.a();
-        pairs_.each(
-            [&](int k) { x[4 * k + 3] = static_cast<float>(heat.theta(fluid_.enthalpy[static_cast<std::size_t>(pairs_.owner(k))])); });
+        pairs_.each([&](int k) {
+            const int i = pairs_.owner(k);
+            x[4 * k + 3] = static_cast<float>(heat.theta(i, fluid_.enthalpy[static_cast<std::size_t>(i)]));
+        });
         pairs_.list().each_chunk([&](const ListChunk& chunk) { pass(job, chunk); });
         pairs_.each([&](int k) {
             if (!pairs_.is_image(k))
@@ -59,8 +74,8 @@ void ThreadedSolver<D>::conduct(real dt) {
 template <int D>
 std::size_t ThreadedSolver<D>::bytes() const {
     return fluid_.bytes() + pairs_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes() +
-           (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + (this->heat_ ? this->heat_->bytes() : 0) +
-           (this->ice_ ? this->ice_->bytes() : 0) + (this->bodies_ ? this->bodies_->bytes() : 0);
+           (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + rest_.capacity() * sizeof(float) +
+           (this->heat_ ? this->heat_->bytes() : 0) + (this->bodies_ ? this->bodies_->bytes() : 0) + (this->ice_ ? this->ice_->bytes() : 0);
 }
 
 template class ThreadedSolver<2>;

@@ -34,7 +34,10 @@ protected:
     void end_step();
     /// Where the passes of the step were: their positions are the pairs'.
     void conduct(real dt) final;
-
+    /// After the pairs are found: what density particles are to have, where the scene lets them boil.
+    void expand();
+    /// Of sorted particles, over the liquid's; null: nothing boils, and no ice moves.
+    const float* rest() const { return this->ice_ || (this->vapour() && this->vapour()->boils()) ? rest_.data() : nullptr; }
     using HostSolver<D>::fluid_;
     single::PbfParams kernels_{};  // the method's, as PBF, XSPH and vorticity read them
     single::WallParams walls_;
@@ -46,6 +49,7 @@ protected:
 
 private:
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
+    std::vector<float> rest_;
 };
 
 }  // namespace weir::particles

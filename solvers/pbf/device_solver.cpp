@@ -45,6 +45,7 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     fluid_.let_in(dt);
     fluid_.predict(dt);                     //  1-4
     fluid_.find_neighbours(fluid_.x_star);  //  5-7
+    fluid_.expand();
     warm_start(dt);
     int iterations = 0;  //  8
     for (; iterations < this->most_iterations(); ++iterations) {
@@ -69,6 +70,7 @@ template <int D>
 void DevicePbfSolver<D>::stay() {
     fluid_.predict(0);
     fluid_.find_neighbours(fluid_.x_star);
+    fluid_.expand();
 }
 
 template <int D>
@@ -91,20 +93,16 @@ void DevicePbfSolver<D>::warm_start(real dt) {
 template <int D>
 void DevicePbfSolver<D>::find_lambdas() {
     const auto& f = fluid_;
-    if (f.moving_ice())
-        fluid_.run("lambda", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.a, f.neighbours, f.list, f.b, density_,
-                              multiplier_, f.order, f.enthalpy, f.heat_states});
-    else
-        fluid_.run("lambda",
-                   {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.a, f.neighbours, f.list, f.b, density_, multiplier_});
+    fluid_.run("lambda", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.rests, f.a, f.neighbours, f.list, f.b, density_,
+                          multiplier_});
 }
 
 /// x* += Δp, eq. 12 and 14, the walls of the domain, and its solids.
 template <int D>
 void DevicePbfSolver<D>::correct() {
     const auto& f = fluid_;
-    fluid_.run("correct",
-               {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.clamps, f.b, f.neighbours, f.list, f.a});
+    fluid_.run("correct", {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.rests, f.clamps, f.b,
+                           f.neighbours, f.list, f.a});
     fluid_.leave_solids();
 }
 
@@ -112,7 +110,7 @@ void DevicePbfSolver<D>::correct() {
 template <int D>
 void DevicePbfSolver<D>::update(real dt, real slow) {
     const auto& f = fluid_;
-    fluid_.run("densities", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.a, f.neighbours, f.list, density_});
+    fluid_.run("densities", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.rests, f.a, f.neighbours, f.list, density_});
     fluid_.run("update", {f.count(), f.stride(), f.state_params, f.poses, dt, slow, f.rest_density(), f.order, f.a, f.x_star, density_,
                           multiplier_, f.x, f.v, f.density, f.carried});
     if (dt > 0) fluid_.arrive(slow);
@@ -120,12 +118,13 @@ void DevicePbfSolver<D>::update(real dt, real slow) {
 
 template <int D>
 typename DevicePbfSolver<D>::Reduced DevicePbfSolver<D>::find_compression() {
-    return fluid_.reduce("pbf_compressions", {fluid_.count(), density_, fluid_.parts()});
+    return fluid_.reduce("pbf_compressions", {fluid_.count(), fluid_.rests, density_, fluid_.parts()});
 }
 
 template <int D>
 Compression DevicePbfSolver<D>::compression() const {
-    return particles::compression_of(fluid_.host(), fluid_.rest_density());
+    if (this->heat_) this->heat_->place(fluid_.host());
+    return particles::compression_of(fluid_.host(), fluid_.rest_density(), this->vapour());
 }
 
 template class DevicePbfSolver<2>;

@@ -3,6 +3,8 @@
 #include "particles/fastest_flow.hpp"
 #include "particles/flow.hpp"
 #include "particles/passes.hpp"
+#include "particles/vapour.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 
@@ -21,6 +23,42 @@ Options::Options(const scene::Scene& scene) {
         pressure_k = p->number("k");
         pressure_dq = p->number("dq");
     }
+    if (particles::vapour_is_named(scene)) check_vapour(scene);
+}
+
+/// How far apart, in spacings, particles of a lattice may be that is seen at its own density, but for a tenth: farther apart, one particle
+/// by itself is denser than all are to be, and no place satisfies its constraint.
+template <int D>
+real farthest_lattice(const particles::Scheme& scheme) {
+    const particles::Kernel<D> w = particles::density_kernel<D>(scheme, 1);
+    const auto seen = [&](real spacing) {
+        const int reach = static_cast<int>(scheme.support / spacing), last = D == 3 ? reach : 0;
+        real sum = 0;
+        for (int z = -last; z <= last; ++z)
+            for (int y = -reach; y <= reach; ++y)
+                for (int x = -reach; x <= reach; ++x) {
+                    const real r = spacing * std::sqrt(static_cast<real>(x * x + y * y + z * z));
+                    if (r < scheme.support) sum += w.value(r);
+                }
+        return sum * std::pow(spacing, D);
+    };
+    constexpr real piece = 0.01, tenth = 1.1;
+    real spacing = 1;
+    while (seen(spacing + piece) <= tenth) spacing += piece;
+    return spacing;
+}
+
+void Options::check_vapour(const scene::Scene& scene) const {
+    const real apart = scene.dim() == 2 ? farthest_lattice<2>(*this) : farthest_lattice<3>(*this);
+    const real least = scene.number("fluid.density") / std::pow(apart, scene.dim());
+    const bool own = scene.text("heat.vapour.name") == "own";
+    if (own && scene.number("heat.vapour.density") >= least) return;
+    scene.refuse(
+        own ? "heat.vapour.density" : "heat.vapour",
+        own ? "particles of a vapour of " + scene::number_text(scene.number("heat.vapour.density")) + " kg/m^3 hardly reach each other"
+            : "PBF's particles must reach each other in the vapour too: it needs a density that the scene says",
+        "heat.vapour.density from " + scene::number_text(std::ceil(least)) +
+            " kg/m^3 on, with scheme.support = " + scene::number_text(support));
 }
 
 template <int D>

@@ -19,6 +19,9 @@ struct Options : particles::Scheme {
 
     Options() : Scheme{particles::Smoothing::cubic, 2} {}
     explicit Options(const scene::Scene& scene);
+
+private:
+    void check_vapour(const scene::Scene& scene) const;
 };
 
 /// As far as the fastest flow of the scene goes in `cfl` spacings, and a whole number of steps from frame to frame: what a step leaves of

@@ -33,6 +33,7 @@ ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start
     : Base(options, std::move(start)) {
     reference_.p = pbf_params<particles::plain::PbfParams, D>(options_, fluid_.domain.spacing);
     reference_.least_back = particles::least_clamp * fluid_.domain.spacing;
+    give_ = give_at_walls<D>(options_, fluid_.domain.spacing);
     if (scene) this->take(*scene, pbf::effects());
     this->settle();
 }
@@ -41,22 +42,25 @@ ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start
 template <int D>
 StepReport ReferencePbfSolver<D>::step(real dt) {
     emitters_.apply(fluid_, dt);
+    if (bodies_) start_bodies(dt);
     predict(dt);  // 1-7
     warm_start(dt);
     int iterations = 0;  //  8
     for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && compression().mean <= options_.tolerance) break;
+        if (bodies_) carry_bodies();
         correct();  // 12-19
     }
     const real slow = std::max(dt, last_dt_);
     if (options_.warm_start > 0)
         for (std::size_t i = 0; i < multiplier_.size(); ++i) fluid_.carried[i] = multiplier_[i] / (slow * slow);
     update(dt, slow);  // 20-21, 23-24
+    if (bodies_) bodies_->end(fluid_.domain, dt, slow), carried_dt_ = 0;
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
-    const real speed = speed_ = fluid_.max_speed();
+    const real speed = speed_ = this->speed();
     const Compression c = compression();
     this->end_step();
     return this->report(dt, speed, iterations, c);
@@ -85,11 +89,12 @@ void ReferencePbfSolver<D>::predict(real dt) {
             this->ice_->fly(dt);
             this->ice_->each_place([&](int i, const Vec<D>& place) { predicted_[static_cast<std::size_t>(i)] = place; });
         }
+        if (carried_dt_ > 0) push_bodies_ahead();
         for (const Vec<D>& x : predicted_) x_star_.push_back(particles::point_of(x - fluid_.domain.centre()));
-        this->set_rest();
     }
     const auto timed = passes_.time("neighbours");
     reference_.find_neighbours(x_star_);
+    this->expand();
 }
 
 /// Starts from the multipliers of the step before: see PbfSolver.
@@ -101,6 +106,7 @@ void ReferencePbfSolver<D>::warm_start(real dt) {
     for (const real before : fluid_.carried) multiplier_.push_back(options_.warm_start * dt * dt * before);
     add_solids(reference_, fluid_.domain, x_star_);
     lambda_ = multiplier_;
+    if (carried_dt_ > 0) carry_bodies();
     correct();
 }
 
@@ -119,7 +125,9 @@ void ReferencePbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
     x_star_ = reference_.corrected(x_star_, lambda_, &fluid_.clamps);
     const Vec<D> centre = fluid_.domain.centre();
-    if (!fluid_.domain.solids.empty())
+    if (carried_dt_ > 0)
+        push_bodies();
+    else if (!fluid_.domain.solids.empty())
         for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x), fluid_.clamps) - centre);
     for (std::size_t i = 0; i < x_star_.size(); ++i)
         if (this->held(static_cast<int>(i))) x_star_[i] = particles::point_of(predicted_[i] - centre);
@@ -127,6 +135,70 @@ void ReferencePbfSolver<D>::correct() {
     this->ice_->follow(
         [&](int i, const Vec<D>& from) { return centre + particles::vec_of<D>(x_star_[static_cast<std::size_t>(i)]) - from; });
     this->ice_->each_place([&](int i, const Vec<D>& to) { x_star_[static_cast<std::size_t>(i)] = particles::point_of(to - centre); });
+}
+
+/// Bodies fall by their weight, and go where their velocities take them.
+template <int D>
+void ReferencePbfSolver<D>::start_bodies(real dt) {
+    carried_dt_ = dt;
+    bodies_->begin(fluid_.domain, dt);
+    bodies_->exchange(fluid_.domain, dt, true);
+    fluid_.domain.solids.set_time(fluid_.time + dt);
+    bodies_->move(fluid_.domain, dt);
+}
+
+/// Particles whose prediction would be inside a body push it.
+template <int D>
+void ReferencePbfSolver<D>::push_bodies_ahead() {
+    auto& meetings = bodies_->meetings();
+    const real dt = carried_dt_;
+    meetings.clear();
+    for (int i = 0; i < fluid_.count(); ++i) bodies_->push_out(fluid_.domain, i, fluid_.position(i) + dt * fluid_.velocity(i), dt);
+    if (meetings.empty()) return;
+    bodies_->exchange(fluid_.domain, dt, false);
+    bodies_->move(fluid_.domain, dt);
+    for (const auto& m : meetings) predicted_[static_cast<std::size_t>(m.particle)] += dt * bodies_->back(m);
+}
+
+/// As far as the multipliers push bodies in this iteration: see PbfSolver.
+template <int D>
+void ReferencePbfSolver<D>::carry_bodies() {
+    auto& meetings = bodies_->meetings();
+    meet_bodies(reference_, fluid_.domain, x_star_, meetings);
+    for (auto& m : meetings) {
+        const auto i = static_cast<std::size_t>(m.particle);
+        m.given = lambda_[i] / carried_dt_ * m.pull;
+        m.stiff = (options_.warm_start > 0 ? multiplier_[i] : lambda_[i]) < 0 ? give_ : 0;
+    }
+    bodies_->exchange(fluid_.domain, carried_dt_, false);
+    for (const auto& m : meetings) {
+        const auto i = static_cast<std::size_t>(m.particle);
+        const real change = carried_dt_ * m.stiff * bodies_->closing(m);
+        lambda_[i] += change;
+        if (options_.warm_start > 0) multiplier_[i] += change;
+    }
+}
+
+/// Bodies to where they go, and particles out of them and of solids.
+template <int D>
+void ReferencePbfSolver<D>::push_bodies() {
+    auto& meetings = bodies_->meetings();
+    const Vec<D> centre = fluid_.domain.centre();
+    bodies_->move(fluid_.domain, carried_dt_);
+    meetings.clear();
+    for (std::size_t i = 0; i < x_star_.size(); ++i) {
+        const Vec<D> free = centre + particles::vec_of<D>(x_star_[i]);
+        bodies_->push_out(fluid_.domain, static_cast<int>(i), free, carried_dt_);
+        x_star_[i] = particles::point_of(fluid_.domain.kept(free, fluid_.clamps) - centre);
+    }
+    if (meetings.empty()) return;
+    bodies_->exchange(fluid_.domain, carried_dt_, false);
+    bodies_->move(fluid_.domain, carried_dt_);
+    for (const auto& m : meetings) {
+        Point& x = x_star_[static_cast<std::size_t>(m.particle)];
+        const Vec<D> back = carried_dt_ * bodies_->back(m);
+        for (int a = 0; a < D; ++a) x[static_cast<std::size_t>(a)] += back[a];
+    }
 }
 
 /// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone. slow: see PbfSolver.
@@ -149,9 +221,10 @@ void ReferencePbfSolver<D>::update(real dt, real slow) {
 template <int D>
 Compression ReferencePbfSolver<D>::compression() const {
     Compression c;
-    for (const double rho : density_) {
-        c.mean += std::max(0.0, rho - 1) / static_cast<real>(density_.size());
-        c.worst = std::max(c.worst, rho - 1);
+    for (std::size_t i = 0; i < density_.size(); ++i) {
+        const double excess = density_[i] / (reference_.rest.empty() ? 1 : reference_.rest[i]) - 1;
+        c.mean += std::max(0.0, excess) / static_cast<real>(density_.size());
+        c.worst = std::max(c.worst, excess);
     }
     return c;
 }

@@ -17,7 +17,8 @@ public:
 
 private:
     using Base = Pbf<particles::ReferenceSolver<D, particles::ReferencePbf>>;
-    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::speed_, Base::step_, Base::last_dt_;
+    using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::bodies_, Base::speed_, Base::step_,
+        Base::last_dt_;
 
     void stay() override { predict(0); }
     void iterate_afresh() override;
@@ -25,11 +26,17 @@ private:
     void warm_start(real dt);
     void find_lambdas();
     void correct();
+    void start_bodies(real dt);
+    void push_bodies_ahead();
+    void carry_bodies();
+    void push_bodies();
     void update(real dt, real slow) override;
     Compression compression() const override;
     void conduct(real dt) override { this->conduct_at(x_star_, dt); }
     std::size_t own_bytes() const override;
 
+    real give_ = 0;        // of walls that give way [m^2]
+    real carried_dt_ = 0;  // length of the step where bodies move in it, else 0 [s]
     std::vector<Vec<D>> predicted_;
     std::vector<particles::Point> x_star_;
     std::vector<double> density_, lambda_, multiplier_;  // rho / rho0; of one iteration; of all in this step, with warm start

@@ -83,13 +83,11 @@ void PbfSolver<D>::find_neighbours() {
     pairs_.find(particles::Fluid<D>::coordinates(x_star_), fluid_.count(), options_.support * fluid_.domain.spacing);
     pairs_.fit(density_, 1);
     solids_.mark(pairs_);
+    this->expand();
     if (!this->ice_) return;
-    pairs_.fit(rest_, 1);
     sorted_.resize(fluid_.id.size());
     pairs_.each([&](int k) {
-        const int i = pairs_.owner(k);
-        rest_[static_cast<std::size_t>(k)] = static_cast<float>(this->rest_of(fluid_, i));
-        if (!pairs_.is_image(k)) sorted_[static_cast<std::size_t>(i)] = k;
+        if (!pairs_.is_image(k)) sorted_[static_cast<std::size_t>(pairs_.owner(k))] = k;
     });
 }
 
@@ -102,9 +100,9 @@ PbfPass PbfSolver<D>::pass(const float* from, float* to) {
     a.from = from;
     a.to = to;
     a.solid = solids_.at(pairs_, from);
+    a.rest = this->rest();
     a.density = density_.data();
     a.multiplier = options_.warm_start > 0 ? multiplier_.data() : nullptr;
-    if (this->ice_) a.rest = rest_.data();
     a.first = pairs_.list().first();
     a.rows = pairs_.list().rows();
     return a;
@@ -311,8 +309,11 @@ void PbfSolver<D>::update(real dt, real slow) {
 
 template <int D>
 Compression PbfSolver<D>::compression() const {
+    const float* rest = this->rest();
     const auto excess = [&](int k) {
-        return pairs_.is_image(k) ? 0 : std::max<real>(0, static_cast<real>(density_[static_cast<std::size_t>(k)]) - 1);
+        if (pairs_.is_image(k)) return real(0);
+        const real density = static_cast<real>(density_[static_cast<std::size_t>(k)]);
+        return std::max<real>(0, (rest ? density / static_cast<real>(rest[k]) : density) - 1);
     };
     const int n = pairs_.particles();
     const auto [sum, worst] = particles::block_sum_and_max(n ? pairs_.size() : 0, excess);
@@ -321,7 +322,7 @@ Compression PbfSolver<D>::compression() const {
 
 template <int D>
 std::size_t PbfSolver<D>::own_bytes() const {
-    return D * x_star_[0].capacity() * sizeof(real) + (density_.capacity() + multiplier_.capacity() + rest_.capacity()) * sizeof(float) +
+    return D * x_star_[0].capacity() * sizeof(real) + (density_.capacity() + multiplier_.capacity()) * sizeof(float) +
            sorted_.capacity() * sizeof(int);
 }
 

@@ -54,6 +54,7 @@ public:
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) final { return continue_solve({}, p, b); }
     /// The same, with the iterations and the history of another method's attempt counted in.
     const Report& continue_solve(const Report& attempt, Grid<real, D>& p, const Grid<real, D>& b);
+    void aim(real tolerance) final { options_.tolerance = tolerance; }
     std::size_t bytes() const final;
 
 protected:

@@ -50,6 +50,11 @@ public:
         return report_;
     }
 
+    void aim(real tolerance) override {
+        options_.tolerance = tolerance;
+        if (algebraic_ != nullptr) algebraic_->aim(tolerance);
+    }
+
     std::size_t bytes() const override { return problem_.bytes() + geometric_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0); }
 
 private:

@@ -66,6 +66,8 @@ public:
     /// when the tolerance is missed after max_iterations (unless fixed_iterations) or when the residual is not finite.
     /// The reference stays valid until the next call; after the first, a solve with an unchanged structure allocates nothing.
     virtual const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) = 0;
+    /// Solves from now on may stop at this residual over the right-hand side. Methods that take no tolerance go on as before.
+    virtual void aim(real) {}
     virtual std::size_t bytes() const = 0;
 };
 

@@ -1,11 +1,13 @@
 #include "rigid/bodies.hpp"
 
+#include "geometry/mesh/mesh.hpp"
 #include "geometry/sides.hpp"
 #include "rigid/feelers.hpp"
 #include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace weir::rigid {
 
@@ -143,6 +145,7 @@ Bodies<D>::Bodies(const scene::Scene& scene) {
                 scene.refuse(path_of(i), "bodies do not cross periodic sides, and this scene has them along " + std::string(1, "xyz"[a]));
         read(scene, i);
     }
+    joints_ = Joints<D>(scene, list_);
     refuse_overlaps(scene);
 }
 
@@ -187,7 +190,7 @@ template <int D>
 void Bodies<D>::refuse_overlaps(const scene::Scene& scene) const {
     for (std::size_t b = 0; b < list_.size(); ++b)
         for (std::size_t o = 0; o < list_.size(); ++o) {
-            if (b == o) continue;
+            if (b == o || joints_.tie(b, o)) continue;
             const real deepest = -1e-3 * std::min(list_[b].radius, list_[o].radius);
             for (const Feeler<D>& feeler : list_[b].feelers)
                 if (list_[o].shape->distance(feeler.at) - feeler.radius < deepest)
@@ -199,7 +202,7 @@ void Bodies<D>::refuse_overlaps(const scene::Scene& scene) const {
 template <int D>
 void Bodies<D>::join(geometry::Solids<D>& solids) {
     around_.prescribed = solids.count();
-    for (const Body<D>& body : list_) solids.add_free(body.shape, body.no_slip);
+    for (const Body<D>& body : list_) solids.add_free(body.shape, body.no_slip, {body.centre, body.radius});
     place(solids);
 }
 
@@ -221,17 +224,24 @@ void Bodies<D>::recall(const std::function<real(const char*, std::size_t, std::s
 }
 
 template <int D>
-ShownSolids<D>::ShownSolids(const scene::Scene& scene) : bodies_(scene) {
-    if (scene.has("solids")) solids_ = geometry::Solids<D>(scene.root().tables("solids"));
-    bodies_.join(solids_);
+ShownSolids<D>::ShownSolids(const scene::Scene& scene, bool lines) : bodies_(scene) {
+    if (scene.has("solids")) still_ = geometry::Solids<D>(scene.root().tables("solids"));
+    constexpr real part = 1.0 / 500;  // of the domain: a line that pictures still show
+    if (lines) thin_ = part * norm(scene.vec<D>("grid.size"));
 }
 
 template <int D>
 const geometry::Solids<D>& ShownSolids<D>::at(real t, const std::function<real(const char*, std::size_t, std::size_t)>& value) {
+    solids_ = still_;
+    if (!bodies_.empty()) bodies_.recall(value);
+    for (const Joint<D>& joint : bodies_.joints().all())
+        if (thin_ > 0 && joint.kind == JointKind::mooring) {
+            const auto end = bodies_.joints().ends(joint, bodies_.all());
+            solids_.add_free(geometry::capsule<D>(end[0], end[1], 0.5 * thin_), false,
+                             {0.5 * (end[0] + end[1]), 0.5 * norm(end[1] - end[0]) + 0.5 * thin_});
+        }
+    bodies_.join(solids_);
     solids_.set_time(t);
-    if (bodies_.empty()) return solids_;
-    bodies_.recall(value);
-    bodies_.place(solids_);
     return solids_;
 }
 
@@ -239,6 +249,7 @@ template <int D>
 Surroundings<D> Bodies<D>::surroundings(const geometry::Solids<D>& solids) const {
     Surroundings<D> around = around_;
     around.solids = &solids;
+    around.joints = &joints_;
     return around;
 }
 
@@ -306,7 +317,11 @@ void Bodies<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t Bodies<D>::bytes() const {
     std::size_t total = list_.capacity() * sizeof(Body<D>);
-    for (const Body<D>& body : list_) total += body.feelers.capacity() * sizeof(Feeler<D>);
+    std::set<const geometry::Mesh*> meshes;  // bodies of one file share it
+    for (const Body<D>& body : list_) {
+        total += body.feelers.capacity() * sizeof(Feeler<D>);
+        if (const auto* posed = body.shape->mesh(); posed && meshes.insert(posed->mesh.get()).second) total += posed->mesh->bytes();
+    }
     for (const auto& values : shown_) total += values.capacity() * sizeof(real);
     return total;
 }

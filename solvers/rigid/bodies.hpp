@@ -32,6 +32,7 @@ public:
     const Body<D>& operator[](std::size_t b) const { return list_[b]; }
     std::vector<Body<D>>& all() { return list_; }
     const std::vector<Body<D>>& all() const { return list_; }
+    const Joints<D>& joints() const { return joints_; }
 
     /// Appends them to the solids, and puts them where they are.
     void join(geometry::Solids<D>& solids);
@@ -55,21 +56,25 @@ private:
     void refuse_overlaps(const scene::Scene& scene) const;
 
     std::vector<Body<D>> list_;
+    Joints<D> joints_;
     Surroundings<D> around_;
     mutable std::vector<std::vector<real>> shown_;
 };
 
-/// All solids of a scene with its bodies where they were shown to be, for those who draw; `value` as in Bodies::recall.
+/// All solids of a scene with its bodies where they were shown to be, for those who draw, and lines that moor as thin rods; `value` as in
+/// Bodies::recall.
 template <int D>
 class ShownSolids {
 public:
-    explicit ShownSolids(const scene::Scene& scene);
-    bool empty() const { return solids_.empty(); }
+    explicit ShownSolids(const scene::Scene& scene, bool lines = true);
+    bool empty() const { return still_.empty() && bodies_.empty(); }
+    /// The last ones of them are the bodies, in their order.
     const geometry::Solids<D>& at(real t, const std::function<real(const char*, std::size_t, std::size_t)>& value);
 
 private:
     Bodies<D> bodies_;
-    geometry::Solids<D> solids_;
+    geometry::Solids<D> still_, solids_;
+    real thin_ = 0;
 };
 
 }  // namespace weir::rigid

@@ -13,6 +13,10 @@
 
 namespace weir::rigid {
 
+inline Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
+    return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+}
+
 /// Components of a rigid velocity: D of translation, then the turning about z (2D) or about x, y and z.
 template <int D>
 inline constexpr int freedoms = D == 2 ? 3 : 6;

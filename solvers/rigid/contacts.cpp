@@ -7,10 +7,6 @@ namespace weir::rigid {
 
 namespace {
 
-/// Sweeps over all contacts end when no impulse changes a velocity by more than this part of the largest one, or here.
-constexpr int most_sweeps = 400;
-constexpr real still = 1e-10;
-
 /// What overlaps is pushed apart at a fifth of the overlap a step, beyond a slop of a thousandth of the body (Catto 2005).
 constexpr real push_apart = 0.2, slop = 1e-3;
 
@@ -19,26 +15,7 @@ constexpr real as_deep = 0.02;
 
 /// Directions across a normal.
 Vec<2> tangent(const Vec<2>& n, int) { return {{-n[1], n[0]}}; }
-Vec<3> tangent(const Vec<3>& n, int k) {
-    const int a = std::abs(n[0]) < 0.6 ? 0 : 1;
-    Vec<3> u = Vec<3>::unit(a) - n[a] * n;
-    u = u / norm(u);
-    return k == 0 ? u : Vec<3>{{n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]}};
-}
-
-/// How a body's rigid velocity moves its point, along a direction.
-template <int D>
-Twist<D> sees(const Body<D>& body, const Vec<D>& point, const Vec<D>& along) {
-    Twist<D> m{};
-    const Vec<D> r = point - body.at;
-    for (std::size_t a = 0; a < D; ++a) m[a] = along[a];
-    if constexpr (D == 2)
-        m[2] = r[0] * along[1] - r[1] * along[0];
-    else
-        for (int a = 0; a < 3; ++a)
-            m[static_cast<std::size_t>(3 + a)] = r[(a + 1) % 3] * along[(a + 2) % 3] - r[(a + 2) % 3] * along[(a + 1) % 3];
-    return m;
-}
+Vec<3> tangent(const Vec<3>& n, int k) { return both_across(n)[static_cast<std::size_t>(k)]; }
 
 template <int D>
 Vec<D> gradient(const geometry::Solids<D>& solids, std::size_t solid, const Vec<D>& x, real eps) {
@@ -52,52 +29,6 @@ Vec<D> gradient(const geometry::Solids<D>& solids, std::size_t solid, const Vec<
 }
 
 }  // namespace
-
-/// By Cholesky's factors, column by column of the identity.
-void invert(const Mobility& matrix, const std::vector<char>& free, Mobility& inverse) {
-    const std::size_t n = matrix.size;
-    std::vector<std::size_t> at;
-    for (std::size_t i = 0; i < n; ++i)
-        if (free[i]) at.push_back(i);
-    const std::size_t m = at.size();
-    std::vector<real> l(m * m, 0.0), x(m);
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t j = 0; j <= i; ++j) {
-            real sum = matrix(at[i], at[j]);
-            for (std::size_t k = 0; k < j; ++k) sum -= l[i * m + k] * l[j * m + k];
-            l[i * m + j] = i == j ? std::sqrt(sum) : sum / l[j * m + j];
-        }
-    inverse.resize(n);
-    for (std::size_t column = 0; column < m; ++column) {
-        for (std::size_t i = 0; i < m; ++i) {
-            real sum = i == column ? 1 : 0;
-            for (std::size_t k = 0; k < i; ++k) sum -= l[i * m + k] * x[k];
-            x[i] = sum / l[i * m + i];
-        }
-        for (std::size_t i = m; i-- > 0;) {
-            real sum = x[i];
-            for (std::size_t k = i + 1; k < m; ++k) sum -= l[k * m + i] * x[k];
-            x[i] = sum / l[i * m + i];
-        }
-        for (std::size_t i = 0; i < m; ++i) inverse(at[i], at[column]) = x[i];
-    }
-}
-
-template <int D>
-void dry_mobility(const std::vector<Body<D>>& bodies, Mobility& mobility) {
-    constexpr std::size_t n = freedoms<D>;
-    Mobility mass;
-    mass.resize(n * bodies.size());
-    std::vector<char> free(mass.size);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        const auto m = bodies[b].mass_matrix();
-        for (std::size_t i = 0; i < n; ++i) {
-            free[b * n + i] = !bodies[b].held[i];
-            for (std::size_t j = 0; j < n; ++j) mass(b * n + i, b * n + j) = m[i][j];
-        }
-    }
-    invert(mass, free, mobility);
-}
 
 template <int D>
 void Contacts<D>::against(std::size_t body, std::ptrdiff_t other, const Vec<D>& at, const Vec<D>& normal, const Vec<D>& moves, real gap,
@@ -173,7 +104,8 @@ void Contacts<D>::touch_solid(const std::vector<Body<D>>& bodies, std::size_t b,
 
 template <int D>
 void Contacts<D>::find(const std::vector<Body<D>>& bodies, const Surroundings<D>& around) {
-    list_.clear();
+    list_.clear(), rows_.clear();
+    joints_ = around.joints && !around.joints->empty() ? around.joints : nullptr;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         touch_walls(bodies, b, around);
         for (std::size_t s = 0; s < around.prescribed; ++s) {
@@ -184,6 +116,7 @@ void Contacts<D>::find(const std::vector<Body<D>>& bodies, const Surroundings<D>
         }
         for (std::size_t o = 0; o < b; ++o) {
             if (norm(bodies[b].at - bodies[o].at) > bodies[b].radius + bodies[o].radius + around.reach) continue;
+            if (joints_ && joints_->tie(b, o)) continue;
             const std::size_t first = list_.size();
             touch_solid(bodies, b, around.prescribed + o, around);
             touch_solid(bodies, o, around.prescribed + b, around);
@@ -193,123 +126,39 @@ void Contacts<D>::find(const std::vector<Body<D>>& bodies, const Surroundings<D>
 }
 
 template <int D>
-void Contacts<D>::build_rows(const std::vector<Body<D>>& bodies, const Mobility& mobility) {
-    constexpr std::size_t n = freedoms<D>;
-    size_ = mobility.size;
-    rows_.assign(list_.size() * D, {});
-    responses_.assign(rows_.size() * size_, 0.0);
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const Contact& c = list_[i / D];
-        const int k = static_cast<int>(i % D);
-        const Vec<D> along = k == 0 ? c.normal : tangent(c.normal, k - 1);
-        Row& row = rows_[i];
-        const Twist<D> own = sees<D>(bodies[c.body], c.at, along);
-        std::copy(own.begin(), own.end(), row.sees.begin());
-        if (c.other >= 0) {
-            const Twist<D> back = sees<D>(bodies[static_cast<std::size_t>(c.other)], c.at, along);
-            for (std::size_t d = 0; d < n; ++d) row.sees[n + d] = -back[d];
+void Contacts<D>::make_rows(const std::vector<Body<D>>& bodies, real dt) {
+    made_.clear();
+    for (const Contact& c : list_)
+        for (int k = 0; k < D; ++k) {
+            made_.push_back(row_at<D>(bodies, c.body, c.other, c.at, k == 0 ? c.normal : tangent(c.normal, k - 1)));
+            Row<D>& row = made_.back();
+            row.moves = c.moves, row.friction = c.friction;
+            row.limit = k == 0 ? Limit::pushes : Limit::rubs;
+            row.normal = made_.size() - 1 - static_cast<std::size_t>(k);
         }
-        real* response = responses_.data() + i * size_;
-        for (std::size_t d = 0; d < n; ++d)
-            for (std::size_t v = 0; v < size_; ++v) {
-                response[v] += mobility(v, c.body * n + d) * row.sees[d];
-                if (c.other >= 0) response[v] += mobility(v, static_cast<std::size_t>(c.other) * n + d) * row.sees[n + d];
-            }
-        for (std::size_t d = 0; d < n; ++d) {
-            row.response += row.sees[d] * response[c.body * n + d];
-            if (c.other >= 0) row.response += row.sees[n + d] * response[static_cast<std::size_t>(c.other) * n + d];
-        }
-    }
-}
-
-/// Of the body's point past the other side, along the row's direction.
-template <int D>
-real Contacts<D>::relative(const Contact& c, const Row& row, const std::vector<real>& velocities) const {
-    constexpr std::size_t n = freedoms<D>;
-    real v = 0;
-    for (std::size_t d = 0; d < n; ++d) {
-        v += row.sees[d] * velocities[c.body * n + d];
-        if (c.other >= 0) v += row.sees[n + d] * velocities[static_cast<std::size_t>(c.other) * n + d];
-    }
-    for (int a = 0; a < D; ++a) v -= row.sees[static_cast<std::size_t>(a)] * c.moves[a];
-    return v;
-}
-
-template <int D>
-void Contacts<D>::push(std::size_t row, real impulse, std::vector<real>& velocities) const {
-    const real* response = responses_.data() + row * size_;
-    for (std::size_t v = 0; v < size_; ++v) velocities[v] += impulse * response[v];
-}
-
-/// One sweep of Gauss-Seidel; gained_ is what it added to each impulse. Answers the largest change of a contact's velocity.
-template <int D>
-real Contacts<D>::sweep(std::vector<real>& velocities) {
-    real change = 0;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-        Contact& c = list_[i / D];
-        const std::size_t k = i % D;
-        const Row& row = rows_[i];
-        gained_[i] = 0;
-        if (!(row.response > 0)) continue;
-        const real before = c.impulse[k], v = relative(c, row, velocities);
-        c.impulse[k] = k == 0 ? before + (c.target - v) / row.response : before - v / row.response;
-        limit(c, k);
-        gained_[i] = c.impulse[k] - before;
-        if (gained_[i] == 0) continue;
-        push(i, gained_[i], velocities);
-        change = std::max(change, std::abs(gained_[i]) * row.response);
-    }
-    return change;
-}
-
-/// No wall pulls; friction is at most the coefficient times what presses.
-template <int D>
-void Contacts<D>::limit(Contact& c, std::size_t k) {
-    const real most = c.friction * c.impulse[0];
-    c.impulse[k] = k == 0 ? std::max(0.0, c.impulse[0]) : std::clamp(c.impulse[k], -most, most);
-}
-
-/// Further along the last direction, as conjugate gradients do; the velocities follow from the impulses anew.
-template <int D>
-void Contacts<D>::go_on(real beta, std::vector<real>& velocities) {
-    velocities = free_;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-        Contact& c = list_[i / D];
-        c.impulse[i % D] += beta * direction_[i];
-        limit(c, i % D);
-        if (c.impulse[i % D] != 0) push(i, c.impulse[i % D], velocities);
-    }
+    if (joints_) joints_->add_rows(bodies, dt, made_);
 }
 
 template <int D>
 void Contacts<D>::resolve(std::vector<Body<D>>& bodies, const Mobility& mobility, std::vector<real>& velocities, real dt, real gravity) {
-    build_rows(bodies, mobility);
+    make_rows(bodies, dt);
+    rows_.set(made_, mobility);
     for (std::size_t i = 0; i < list_.size(); ++i) {
         Contact& c = list_[i];
-        const real approach = relative(c, rows_[i * D], velocities);
+        Row<D>& row = rows_.list()[i * D];
+        const real approach = rows_.relative(row, velocities);
         // What falls from less than a step's fall is at rest, not bouncing.
-        const bool bounces = c.restitution > 0 && approach * dt < -std::max(c.gap, 0.0) && approach < -2 * gravity * dt;
+        c.bounces = c.bounces || (c.restitution > 0 && approach * dt < -std::max(c.gap, 0.0) && approach < -2 * gravity * dt);
         const real over = -c.gap - slop * bodies[c.body].radius;
-        c.target = bounces ? -c.restitution * approach : c.gap > 0 ? -c.gap / dt : over > 0 ? push_apart * over / dt : 0;
+        row.target = c.bounces ? -c.restitution * approach : c.gap > 0 ? -c.gap / dt : over > 0 ? push_apart * over / dt : 0;
     }
-    free_ = velocities;
-    real fastest = 0, slope = 0;
-    for (const real v : velocities) fastest = std::max(fastest, std::abs(v));
-    direction_.assign(rows_.size(), 0.0), gained_.assign(rows_.size(), 0.0);
-    for (int count = 0; count < most_sweeps; ++count) {
-        if (sweep(velocities) <= still * fastest) break;
-        real gained = 0;
-        for (const real g : gained_) gained += g * g;
-        const real beta = slope > 0 ? gained / slope : 2;
-        slope = gained;
-        if (beta <= 1) go_on(beta, velocities);
-        for (std::size_t i = 0; i < rows_.size(); ++i) direction_[i] = (beta <= 1 ? beta * direction_[i] : 0) + gained_[i];
+    rows_.solve(velocities);
+    for (std::size_t i = 0; i < rows_.list().size(); ++i) {
+        const Row<D>& row = rows_.list()[i];
+        if (rows_.impulses()[i] == 0 || row.limit == Limit::rubs) continue;
+        bodies[row.body].touches = true;
+        if (row.other >= 0) bodies[static_cast<std::size_t>(row.other)].touches = true;
     }
-    for (const Contact& c : list_)
-        if (c.impulse[0] > 0) {
-            bodies[c.body].touches = true;
-            if (c.other >= 0) bodies[static_cast<std::size_t>(c.other)].touches = true;
-        }
 }
 
 template <int D>
@@ -318,10 +167,9 @@ void Contacts<D>::mark(std::vector<Body<D>>& bodies) const {
         bodies[c.body].touches = true;
         if (c.other >= 0) bodies[static_cast<std::size_t>(c.other)].touches = true;
     }
+    if (joints_) joints_->mark(bodies);
 }
 
-template void dry_mobility(const std::vector<Body<2>>&, Mobility&);
-template void dry_mobility(const std::vector<Body<3>>&, Mobility&);
 template class Contacts<2>;
 template class Contacts<3>;
 

@@ -1,5 +1,7 @@
 #include "rigid/feelers.hpp"
 
+#include "geometry/mesh/mesh.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,7 @@ namespace weir::rigid {
 namespace {
 
 constexpr int along_edge = 4, around_rim = 16;  // points
+constexpr std::size_t on_mesh = 160;
 
 /// Edges and rims are rounded by this part of the smallest extent: exact against a plane, and a corner that stands on another's edge feels
 /// its face.
@@ -62,6 +65,38 @@ void rims_of_cylinder(Vec<D> from, Vec<D> to, real radius, std::vector<Feeler<D>
     }
 }
 
+/// Corners of a mesh: the outermost in 26 directions, which stand on what is flat, then the one furthest from all that were taken. Each
+/// ball lies inside by as much as the distance there lets it.
+std::vector<Feeler<3>> corners_of_mesh(const geometry::Shape<3>& shape) {
+    const geometry::PosedMesh& posed = *shape.mesh();
+    const auto& points = posed.mesh->triangles().points;
+    const Vec<3> size = posed.mesh->max() - posed.mesh->min();
+    const real depth = rounded * posed.scale * std::min({size[0], size[1], size[2]});
+    std::vector<Feeler<3>> list;
+    std::vector<real> away(points.size(), infinity);
+    const auto take = [&](std::size_t i) {
+        if (away[i] == 0) return;
+        for (std::size_t k = 0; k < points.size(); ++k) away[k] = std::min(away[k], norm(points[k] - points[i]));
+        Vec<3> inwards;
+        const Vec<3> x = posed.to_scene(points[i]);
+        for (int a = 0; a < 3; ++a) inwards[a] = shape.distance(x - depth * Vec<3>::unit(a)) - shape.distance(x + depth * Vec<3>::unit(a));
+        const real length = norm(inwards);
+        const Vec<3> middle = length > 0 ? x + (depth / length) * inwards : x;
+        list.push_back({middle, std::max(0.0, std::min(depth, -shape.distance(middle)))});
+    };
+    for (int code = 0; code < 27; ++code) {
+        const Vec<3> way{{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0}};
+        const auto less = [&](const Vec<3>& a, const Vec<3>& b) { return dot(way, a) < dot(way, b); };
+        if (code != 13) take(static_cast<std::size_t>(std::max_element(points.begin(), points.end(), less) - points.begin()));
+    }
+    while (list.size() < std::min(on_mesh, points.size())) {
+        const auto furthest = std::max_element(away.begin(), away.end());
+        if (*furthest == 0) break;
+        take(static_cast<std::size_t>(furthest - away.begin()));
+    }
+    return list;
+}
+
 /// Those for which f holds.
 template <int D, class F>
 void keep(std::vector<Feeler<D>>& list, F&& f) {
@@ -102,6 +137,8 @@ std::vector<Feeler<D>> feelers_of(const scene::Table& shape) {
         for (int i = 0; i <= along_edge; ++i)
             list.push_back({shape.vec<D>("from") + (static_cast<real>(i) / along_edge) * (shape.vec<D>("to") - shape.vec<D>("from")),
                             shape.number("radius")});
+    if constexpr (D == 3)
+        if (kind == "mesh") return corners_of_mesh(*geometry::make_shape<3>(shape));
     if (kind != "union" && kind != "difference") return list;
     const Bounds<D> box = bounds_of<D>(shape);
     const real rounding = 1e-9 * norm(box.max - box.min);

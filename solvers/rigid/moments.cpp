@@ -1,5 +1,7 @@
 #include "rigid/moments.hpp"
 
+#include "geometry/mesh/mesh.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -75,6 +77,23 @@ Moments<D> of_capsule(const Vec<D>& from, const Vec<D>& to, real r) {
     const auto more = about_axis<D>((to - from) / length, along, own);
     for (std::size_t a = 0; a < D; ++a) m.second[a] += more[a];
     m.volume += ends;
+    return m;
+}
+
+/// Of a mesh by the divergence theorem, placed: lengths by the scale s, moments by s^5 R S R^T.
+template <int D>
+Moments<D> of_mesh(const geometry::PosedMesh& posed) {
+    Moments<D> m;
+    if constexpr (D == 3) {
+        const real s3 = posed.scale * posed.scale * posed.scale;
+        m.volume = s3 * posed.mesh->volume();
+        m.centre = posed.to_scene(posed.mesh->centre());
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j)
+                for (std::size_t k = 0; k < 3; ++k)
+                    m.second[i][j] +=
+                        s3 * posed.scale * posed.scale * posed.rotation[i][k] * dot(posed.rotation[j], posed.mesh->second()[k]);
+    }
     return m;
 }
 
@@ -216,6 +235,16 @@ Bounds<D> bounds_of(const scene::Table& shape) {
         for (int a = 0; a < D; ++a) reach[a] = shape.number("radius") * std::sqrt(std::max(0.0, 1 - u[a] * u[a]));
         return around<D>(from, to, reach);
     }
+    if constexpr (D == 3)
+        if (kind == "mesh") {
+            Bounds<D> box;
+            const geometry::PosedMesh posed = geometry::make_mesh(shape);
+            for (const Vec<3>& y : posed.mesh->triangles().points) {
+                const Vec<3> x = posed.to_scene(y);
+                box.join({x, x});
+            }
+            return box;
+        }
     if (kind == "union") {
         Bounds<D> box;
         for (const auto& part : shape.tables("of")) box.join(bounds_of<D>(part));
@@ -232,7 +261,8 @@ Moments<D> moments_of(const scene::Table& shape) {
     if (kind == "sphere") return of_ball<D>(shape.vec<D>("centre"), shape.number("radius"));
     if (kind == "capsule") return of_capsule<D>(shape.vec<D>("from"), shape.vec<D>("to"), shape.number("radius"));
     if (kind == "cylinder") return of_cylinder<D>(shape.vec<D>("from"), shape.vec<D>("to"), shape.number("radius"));
-    return integrate<D>(*geometry::make_shape<D>(shape), bounds_of<D>(shape));
+    const auto whole = geometry::make_shape<D>(shape);
+    return whole->mesh() ? of_mesh<D>(*whole->mesh()) : integrate<D>(*whole, bounds_of<D>(shape));
 }
 
 template <int D>

@@ -1,5 +1,5 @@
-// Volume, centre and second moments of shapes: by closed formulas for box, ball, capsule and cylinder, else by adaptive quadrature of
-// what rays along the last axis find inside the shape's signed distance.
+// Volume, centre and second moments of shapes: by closed formulas for box, ball, capsule, cylinder and meshes, else by adaptive quadrature
+// of what rays along the last axis find inside the shape's signed distance.
 #pragma once
 #include "core/types.hpp"
 #include "geometry/shape.hpp"

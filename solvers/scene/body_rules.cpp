@@ -66,8 +66,10 @@ void check_inside(const Table& probe, const char* key, const std::string& path, 
 
 }  // namespace
 
-void check_shape(const Table& shape, const std::string& path, const Report& report) {
+void check_shape(const Table& shape, const std::string& path, int dim, const Report& report) {
     const auto kind = shape.text_or("shape", "");
+    if (kind == "mesh" && dim == 2) report(shape.place("shape"), fmt::format("{} is a mesh, a shape of 3D; this scene has dim = 2", path));
+    if (kind == "mesh") check_direction(shape, "axis", path, report);
     if (kind == "box") check_box(shape, path, report);
     if (kind == "plane") check_direction(shape, "normal", path, report);
     if (kind == "cylinder" && has_all(shape, {"from", "to"}) && shape.numbers("from") == shape.numbers("to"))
@@ -75,9 +77,9 @@ void check_shape(const Table& shape, const std::string& path, const Report& repo
     for (const char* list : {"of", "minus"})
         if (kind == "union" || kind == "difference") {
             const auto& parts = shape.tables(list);
-            for (std::size_t i = 0; i < parts.size(); ++i) check_shape(parts[i], fmt::format("{}.{}[{}]", path, list, i), report);
+            for (std::size_t i = 0; i < parts.size(); ++i) check_shape(parts[i], fmt::format("{}.{}[{}]", path, list, i), dim, report);
         }
-    if (kind == "difference" && shape.has("from")) check_shape(shape.table("from"), path + ".from", report);
+    if (kind == "difference" && shape.has("from")) check_shape(shape.table("from"), path + ".from", dim, report);
 }
 
 bool misses(const Table& shape, const Domain& domain) {

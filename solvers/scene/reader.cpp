@@ -36,6 +36,7 @@ Table Reader::table(const Node& node, const std::vector<Key>& keys, const std::s
 }
 
 void Reader::fill(const Node& node, const Allowed& allowed, const std::string& path, Table& out) {
+    out.stands_in(folder_);
     for (const Member& member : node.members) {
         const auto key = std::find_if(allowed.keys.begin(), allowed.keys.end(), [&](const Key* k) { return k->name == member.key; });
         if (key == allowed.keys.end()) {

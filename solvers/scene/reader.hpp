@@ -13,7 +13,11 @@ class Reader {
 public:
     /// dim 0: not known, 2 and 3 are both accepted. `complete` false: lines of the file could not be read, so a missing key is no news.
     Reader(std::string file, int dim, bool complete, std::vector<Problem>& problems)
-        : file_(std::move(file)), dim_(dim), complete_(complete), problems_(problems) {}
+        : file_(std::move(file)),
+          folder_(std::make_shared<std::filesystem::path>(std::filesystem::path(file_).parent_path())),
+          dim_(dim),
+          complete_(complete),
+          problems_(problems) {}
 
     /// `solvers` and `solver` word the messages about keys and effects that only other solvers have.
     void know(const std::vector<SolverSchema>& solvers, std::string solver) { solvers_ = &solvers, solver_ = std::move(solver); }
@@ -59,6 +63,7 @@ private:
     void report(Place place, std::string message, std::string hint = "", int width = 0);
 
     std::string file_;
+    std::shared_ptr<const std::filesystem::path> folder_;
     int dim_;
     bool complete_;
     std::vector<Problem>& problems_;

@@ -57,12 +57,12 @@ void check_reach(const Table& shape, const std::string& path, const Domain& doma
                fmt::format("the domain reaches from {} to {}", point_text(domain.min), point_text(domain.max)));
 }
 
-void check_bodies(const Table& root, const Domain& domain, const Report& report) {
+void check_bodies(const Table& root, const Domain& domain, int dim, const Report& report) {
     const auto each = [&](const char* list, const auto& check) {
         const auto& tables = root.tables(list);
         for (std::size_t i = 0; i < tables.size(); ++i) {
             const auto path = fmt::format("{}[{}]", list, i);
-            check_shape(tables[i], path, report);
+            check_shape(tables[i], path, dim, report);
             check(tables[i], path);
         }
     };
@@ -94,7 +94,7 @@ void check_rules(Table& root, int dim, const std::string& file, std::vector<Prob
     check_resolution(root, domain, report);
     check_time(root, report);
     check_sides(root, dim, report);
-    check_bodies(root, domain, report);
+    check_bodies(root, domain, dim, report);
     check_probes(root, domain, dim, report);
 }
 

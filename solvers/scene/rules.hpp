@@ -31,7 +31,7 @@ struct Domain {
 };
 
 void check_sides(Table& root, int dim, const Report& report);
-void check_shape(const Table& shape, const std::string& path, const Report& report);
+void check_shape(const Table& shape, const std::string& path, int dim, const Report& report);
 void check_motion(const Table& motion, const std::string& path, const Report& report);
 /// The shape and the domain have no point in common, by their bounding boxes.
 bool misses(const Table& shape, const Domain& domain);

@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -72,6 +74,8 @@ public:
         for (int d = 0; d < D && d < static_cast<int>(list.size()); ++d) i[d] = static_cast<int>(list[static_cast<std::size_t>(d)]);
         return i;
     }
+    /// Where the file lies that a key names: its path from the folder of the scene.
+    std::filesystem::path file(std::string_view path) const;
     /// Keys in the order of the file, then defaults in schema order.
     std::vector<std::string> keys() const;
 
@@ -82,6 +86,7 @@ public:
     void forget_reading();
 
     void set(const std::string& key, Value value, Place place = {});
+    void stands_in(std::shared_ptr<const std::filesystem::path> folder) { folder_ = std::move(folder); }
     const Value* find(std::string_view path) const;
     Table* find_table(std::string_view path);  // nullptr where there is none
     void erase(std::string_view key);          // of this table itself
@@ -90,6 +95,7 @@ private:
     struct Entry;
     const Entry* entry(std::string_view path) const;
     std::vector<Entry> entries_;
+    std::shared_ptr<const std::filesystem::path> folder_;  // of the scene's file; null: none
 };
 
 struct Table::Entry {
@@ -149,6 +155,34 @@ private:
     std::string file_, source_, solver_;
     int dim_ = 2;
     std::vector<Override> overrides_;
+};
+
+/// A scene that is made in code: key by key, as text, so that it is read, checked and refused as a file is.
+///   Builder scene;
+///   scene.set("solver", "mac_water").set("grid.cells", {64, 32}).set("effects.gravity.g", {0, -9.81});
+///   scene.add("liquid", Builder().set("shape", "box").set("min", {0, 0}).set("max", {0.25, 0.5}));
+class Builder {
+public:
+    /// A key by its path; said again, it is replaced. Integers and numbers as the schema wants them.
+    Builder& set(const std::string& key, const Value& value);
+    Builder& set(const std::string& key, std::initializer_list<double> values);
+    Builder& set(const std::string& key, const std::vector<std::string>& values);
+    /// A table that is only named: an effect with its defaults.
+    Builder& name(const std::string& key);
+    /// Another entry of a list of tables: liquid, solids, emitters, probes.
+    Builder& add(const std::string& list, const Builder& entry);
+    /// TOML, a key a line, in the order in which they were said; messages count its lines.
+    std::string text() const;
+    /// The scene, read against what these solvers may be told; `file` is its name in messages. Throws BadScene with every problem found.
+    Scene scene(const std::vector<SolverSchema>& solvers, const std::string& file = "scene") const;
+
+private:
+    struct Line {
+        std::string key, text;
+        bool list = false;
+    };
+    Line& line(const std::string& key);
+    std::vector<Line> lines_;
 };
 
 /// Reads and checks a scene from text; `file` is its name in messages. Throws BadScene with every problem found.

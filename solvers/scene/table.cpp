@@ -66,6 +66,11 @@ void Table::erase(std::string_view key) {
     std::erase_if(entries_, [&](const Entry& e) { return e.key == key; });
 }
 
+std::filesystem::path Table::file(std::string_view path) const {
+    const std::filesystem::path file = text(path);
+    return file.is_absolute() || !folder_ ? file : *folder_ / file;
+}
+
 bool Table::has(std::string_view path) const { return find(path) != nullptr; }
 bool Table::flag(std::string_view path) const { return get<bool>(*this, path, "true or false"); }
 std::int64_t Table::integer(std::string_view path) const { return get<std::int64_t>(*this, path, "an integer"); }

@@ -5,6 +5,23 @@
 #include <cmath>
 #include <limits>
 
+namespace weir {
+
+std::vector<real> ProbeSeries::column(std::string_view wanted) const {
+    std::string known;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        if (wanted == columns[c] || wanted == std::string_view(columns[c]).substr(0, columns[c].find(" ["))) {
+            std::vector<real> list;
+            for (const auto& row : values) list.push_back(row[c]);
+            return list;
+        }
+        known += (c == 0 ? "" : ", ") + columns[c];
+    }
+    throw BadInput("probe \"" + name + "\" has no column \"" + std::string(wanted) + "\"; it has " + known);
+}
+
+}  // namespace weir
+
 namespace weir::sim {
 
 namespace {

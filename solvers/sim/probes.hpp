@@ -20,6 +20,9 @@ struct ProbeSeries {
     std::vector<Vec<3>> positions;     // of each column's sample where it has one (points, lines, gauges) [m]
     std::vector<real> times;
     std::vector<std::vector<real>> values;
+
+    /// One column over all times, by its name with or without the unit. Throws BadInput naming the columns there are.
+    std::vector<real> column(std::string_view wanted) const;
 };
 
 namespace sim {

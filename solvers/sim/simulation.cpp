@@ -1,6 +1,7 @@
 #include "sim/simulation.hpp"
 
 #include "core/parallel.hpp"
+#include "geometry/mesh/mesh.hpp"
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
@@ -58,6 +59,7 @@ void refuse_ignored(const scene::Scene& scene, const scene::SolverKind& kind) {
 
 /// Looked at before anything of it is built.
 scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
+    geometry::require_meshes(scene);
     sim::require_memory(scene, kinds);
     return scene;
 }
@@ -166,7 +168,14 @@ StepReport Simulation::step() { return step_until(infinity); }
 
 StepReport Simulation::step_until(real t) {
     meet_changes();
-    return step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
+    const StepReport report = step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
+    for (std::size_t i = 0; i < observers_.size(); ++i) {  // one may add another
+        const std::int64_t every = observers_[i].every;
+        if (every == 0 ? !at_frame_ : steps_ % every != 0) continue;
+        const Observer observer = observers_[i].observer;
+        observer(*this, report);
+    }
+    return report;
 }
 
 void Simulation::run_until(real t) {

@@ -13,12 +13,21 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 namespace weir {
+
+/// A field as edit() hands it out: a copy, laid out as FieldView says, that takes the field's place when all of it may be.
+struct FieldEdit {
+    std::string set, name, unit;
+    Where where = Where::cell;
+    GridView grid;
+    std::vector<std::vector<real>> data;  // one a component
+};
 
 /// A key that changes at a time of the run [s].
 struct Change {
@@ -58,6 +67,25 @@ public:
     real horizon() const { return time() + 2.5 * std::max(longest_dt_, uncut_dt()); }
     /// Every change that the run is to meet, those that it has met included.
     const std::vector<Change>& changes() const { return changes_; }
+
+    /// Writes a field between two steps: `write` gets it and changes what it likes but the number of values. Then the solver makes good
+    /// what every step leaves behind, so that the field may come out otherwise than it was written: a velocity of grids free of divergence
+    /// and still at walls, a depth nowhere negative. Throws BadInput where the solver has no such field that may be written (editable()
+    /// names them), where a value is not finite or cannot be, and leaves all as it was. "set.name" where the name alone could be several.
+    void edit(std::string_view field, const std::function<void(FieldEdit&)>& write);
+    /// The fields that edit() takes: "velocity", "smoke", "particles.position", ...
+    std::vector<std::string> editable();
+    /// New particles of a set ("particles", "markers") at places inside the domain [m] with velocities [m/s], in 2D with z = 0. Markers
+    /// make the liquid around them. Throws BadInput as edit() does. Nobody checks how near they are to others.
+    void add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity);
+    /// Takes out particles by their places in the set's fields.
+    void remove_particles(std::string_view set, std::span<const std::size_t> which);
+
+    /// From here on called after each frame, or after every so many steps: a look at the run, or a hand in it (set, edit). What it throws
+    /// comes out of step().
+    using Observer = std::function<void(Simulation&, const StepReport&)>;
+    void observe_frames(Observer observer) { observers_.push_back({0, std::move(observer)}); }
+    void observe_steps(Observer observer, std::int64_t every = 1);
 
     bool finished() const { return reached(end_) || steady_; }
     /// The run ended because nothing changed any more (time.stop_when_steady).
@@ -100,6 +128,8 @@ private:
     real within_limit(real dt, const StepLimit& limit) const;
     void tell_of_parts(real wanted, real dt, const StepLimit& limit);
     StepReport step_towards(real target);
+    EditableField editable_named(std::string_view field);
+    void change_state(const std::function<void(Solver&)>& change);
 
     scene::Scene scene_;
     scene::SolverKind kind_;
@@ -114,7 +144,12 @@ private:
     std::vector<std::string> warnings_;
     std::vector<Change> changes_;
     std::int64_t changed_ = 0;  // how many of them the run has met
-    real longest_dt_ = 0;       // that was wanted so far, before it was cut for a frame [s]
+    struct Watch {
+        std::int64_t every = 0;  // steps; 0: at frames
+        Observer observer;
+    };
+    std::vector<Watch> observers_;
+    real longest_dt_ = 0;  // that was wanted so far, before it was cut for a frame [s]
 };
 
 /// The scene that a checkpoint was made from, as its text and overrides. Throws BadInput.

@@ -11,7 +11,7 @@ namespace {
 
 template <int D>
 auto marker(const scene::Scene& scene) {
-    const auto shown = std::make_shared<rigid::ShownSolids<D>>(scene);
+    const auto shown = std::make_shared<rigid::ShownSolids<D>>(scene, false);
     return [shown](const FieldSet& fields, real t) {
         const GridView& grid = fields.grid;
         const geometry::Solids<D>& solids = shown->at(t, [&](const char* field, std::size_t component, std::size_t body) {

@@ -60,6 +60,7 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     fluid_.let_in(dt);
     rho_rest_ = rest_density_.at(fluid_.time());
     fluid_.find_neighbours(fluid_.x);
+    fluid_.expand();
     if (!options_.continuity) find_densities();  // eq. 3
     find_pressures();                            // eq. 12
     find_forces();                               // eq. 10 and 14
@@ -71,7 +72,7 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     fluid_.hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = fluid_.max_speed();
-    const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.density, fluid_.parts()});
+    const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.order, fluid_.rests, fluid_.density, fluid_.parts()});
     const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
     fluid_.end_step();
     fluid_.record(passes_);
@@ -82,8 +83,8 @@ template <int D>
 void DeviceSphSolver<D>::find_densities() {
     const auto& f = fluid_;
     const auto behind_walls = static_cast<float>(std::min(rho_rest_, f.rest_density()));
-    fluid_.run("sph_densities",
-               {f.count(), f.stride(), params_, f.wall_params, f.terms, behind_walls, f.a, f.neighbours, f.list, f.order, f.density});
+    fluid_.run("sph_densities", {f.count(), f.stride(), params_, f.wall_params, f.terms, behind_walls, f.rests, f.a, f.neighbours, f.list,
+                                 f.order, f.density});
 }
 
 template <int D>
@@ -91,11 +92,7 @@ void DeviceSphSolver<D>::find_pressures() {
     const auto& f = fluid_;
     const real c2 = options_.sound * options_.sound;
     const std::array<double, 2> state{options_.gamma == 1 ? c2 : c2 * rho_rest_ / options_.gamma, options_.gamma};
-    if (f.moving_ice())
-        fluid_.run("find_pressures", {f.count(), f.stride(), state, rho_rest_, f.order, f.v, f.density, f.carried, f.a, velocities_,
-                                      f.enthalpy, f.heat_states});
-    else
-        fluid_.run("find_pressures", {f.count(), f.stride(), state, rho_rest_, f.order, f.v, f.density, f.carried, f.a, velocities_});
+    fluid_.run("find_pressures", {f.count(), f.stride(), state, rho_rest_, f.rests, f.order, f.v, f.density, f.carried, f.a, velocities_});
 }
 
 template <int D>
@@ -124,11 +121,7 @@ void DeviceSphSolver<D>::kick(real dt) {
 template <int D>
 void DeviceSphSolver<D>::advance_densities(real dt) {
     const auto& f = fluid_;
-    if (f.moving_ice())
-        fluid_.run("load_excess",
-                   {f.count(), f.stride(), f.rest_density(), f.order, f.v, f.density, velocities_, f.enthalpy, f.heat_states});
-    else
-        fluid_.run("load_excess", {f.count(), f.stride(), f.rest_density(), f.order, f.v, f.density, velocities_});
+    fluid_.run("load_excess", {f.count(), f.stride(), f.rest_density(), f.rests, f.order, f.v, f.density, velocities_});
     fluid_.run("advance_densities", {f.count(), f.stride(), f.state_params, f.poses, f.near_solid, params_, f.wall_params, f.terms, dt,
                                      f.rest_density(), f.a, velocities_, f.neighbours, f.list, f.order, f.density});
 }

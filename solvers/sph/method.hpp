@@ -37,6 +37,13 @@ protected:
         start_pressure(scene, options_, fluid);
     }
 
+    /// Of particle i [kg/m^3].
+    real rest_of(int i) const {
+        if (this->vapour()) return rho_rest_ * this->vapour()->rest(i);
+        const auto& heat = this->heat_;
+        return heat && heat->free() ? rho_rest_ * heat->rest(this->setting().enthalpy[static_cast<std::size_t>(i)]) : rho_rest_;
+    }
+
     const char* method() const final { return "sph"; }
     StepLimit stable_at(real speed) const final { return stable_step(options_, this->setting(), speed); }
     std::string concern_at(real speed) const final { return too_fast(options_, speed, this->time()); }
@@ -46,8 +53,7 @@ protected:
     void sum_up(std::vector<Integral>& list) const final {
         const auto& fluid = this->state();
         list.push_back({"elastic_energy", "J", particles::block_sum(fluid.count(), [&](int i) {
-                            return fluid.mass *
-                                   options_.elastic_energy(fluid.density[static_cast<std::size_t>(i)], rho_rest_ * this->rest_of(fluid, i));
+                            return fluid.mass * options_.elastic_energy(fluid.density[static_cast<std::size_t>(i)], rest_of(i));
                         })});
     }
     void save_more(Checkpoint& to) const final { to.put_value("sph.max_acceleration", max_acceleration_); }

@@ -1,6 +1,7 @@
 #include "sph/options.hpp"
 
 #include "particles/passes.hpp"
+#include "particles/vapour.hpp"
 
 #include <algorithm>
 
@@ -34,6 +35,8 @@ Options::Options(const scene::Scene& scene, real fastest) : Options() {
     if (const auto* t = scene.effect("surface_tension")) sigma = t->number("sigma");
     if (diffusion > 0 && !continuity)
         scene.refuse("effects.density_diffusion", "a density that is summed does not diffuse", "set scheme.density = \"continuity\"");
+    if (continuity && particles::vapour_is_named(scene))
+        scene.refuse("heat.vapour", "a density by its rate does not follow a liquid that boils", "set scheme.density = \"summation\"");
     if (sigma > 0 && !tension)
         scene.refuse("effects.surface_tension", "the surface pulls on a liquid that cannot be pulled", "set scheme.tension = true");
     if (const auto* g = scene.effect("gravity")) {

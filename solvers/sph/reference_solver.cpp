@@ -62,7 +62,10 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = this->speed();
     real sum = 0, worst = 0;
-    for (const real rho : fluid_.density) sum += std::max<real>(0, rho / rho_rest_ - 1), worst = std::max(worst, rho / rho_rest_ - 1);
+    for (int i = 0; i < fluid_.count(); ++i) {
+        const real excess = fluid_.density[static_cast<std::size_t>(i)] / this->rest_of(i) - 1;
+        sum += std::max<real>(0, excess), worst = std::max(worst, excess);
+    }
     const real mean = fluid_.count() ? sum / fluid_.count() : 0;
     this->end_step();
     return this->report(dt, speed, {mean, worst});
@@ -82,6 +85,7 @@ void ReferenceSphSolver<D>::find_neighbours() {
     for (int i = 0; i < fluid_.count(); ++i) x_.push_back(particles::point_of(fluid_.position(i) - fluid_.domain.centre()));
     reference_.find_neighbours(x_);
     add_solids(reference_, fluid_.domain, x_);
+    this->expand();
     rho_rest_ = rest_density_.at(fluid_.time);
     reference_.p.wall_rho = std::min(rho_rest_, fluid_.rho0);
 }
@@ -91,11 +95,12 @@ template <int D>
 void ReferenceSphSolver<D>::find_densities() {
     const auto timed = passes_.time("density");
     if (!options_.continuity) fluid_.density = reference_.densities(x_);
+    rise_ = fluid_.carried;
     for (int i = 0; i < fluid_.count(); ++i) {
         const auto at = static_cast<std::size_t>(i);
-        fluid_.carried[at] = options_.pressure(fluid_.density[at], rho_rest_ * this->rest_of(fluid_, i));
+        fluid_.carried[at] = options_.pressure(fluid_.density[at], this->rest_of(i));
+        rise_[at] = fluid_.carried[at] - rise_[at];
     }
-    this->set_rest();
 }
 
 template <int D>
@@ -148,7 +153,8 @@ void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
     particles::meet_bodies(reference_, fluid_.domain, x_, bodies_->meetings());
     beside_bodies_.clear();
     for (auto& m : bodies_->meetings()) {
-        const Vec<D> beyond = meet_body(options_, reference_.p, fluid_, m.particle, dt, m);
+        const Vec<D> beyond = meet_body(options_, reference_.p, fluid_, m.particle,
+                                        bodies_->over_last(dt) * rise_[static_cast<std::size_t>(m.particle)], dt, m);
         for (int b = 0; b < D; ++b) a[static_cast<std::size_t>(m.particle)][static_cast<std::size_t>(b)] += beyond[b];
         beside_bodies_.push_back(m.particle);
     }

@@ -35,7 +35,8 @@ private:
     std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }
 
     std::vector<int> beside_bodies_;
-    Points x_;  // where the step began
+    std::vector<double> rise_;  // of the pressure in the last step
+    Points x_;                  // where the step began
 };
 
 }  // namespace weir::sph

@@ -29,7 +29,8 @@ SphSolver<D>::SphSolver(const scene::Scene& scene, Fluid<D>&& start)
 
 template <int D>
 SphSolver<D>::SphSolver(const Options& options, const scene::Scene& scene, Fluid<D>&& start)
-    : Base(options, scene, std::move(start)), params_(sph_params<SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
+    : Base(options, scene, std::move(start)),
+      params_(sph_params<SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)),
       exact_(sph_params<particles::plain::SphParams, D>(options_, fluid_.domain.spacing, fluid_.rho0)) {
     kernels_ = smoothing_params(params_, fluid_);
     if (scene.effect("surface_tension")) effects_.add("surface_tension", std::make_unique<SurfaceTension<D>>(params_, walls_, solids_));
@@ -58,12 +59,12 @@ StepReport SphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back();  // of what pushed
+    if (bodies_) give_back();                           // of what pushed
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = this->speed();
-    const Compression c = particles::compression_of(fluid_, rho_rest_);
+    const Compression c = particles::compression_of(fluid_, rho_rest_, this->vapour());
     this->end_step();
     return this->report(dt, speed, c);
 }
@@ -76,6 +77,7 @@ void SphSolver<D>::find_neighbours() {
     pairs_.fit(velocity_, 4);
     pairs_.fit(acceleration_, 4);
     solids_.mark(pairs_);
+    this->expand();
     rho_rest_ = rest_density_.at(fluid_.time);
     params_.wall_rho = static_cast<float>(std::min(rho_rest_, fluid_.rho0));
 }
@@ -92,7 +94,8 @@ SphPass SphSolver<D>::pass() {
             acceleration_.data(),
             pairs_.list().first(),
             pairs_.list().rows(),
-            options_.wall_forces()};
+            options_.wall_forces(),
+            this->rest()};
 }
 
 template <int D>
@@ -112,7 +115,7 @@ void SphSolver<D>::find_densities() {
 template <int D>
 void SphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");
-    load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0 * this->rest_of(fluid_, i); });
+    load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0 * this->ice_rest(i); });
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
     const auto rate = table.rate[options_.diffusion > 0];
@@ -152,9 +155,13 @@ void SphSolver<D>::load(F&& more) {
 
 template <int D>
 void SphSolver<D>::find_pressures() {
+    if (bodies_) rise_.resize(fluid_.id.size());
     load([&](int k, int i) {
-        const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], rho_rest_ * this->rest_of(fluid_, i));
-        if (!pairs_.is_image(k)) fluid_.carried[static_cast<std::size_t>(i)] = pressure;
+        const real pressure = options_.pressure(fluid_.density[static_cast<std::size_t>(i)], this->rest_of(i));
+        if (pairs_.is_image(k)) return pressure;
+        real& carried = fluid_.carried[static_cast<std::size_t>(i)];
+        if (bodies_) rise_[static_cast<std::size_t>(i)] = pressure - carried;
+        carried = pressure;
         return pressure;
     });
 }
@@ -202,7 +209,7 @@ void SphSolver<D>::meet_bodies(real dt) {
         const int k = m.particle, i = beside_bodies_[static_cast<std::size_t>(at)] = pairs_.owner(k);
         m.particle = i;
         if (m.body < 0) return;
-        const Vec<D> beyond = meet_body(options_, exact_, fluid_, i, dt, m);
+        const Vec<D> beyond = meet_body(options_, exact_, fluid_, i, bodies_->over_last(dt) * rise_[static_cast<std::size_t>(i)], dt, m);
         for (int a = 0; a < D; ++a) acceleration_[static_cast<std::size_t>(4 * k + a)] += static_cast<float>(beyond[a]);
     });
 }

@@ -43,8 +43,9 @@ private:
     particles::single::SphParams params_;
     particles::plain::SphParams exact_;  // as bodies read them
     std::vector<float> velocity_, acceleration_, density_;
-    std::vector<int> beside_bodies_;     // particles of the state
-    bool sticky_solids_ = false;  // whether the liquid sticks to any
+    std::vector<int> beside_bodies_;  // particles of the state
+    std::vector<real> rise_;          // of the pressure in the last step, where there are bodies [Pa]
+    bool sticky_solids_ = false;      // whether the liquid sticks to any
 };
 
 }  // namespace weir::sph

@@ -114,20 +114,21 @@ void drift(particles::Fluid<D>& fluid, real dt) {
 }
 
 template <int D>
-Vec<D> meet_body(const Options& o, const particles::plain::SphParams& p, const particles::Fluid<D>& fluid, int i, real dt,
+Vec<D> meet_body(const Options& o, const particles::plain::SphParams& p, const particles::Fluid<D>& fluid, int i, real rise, real dt,
                  particles::Meeting<D>& m) {
     const auto& solids = fluid.domain.solids;
     const std::size_t solid = fluid.domain.first_body() + static_cast<std::size_t>(m.body);
-    const real pressure = fluid.carried[static_cast<std::size_t>(i)], plane = norm(m.pull), phi = std::max<real>(0, solids.distance(m.at));
-    Vec<D> by = -2 * pressure / fluid.density[static_cast<std::size_t>(i)] * m.pull, beyond{};
-    if (plane == 0) return beyond;
+    const real plane = norm(m.pull), phi = std::max<real>(0, solids.distance(m.at)), rho = fluid.density[static_cast<std::size_t>(i)];
+    if (plane == 0) return {};
+    const real before = fluid.carried[static_cast<std::size_t>(i)], pressure = o.tension ? before + rise : std::max<real>(0, before + rise);
     const Vec<D> normal = m.pull / plane;  // into the body
-    if (o.wall_forces()) {                 // as sph_wall_force in kernels/sph_pair.inl
-        const real faded = std::min<real>(1, std::max<real>(0, pressure) * p.per_depth);
+    Vec<D> by = -2 * before / rho * m.pull, beyond = -2 * (pressure - before) / rho * m.pull;
+    if (o.wall_forces()) {  // as sph_wall_force in kernels/sph_pair.inl
+        const real faded = std::min<real>(1, std::max<real>(0, before) * p.per_depth);
         Vec<D> g;
         for (int a = 0; a < D; ++a) g[a] = p.gravity[a];
         by -= m.part * faded * g;
-        beyond = -dot(g, normal) * phi * plane * faded * normal;
+        beyond -= dot(g, normal) * phi * plane * faded * normal;
     }
     m.stiff = pressure != 0 ? 4 * o.sound * o.sound * dt * dt : 0;
     if (solids[solid].no_slip) {
@@ -146,8 +147,10 @@ void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>
     for (const int i : near) bodies.push_out(fluid.domain, i, fluid.position(i) + dt * fluid.velocity(i), dt);
 }
 
-template Vec<2> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<2>&, int, real, particles::Meeting<2>&);
-template Vec<3> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<3>&, int, real, particles::Meeting<3>&);
+template Vec<2> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<2>&, int, real, real,
+                          particles::Meeting<2>&);
+template Vec<3> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<3>&, int, real, real,
+                          particles::Meeting<3>&);
 template void find_pushes(particles::BodiesInLiquid<2>&, const particles::Fluid<2>&, const std::vector<int>&, real);
 template void find_pushes(particles::BodiesInLiquid<3>&, const particles::Fluid<3>&, const std::vector<int>&, real);
 template particles::Fluid<2> first_fluid(const scene::Scene&);

@@ -53,12 +53,15 @@ StepLimit stable_step(const Options& options, const particles::Fluid<D>& fluid, 
 /// What is wrong with particles of this speed, in one line; empty where nothing is.
 std::string too_fast(const Options& options, real speed, real time);
 
-/// What a body gives to a particle i that meets it, before the body's own change: the push of the pressure, which goes on inside the body as
-/// it does behind a wall, and the drag of one that the liquid sticks to. Returns the part that the passes over pairs give no solid: of the
-/// pressure behind the body what grows across its surface [m/s^2].
+/// What a body gives to a particle i that meets it, before the body's own change: the push of the pressure, which goes on inside the body
+/// as it does behind a wall, and the drag of one that the liquid sticks to. The pressure is that of the step's end, as the last step
+/// changed it
+/// (`rise`): with that of its begin a body that weighs nothing beats against the water that it moves, in six steps, and nothing damps it.
+/// Returns the part that the passes over pairs give no solid [m/s^2]: of that change, and of the pressure behind the body what grows across
+/// its surface.
 template <int D>
-Vec<D> meet_body(const Options& options, const particles::plain::SphParams& params, const particles::Fluid<D>& fluid, int i, real dt,
-                 particles::Meeting<D>& m);
+Vec<D> meet_body(const Options& options, const particles::plain::SphParams& params, const particles::Fluid<D>& fluid, int i, real rise,
+                 real dt, particles::Meeting<D>& m);
 /// Meetings with the bodies that particles would drift into.
 template <int D>
 void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>& fluid, const std::vector<int>& near, real dt);

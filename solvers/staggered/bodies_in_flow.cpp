@@ -15,17 +15,14 @@ namespace {
 /// is told apart from it, as its added mass is some tenths at least; of turning, which free slip may leave without any, somewhat more.
 constexpr real least_mass = 1e-9, least_inertia = 1e-4;
 
-/// f(I) in [lo, hi) one after another: lists are made in one order, whatever the threads.
-template <int D, class F>
-void in_order(const Index<D>& lo, const Index<D>& hi, F&& f) {
-    for (Index<D> I = lo; I[D - 1] < hi[D - 1];) {
-        f(I);
-        for (int a = 0; a < D; ++a) {
-            if (++I[a] < hi[a] || a == D - 1) break;
-            I[a] = lo[a];
-        }
-    }
-}
+/// Turns of pressure and velocities before the added mass is measured, a solve for each freedom, instead of learnt; and after that.
+constexpr int most_turns = 12, most_turns_measured = 6;
+
+/// What a turn leaves of the pressure's residual, against the right-hand side and against what the last change of the velocities added.
+constexpr real first_turn = 1e-2, of_change = 1e-2;
+
+/// A change tells the added mass if it is this much larger than the residual that was left before it.
+constexpr real differs = 5;
 
 }  // namespace
 
@@ -48,9 +45,11 @@ BodiesInFlow<D>::BodiesInFlow(const scene::Scene& scene)
     const Lattice<D> lattice(scene);
     h_ = lattice.h, h2_ = h_[0] * h_[0], cell_ = 1;
     for (int a = 0; a < D; ++a) cell_ *= h_[a];
-    rhs_ = phi_ = Grid<real, D>(lattice.cells);
+    phi_ = Grid<real, D>(lattice.cells);
+    added_.resize(bodies_.count());
+    masses_.resize(bodies_.count());
     free_.resize(n * bodies_.count());
-    velocity_.resize(free_.size());
+    for (auto* list : {&velocity_, &next_, &before_, &gained_, &heavy_, &met_, &last_, &change_, &missing_}) list->resize(free_.size());
     for (std::size_t b = 0; b < bodies_.count(); ++b)
         for (std::size_t k = 0; k < n; ++k) free_[b * n + k] = !bodies_[b].held[k];
 }
@@ -72,8 +71,17 @@ void BodiesInFlow<D>::fly(SolidPlacement<D>& solids, real dt) {
 }
 
 template <int D>
+void BodiesInFlow<D>::save(Checkpoint& to) const {
+    bodies_.save(to);
+    added_.save(to, "bodies.added");
+    to.put("bodies.gained", gained_);
+}
+
+template <int D>
 void BodiesInFlow<D>::restore(const Checkpoint& from, SolidPlacement<D>& solids) {
     bodies_.restore(from);
+    added_.restore(from, "bodies.added");
+    from.get("bodies.gained", std::span<real>(gained_));
     bodies_.place(solids.solids());
 }
 
@@ -128,7 +136,7 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
             if (lo[d] >= hi[d]) return;  // outside the domain
         }
         const real area = cell_ / h_[a];
-        in_order(lo, hi, [&](const Index<D>& I) {
+        CellBox<D>{lo, hi}.in_order([&](const Index<D>& I) {
             if (open(I) == 1) return;
             const Vec<D> x = s.u.face_centre(a, I), r = x - body.at;
             if (solids.nearest(x) != own) return;
@@ -225,7 +233,7 @@ Twist<D> BodiesInFlow<D>::weight(std::size_t b) const {
 }
 
 template <int D>
-std::array<Twist<D>, BodiesInFlow<D>::n> BodiesInFlow<D>::mass_of(std::size_t b) const {
+rigid::Block<D> BodiesInFlow<D>::mass_of(std::size_t b) const {
     const Body<D>& body = bodies_[b];
     auto m = body.mass_matrix();
     const real displaced = rho_ * body.moments.volume;
@@ -238,11 +246,29 @@ std::array<Twist<D>, BodiesInFlow<D>::n> BodiesInFlow<D>::mass_of(std::size_t b)
     return m;
 }
 
-/// m_kl = ρ ΔV D_k·φ_l, A φ_l = h² D_l.
+/// ρ ℓ ∫ (n, r × n)(n, r × n)ᵀ dS over the wet surface: of a ball and of a disc this is the added mass in unbounded fluid if ℓ is half the
+/// radius and the radius.
 template <int D>
-void BodiesInFlow<D>::add_mass(const MacState<D>& s, poisson::Solver<D>* solver) {
-    added_.resize(n * bodies_.count());
-    if (!solver) return;
+rigid::Block<D> BodiesInFlow<D>::mass_of_wet_surface(const MacState<D>& s, std::size_t body) const {
+    rigid::Block<D> m{};
+    const real layer = s.rho * bodies_[body].radius * (D == 2 ? 1 : 0.5);
+    for (const Cut& c : cuts_[body]) {
+        if (s.cells[c.cell] != Cell::fluid) continue;
+        real area = 0;
+        for (std::size_t k = 0; k < D; ++k) area += c.out[k] * c.out[k];
+        if (area == 0) continue;
+        for (std::size_t k = 0; k < n; ++k)
+            for (std::size_t l = 0; l < n; ++l) m[k][l] += layer / std::sqrt(area) * c.out[k] * c.out[l];
+    }
+    return m;
+}
+
+/// m_kl = ρ ΔV D_k·φ_l, A φ_l = h² D_l, and the mobility that belongs to it.
+template <int D>
+void BodiesInFlow<D>::measure_added_mass(const MacState<D>& s, poisson::Solver<D>& solver) {
+    rigid::Mobility added;
+    added.resize(n * bodies_.count());
+    if (rhs_.empty()) rhs_ = Grid<real, D>(s.extent());
     for (std::size_t b = 0; b < bodies_.count(); ++b)
         for (std::size_t k = 0; k < n && bodies_[b].wet > 0; ++k) {
             if (!free_[b * n + k]) continue;
@@ -251,85 +277,171 @@ void BodiesInFlow<D>::add_mass(const MacState<D>& s, poisson::Solver<D>* solver)
             rhs_.fill(0);
             scatter(b, unit, h2_, rhs_);
             phi_.fill(0);
-            solver->solve(phi_, rhs_);
+            solver.solve(phi_, rhs_);
             for (std::size_t o = 0; o < bodies_.count(); ++o) {
                 const Twist<D> column = push(o, phi_);
-                for (std::size_t l = 0; l < n; ++l) added_(o * n + l, b * n + k) = s.rho * column[l];
+                for (std::size_t l = 0; l < n; ++l) added(o * n + l, b * n + k) = s.rho * column[l];
             }
         }
-    rhs_.fill(0), phi_.fill(0);
-    for (std::size_t i = 0; i < added_.size; ++i)  // what the solver's tolerance leaves
-        for (std::size_t j = 0; j < i; ++j) added_(i, j) = added_(j, i) = 0.5 * (added_(i, j) + added_(j, i));
+    phi_.fill(0);
+    for (std::size_t i = 0; i < added.size; ++i)  // what the solver's tolerance leaves
+        for (std::size_t j = 0; j < i; ++j) added(i, j) = added(j, i) = 0.5 * (added(i, j) + added(j, i));
+    added_.learn(added);
+    for (std::size_t i = 0; i < added.size; ++i)
+        for (std::size_t l = 0; l < n; ++l) added(i, i / n * n + l) += masses_[i / n][i % n][l];
+    rigid::invert(added, free_, mobility_);
 }
 
-/// (M + m)(V − V_before) = dt (G + F).
+/// What the bodies are as they stand, and where their velocities will be if they go on changing as in the last step.
 template <int D>
-void BodiesInFlow<D>::move_under_forces(const MacState<D>& s, real dt) {
-    total_ = added_;
-    std::vector<real>& impulse = before_;
-    impulse.assign(free_.size(), 0.0);
-    for (std::size_t b = 0; b < bodies_.count(); ++b) {
-        const auto m = mass_of(b);
-        const Twist<D> pushed = force(s, b), heavy = weight(b);
-        for (std::size_t k = 0; k < n; ++k) {
-            for (std::size_t l = 0; l < n; ++l) total_(b * n + k, b * n + l) += m[k][l];
-            impulse[b * n + k] = dt * (pushed[k] + heavy[k]);
-            if (k < D) impulse[b * n + k] += dt * (m[k][k] - bodies_[b].mass) * gravity_[k];
-        }
-    }
-    rigid::invert(total_, free_, mobility_);
-    for (std::size_t i = 0; i < velocity_.size(); ++i) {
-        velocity_[i] = bodies_[i / n].velocity[i % n];
-        for (std::size_t j = 0; j < velocity_.size(); ++j) velocity_[i] += mobility_(i, j) * impulse[j];
-    }
-}
-
-template <int D>
-void BodiesInFlow<D>::touch(const geometry::Solids<D>& solids, real dt) {
-    rigid::Surroundings<D> around = bodies_.surroundings(solids);
-    real fastest = 0;
-    for (std::size_t b = 0; b < bodies_.count(); ++b) {
-        real speed = 0, turning = 0;
-        for (std::size_t k = 0; k < n; ++k) (k < D ? speed : turning) += std::abs(velocity_[b * n + k]);
-        fastest = std::max(fastest, speed + turning * bodies_[b].radius);
-    }
-    around.reach = 2 * dt * fastest + 1e-2 * norm(h_);
-    contacts_.find(bodies_.all(), around);
-    for (auto& body : bodies_.all()) body.touches = false;
-    if (!contacts_.empty()) contacts_.resolve(bodies_.all(), mobility_, velocity_, dt, norm(gravity_));
-}
-
-template <int D>
-void BodiesInFlow<D>::react(MacState<D>& s, SolidPlacement<D>& placement, real dt, poisson::Solver<D>* solver, Grid<real, D>* b) {
-    find_cuts(s, placement);
-    for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].wet = solver ? wet_part(s, i) : 0;
-    add_mass(s, solver);
-    move_under_forces(s, dt);
-    touch(placement.solids(), dt);
-    bool changed = false;
+void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
         Body<D>& body = bodies_[i];
+        body.wet = wet ? wet_part(s, i) : 0;
+        masses_[i] = mass_of(i);
+        added_.see(i, body.wet > 0 ? mass_of_wet_surface(s, i) : rigid::Block<D>{});
+        const Twist<D> heavy = weight(i);
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t at = i * n + k;
+            before_[at] = velocity_[at] = body.velocity[k];
+            next_[at] = before_[at] + (body.wet > 0 && !body.touches ? dt * gained_[at] : 0);
+            heavy_[at] = dt * heavy[k];
+            if (k < D) heavy_[at] += dt * (masses_[i][k][k] - body.mass) * gravity_[k];
+        }
+    }
+    added_.begin(masses_, free_, mobility_);
+}
+
+/// The impulses of the pressure in a time dt.
+template <int D>
+void BodiesInFlow<D>::pushed(const MacState<D>& s, std::vector<real>& impulse, real dt) const {
+    for (std::size_t b = 0; b < bodies_.count(); ++b) {
+        const Twist<D> f = bodies_[b].wet > 0 ? force(s, b) : Twist<D>{};
+        for (std::size_t k = 0; k < n; ++k) impulse[b * n + k] = dt * f[k];
+    }
+}
+
+/// V += (M + m)⁻¹ (dt (G + F) − M (V − V_before)): Newton's step, as F falls by m V/dt.
+template <int D>
+void BodiesInFlow<D>::move_under_forces() {
+    for (std::size_t i = 0; i < missing_.size(); ++i) {
+        missing_[i] = met_[i] + heavy_[i];
+        for (std::size_t l = 0, at = i / n * n; l < n; ++l) missing_[i] -= masses_[i / n][i % n][l] * (velocity_[at + l] - before_[at + l]);
+    }
+    next_ = velocity_;
+    for (std::size_t i = 0; i < next_.size(); ++i)
+        for (std::size_t j = 0; j < next_.size(); ++j) next_[i] += mobility_(i, j) * missing_[j];
+}
+
+template <int D>
+void BodiesInFlow<D>::touch(const geometry::Solids<D>& solids, real dt, bool anew) {
+    if (anew) {
+        rigid::Surroundings<D> around = bodies_.surroundings(solids);
+        real fastest = 0;
+        for (std::size_t b = 0; b < bodies_.count(); ++b) {
+            real speed = 0, turning = 0;
+            for (std::size_t k = 0; k < n; ++k) (k < D ? speed : turning) += std::abs(next_[b * n + k]);
+            fastest = std::max(fastest, speed + turning * bodies_[b].radius);
+        }
+        around.reach = 2 * dt * fastest + 1e-2 * norm(h_);
+        contacts_.find(bodies_.all(), around);
+    }
+    for (auto& body : bodies_.all()) body.touches = false;
+    if (!contacts_.empty()) contacts_.resolve(bodies_.all(), mobility_, next_, dt, norm(gravity_));
+}
+
+/// Takes the next velocities; answers by what that changes the right-hand side, ‖δb‖₂.
+template <int D>
+real BodiesInFlow<D>::adopt(const MacState<D>& s, real dt, Grid<real, D>* b) {
+    real sum = 0;
+    const real scale = h2_ * s.rho / (dt * cell_);
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
         Twist<D> change{};
         for (std::size_t k = 0; k < n; ++k) {
-            change[k] = velocity_[i * n + k] - body.velocity[k];
-            body.velocity[k] = velocity_[i * n + k];
-            changed = changed || (change[k] != 0 && body.wet > 0);
+            change_[i * n + k] = change[k] = next_[i * n + k] - velocity_[i * n + k];
+            velocity_[i * n + k] = next_[i * n + k];
         }
-        if (b) scatter(i, change, -h2_ * s.rho / dt, *b);
+        if (!b || bodies_[i].wet == 0) continue;
+        for (const Cut& c : cuts_[i]) {
+            if (s.cells[c.cell] != Cell::fluid) continue;
+            real out = 0;
+            for (std::size_t k = 0; k < n; ++k) out += c.out[k] * change[k];
+            (*b)[c.cell] -= scale * out;
+            sum += scale * out * (scale * out);
+        }
     }
-    if (solver && changed) solver->solve(s.p, *b);
-    for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].force = force(s, i);
+    return std::sqrt(sum);
+}
+
+template <int D>
+void BodiesInFlow<D>::learn() {
+    for (std::size_t i = 0; i < last_.size(); ++i) last_[i] -= met_[i];
+    added_.learn(change_, last_, masses_, free_, mobility_);
+}
+
+/// ‖b‖₂ over the fluid.
+template <int D>
+real BodiesInFlow<D>::norm_of(const MacState<D>& s, const Grid<real, D>& b) const {
+    return std::sqrt(sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? b(I) * b(I) : 0; }));
+}
+
+template <int D>
+void BodiesInFlow<D>::turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, const Grid<real, D>& b) {
+    solver.aim(tolerance);
+    const poisson::Report& report = solver.solve(s.p, b);
+    const int iterations = report_.iterations + report.iterations;
+    const real first = report_.iterations == 0 ? report.residual_before : report_.residual_before;
+    report_ = report;
+    report_.iterations = iterations, report_.residual_before = first;
+    ++turns_;
+}
+
+template <int D>
+const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>& placement, real dt, poisson::Solver<D>* solver,
+                                              real tolerance, Grid<real, D>* b) {
+    find_cuts(s, placement);
+    begin(s, solver != nullptr, dt);
+    const bool coupled = std::any_of(bodies_.all().begin(), bodies_.all().end(), [](const Body<D>& body) { return body.wet > 0; });
+    turns_ = report_.iterations = 0;
+    adopt(s, dt, b);
+    const real whole = coupled ? norm_of(s, *b) : 0, enough = coupled ? 0.5 * tolerance : tolerance;
+    real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: of the residual, before the last change
+    for (int count = 0;; ++count) {
+        if (solver) turn(s, *solver, aim, *b);
+        std::swap(met_, last_);
+        pushed(s, met_, dt);
+        if (count > 0 && change > differs * left) learn();
+        move_under_forces();
+        touch(placement.solids(), dt, count == 0);
+        left = aim, change = adopt(s, dt, b) / whole;
+        if (!coupled || (change <= enough && aim <= enough)) break;
+        if (count == most_turns) measure_added_mass(s, *solver);
+        if (count == most_turns + most_turns_measured) break;
+        aim = std::max(enough, of_change * std::min(change, 1.0));
+    }
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+        Body<D>& body = bodies_[i];
+        for (std::size_t k = 0; k < n; ++k) {
+            body.velocity[k] = velocity_[i * n + k];
+            gained_[i * n + k] = (velocity_[i * n + k] - before_[i * n + k]) / dt;
+        }
+        body.force = force(s, i);
+    }
+    if (solver) solver->aim(tolerance);
     bodies_.place(placement.solids());
     set_velocities(s);
+    return report_;
 }
 
 template <int D>
 std::size_t BodiesInFlow<D>::bytes() const {
-    std::size_t total = bodies_.bytes() + (rhs_.size() + phi_.size()) * sizeof(real);
+    std::size_t total = bodies_.bytes() + (rhs_.size() + phi_.size()) * sizeof(real) + added_.bytes();
     for (const auto& faces : faces_) total += faces.capacity() * sizeof(Face);
     for (const auto& cuts : cuts_) total += cuts.capacity() * sizeof(Cut);
-    for (const auto* m : {&added_, &total_, &mobility_}) total += m->entries.capacity() * sizeof(real);
-    return total + free_.size() + (velocity_.capacity() + before_.capacity()) * sizeof(real);
+    total += mobility_.entries.capacity() * sizeof(real) + masses_.capacity() * sizeof(rigid::Block<D>) + free_.size();
+    for (const auto* list : {&velocity_, &next_, &before_, &gained_, &heavy_, &met_, &last_, &change_, &missing_})
+        total += list->capacity() * sizeof(real);
+    return total;
 }
 
 template class BodiesInFlow<2>;

@@ -3,12 +3,15 @@
 //
 //     A p = −h² ρ/dt (∇·u* + Σ D_k V_k),      M (V − V*) = dt F,      F_k = ΔV Σ p D_k     [ΔV: volume of a cell]
 //
-// Each A φ_k = h² D_k gives a column of the grid's own added mass, m_kl = ρ ΔV D_k·φ_l, and V follows from (M + m) V: well posed for bodies
-// that are lighter than the water, or weigh nothing. The same matrix is the metric of contacts, so that what touches stands still in the
-// water too. Of a wall that cuts a cell the grid knows the pressure in the cell's middle alone: F takes it at the wall, by the gradient
-// that water at rest has, so that a flat bottom floats between the cells too.
+// Eliminating p leaves (M + m) V with the grid's own added mass m_kl = ρ ΔV D_k·A⁻¹ h² D_l: well posed for bodies that are lighter than the
+// water, or weigh nothing. It is solved by turns, the pressure with the velocities that are known and the velocities with the pressure,
+// where an estimate of m that learns from every turn (rigid/added_mass.hpp) says how far to go; contacts are met in the same metric. The
+// pressure of a turn is solved as far as the velocities are known, so that all turns together cost little more than one solve. Of a wall
+// that cuts a cell the grid knows the pressure in the cell's middle alone: F takes it at the wall, by the gradient that water at rest has,
+// so that a flat bottom floats between the cells too.
 #pragma once
 #include "poisson/poisson.hpp"
+#include "rigid/added_mass.hpp"
 #include "rigid/bodies.hpp"
 #include "staggered/solid_faces.hpp"
 #include "staggered/state.hpp"
@@ -32,14 +35,15 @@ public:
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
     /// A time dt along their velocities.
     void fly(SolidPlacement<D>& solids, real dt);
-    /// After the pressure was solved with the velocities of before: the velocities of now, and the pressure that belongs to them.
-    /// `b` is the right-hand side that gave s.p; nullptr: there is no fluid.
-    void react(MacState<D>& s, SolidPlacement<D>& solids, real dt, poisson::Solver<D>* solver, Grid<real, D>* b);
+    /// The pressure s.p and the velocities of the bodies: A p = b with what their velocities add to b, which is that of before on entry.
+    /// No solver: there is no fluid.
+    const poisson::Report& solve(MacState<D>& s, SolidPlacement<D>& solids, real dt, poisson::Solver<D>* solver, real tolerance,
+                                 Grid<real, D>* b);
 
     const Vec<D>& gravity() const { return gravity_; }
-    /// Added mass and mass of the last step, free of what was held, for tests and studies.
-    const rigid::Mobility& added_mass() const { return added_; }
-    void save(Checkpoint& to) const { bodies_.save(to); }
+    /// Pressure solves of the last step, for tests and studies.
+    int turns() const { return turns_; }
+    void save(Checkpoint& to) const;
     void restore(const Checkpoint& from, SolidPlacement<D>& solids);
     std::size_t bytes() const;
 
@@ -67,10 +71,17 @@ private:
     rigid::Twist<D> force(const MacState<D>& s, std::size_t body) const;
     real wet_part(const MacState<D>& s, std::size_t body) const;
     rigid::Twist<D> weight(std::size_t body) const;
-    std::array<rigid::Twist<D>, n> mass_of(std::size_t body) const;
-    void add_mass(const MacState<D>& s, poisson::Solver<D>* solver);
-    void move_under_forces(const MacState<D>& s, real dt);
-    void touch(const geometry::Solids<D>& solids, real dt);
+    rigid::Block<D> mass_of(std::size_t body) const;
+    rigid::Block<D> mass_of_wet_surface(const MacState<D>& s, std::size_t body) const;
+    void begin(const MacState<D>& s, bool wet, real dt);
+    void measure_added_mass(const MacState<D>& s, poisson::Solver<D>& solver);
+    void pushed(const MacState<D>& s, std::vector<real>& impulse, real dt) const;
+    void learn();
+    void move_under_forces();
+    void touch(const geometry::Solids<D>& solids, real dt, bool anew);
+    real norm_of(const MacState<D>& s, const Grid<real, D>& b) const;
+    real adopt(const MacState<D>& s, real dt, Grid<real, D>* b);
+    void turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, const Grid<real, D>& b);
 
     rigid::Bodies<D> bodies_;
     rigid::Contacts<D> contacts_;
@@ -79,10 +90,17 @@ private:
     Vec<D> h_{};
     std::vector<std::vector<Face>> faces_;  // of each body, those that it closes, wholly or in part
     std::vector<std::vector<Cut>> cuts_;
-    Grid<real, D> rhs_, phi_;
-    rigid::Mobility added_, total_, mobility_;
+    Grid<real, D> rhs_, phi_;  // of the added mass where it must be measured; phi_ else zero, for a list's places
+    rigid::AddedMass<D> added_;
+    rigid::Mobility mobility_;
+    std::vector<rigid::Block<D>> masses_;
     std::vector<char> free_;
-    std::vector<real> velocity_, before_;
+    std::vector<real> velocity_, next_;     // of all bodies, this turn's and the next one's
+    std::vector<real> before_, gained_;     // when the step began; what the last step changed them by, over dt
+    std::vector<real> heavy_, met_, last_;  // weights; the pressure's impulses of this turn and of the last one
+    std::vector<real> change_, missing_;
+    poisson::Report report_;
+    int turns_ = 0;
 };
 
 }  // namespace weir::staggered

@@ -135,7 +135,7 @@ void add_gradient(MacVelocity<D>& u, const MacState<D>& s, real factor) {
 
 template <int D>
 Projection<D>::Projection(const PoissonChoice& choice, const MacState<D>& s)
-    : solver_(poisson::make_solver<D>(choice.method, choice.options)), rhs_(s.extent()) {
+    : solver_(poisson::make_solver<D>(choice.method, choice.options)), tolerance_(choice.options.tolerance), rhs_(s.extent()) {
     for (int a = 0; a < D; ++a) {
         const real ratio = s.u.h[0] / s.u.h[a];
         matrix_.axis_weight[a] = ratio * ratio;
@@ -203,8 +203,7 @@ static void set_rhs(const MacState<D>& s, real scale, Grid<real, D>& rhs) {
 template <int D>
 const poisson::Report& Projection<D>::project(MacState<D>& s, real dt, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
     set_rhs(s, -s.u.h[0] * s.u.h[0] * s.rho / dt, rhs_);
-    const poisson::Report& report = solver_->solve(s.p, rhs_);
-    if (bodies) bodies->react(s, *solids, dt, solver_.get(), &rhs_);
+    const poisson::Report& report = bodies ? bodies->solve(s, *solids, dt, solver_.get(), tolerance_, &rhs_) : solver_->solve(s.p, rhs_);
     add_gradient(s.u, s, -dt / s.rho);
     return report;
 }

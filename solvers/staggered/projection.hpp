@@ -60,6 +60,7 @@ private:
     void leave_out_ice();
 
     std::unique_ptr<poisson::Solver<D>> solver_;
+    real tolerance_ = 0;
     poisson::Operator<D> matrix_;
     Grid<real, D> rhs_;
 };

@@ -1,8 +1,10 @@
 #include "staggered/solid_faces.hpp"
 
 #include "core/parallel.hpp"
+#include "staggered/rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace weir::staggered {
 
@@ -46,27 +48,63 @@ template <int D>
 void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
     solids_.set_time(t);
-    for_each_cell(corner_.extent(), [&](const Index<D>& I) {
-        Vec<D> x;
-        for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
-        corner_(I) = solids_.distance(x);
-    });
-    for (int a = 0; a < D; ++a) {
-        auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
-        for_each_cell(open.extent(), [&](const Index<D>& I) {
-            open(I) = fraction(corner_, a, I);
-            velocity(I) = open(I) < 1 ? solids_.velocity(s.u.face_centre(a, I))[a] : 0;
+    find_changed(s);
+    for (const CellBox<D>& box : changed_) {
+        for_each_in(box.lo, box.hi + Index<D>::constant(1), [&](const Index<D>& I) {
+            Vec<D> x;
+            for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
+            corner_(I) = solids_.distance(x);
+        });
+        for (int a = 0; a < D; ++a) {
+            auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
+            for_each_in(box.lo, box.hi + e<D>(a), [&](const Index<D>& I) {
+                open(I) = fraction(corner_, a, I);
+                velocity(I) = open(I) < 1 ? solids_.velocity(s.u.face_centre(a, I))[a] : 0;
+            });
+        }
+        for_each_in(box.lo, box.hi, [&](const Index<D>& I) {
+            real open = 0;
+            for (int a = 0; a < D; ++a) {
+                const auto& w = s.solid.open[static_cast<std::size_t>(a)];
+                open += w(I) + w(I + e<D>(a));
+            }
+            s.cells(I) = open > 0 ? Cell::fluid : Cell::solid;
         });
     }
-    for_each_cell(s.extent(), [&](const Index<D>& I) {
-        real open = 0;
-        for (int a = 0; a < D; ++a) {
-            const auto& w = s.solid.open[static_cast<std::size_t>(a)];
-            open += w(I) + w(I + e<D>(a));
-        }
-        s.cells(I) = open > 0 ? Cell::fluid : Cell::solid;
-    });
-    find_extended(s);
+    extends_ = false;
+}
+
+template <int D>
+CellBox<D> SolidPlacement<D>::box_around(const MacState<D>& s, std::size_t solid) const {
+    const geometry::Ball<D>& ball = solids_.ball(solid);
+    CellBox<D> box;
+    for (int d = 0; d < D; ++d) {
+        const int margin = static_cast<int>(norm(s.u.h) / s.u.h[d]) + 1, n = s.u.cells[d];
+        const auto cell = [&](real x) { return static_cast<int>(std::clamp(std::floor((x - s.u.origin[d]) / s.u.h[d]), -1e6, 1e6)); };
+        box.lo[d] = std::clamp(cell(ball.middle[d] - ball.radius) - margin, 0, n);
+        box.hi[d] = std::clamp(cell(ball.middle[d] + ball.radius) + 1 + margin, 0, n);
+    }
+    return box;
+}
+
+/// Everything at first, and where a solid moves of which no ball is known that holds it.
+template <int D>
+void SolidPlacement<D>::find_changed(const MacState<D>& s) {
+    changed_.clear();
+    bool everything = !placed_;
+    for (std::size_t i = 0; i < solids_.count(); ++i) everything = everything || solids_[i].motion.moves();
+    held_.resize(solids_.count());
+    for (std::size_t i = 0; i < solids_.count(); ++i) {
+        if (!solids_[i].free) continue;
+        const CellBox<D> now = box_around(s, i);
+        CellBox<D> both = now;
+        for (int d = 0; placed_ && d < D; ++d)
+            both.lo[d] = std::min(both.lo[d], held_[i].lo[d]), both.hi[d] = std::max(both.hi[d], held_[i].hi[d]);
+        held_[i] = now;
+        if (!everything) changed_.push_back(both);
+    }
+    if (everything) changed_.push_back({Index<D>{}, s.extent()});
+    placed_ = true;
 }
 
 template <int D>
@@ -83,6 +121,7 @@ void SolidPlacement<D>::set_faces(MacState<D>& s) const {
 /// Closed faces of free-slip solids that have an open neighbour along the grid, with the solid's normal there.
 template <int D>
 void SolidPlacement<D>::find_extended(const MacState<D>& s) {
+    extends_ = true;
     extended_.clear();
     for (int a = 0; a < D; ++a) {
         const auto& open = s.solid.open[static_cast<std::size_t>(a)];
@@ -105,13 +144,15 @@ void SolidPlacement<D>::find_extended(const MacState<D>& s) {
 
 template <int D>
 void SolidPlacement<D>::see_velocities(const MacState<D>& s) {
-    for (Extended& f : extended_) f.velocity = solids_.velocity(s.u.face_centre(f.axis, f.face));
+    for (Extended& f : extended_)
+        if (extends_) f.velocity = solids_.velocity(s.u.face_centre(f.axis, f.face));
 }
 
 /// The mean of the open neighbours, then without what would pass through the solid: u ← u − ((u − u_solid)·n) n. Left in, it feeds the
 /// flow beside the solid and grows.
 template <int D>
-void SolidPlacement<D>::extend_velocity(MacState<D>& s) const {
+void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
+    if (any() && !extends_) find_extended(s);
     if (extended_.empty()) return;
     const int count = static_cast<int>(extended_.size());
     parallel_for(0, count, [&](int i) {
@@ -162,7 +203,10 @@ real SolidPlacement<D>::max_rate(const MacState<D>& s) const {
     real rate = 0;
     for (int a = 0; a < D; ++a) {
         const auto& velocity = s.solid.velocity[static_cast<std::size_t>(a)];
-        rate = std::max(rate, max_over(velocity.extent(), [&](const Index<D>& I) { return std::abs(velocity(I)); }) / s.u.h[a]);
+        real fastest = 0;  // of solids that moved: all others stand
+        for (const CellBox<D>& box : changed_)
+            box.faces(a).in_order([&](const Index<D>& I) { fastest = larger_or_nan(fastest, std::abs(velocity(I))); });
+        rate = std::max(rate, fastest / s.u.h[a]);
     }
     return rate;
 }

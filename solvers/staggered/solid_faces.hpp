@@ -16,6 +16,32 @@ inline constexpr real least_open_fraction = 0.01;
 /// the rest of what larger faces do, over this fraction, and squeezes out at any speed. They get the continued velocity instead.
 inline constexpr real least_trusted_fraction = 0.1;
 
+/// Cells from `lo` to before `hi`.
+template <int D>
+struct CellBox {
+    Index<D> lo{}, hi{};
+    bool holds(const Index<D>& I) const {
+        for (int d = 0; d < D; ++d)
+            if (I[d] < lo[d] || I[d] >= hi[d]) return false;
+        return true;
+    }
+    /// Its faces along an axis, as the cells above them.
+    CellBox faces(int a) const { return {lo, hi + e<D>(a)}; }
+    /// f(I) one after another, in the order of a grid, whatever the threads.
+    template <class F>
+    void in_order(F&& f) const {
+        for (int d = 0; d < D; ++d)
+            if (lo[d] >= hi[d]) return;
+        for (Index<D> I = lo; I[D - 1] < hi[D - 1];) {
+            f(I);
+            for (int a = 0; a < D; ++a) {
+                if (++I[a] < hi[a] || a == D - 1) break;
+                I[a] = lo[a];
+            }
+        }
+    }
+};
+
 template <int D>
 class SolidPlacement {
 public:
@@ -25,14 +51,19 @@ public:
     const geometry::Solids<D>& solids() const { return solids_; }
     geometry::Solids<D>& solids() { return solids_; }
 
-    /// Open fractions, face velocities and cell flags at time t.
+    /// Open fractions, face velocities and cell flags at time t; those that the solids have not been near since they were placed last stay
+    /// as they are.
     void place(MacState<D>& s, real t);
+    /// Where that was: boxes of cells that reach further from the solids than a cell's diagonal.
+    const std::vector<CellBox<D>>& changed() const { return changed_; }
+    /// Distance from the lower corner of a cell; as it was when solids were near last.
+    real corner_distance(const Index<D>& I) const { return corner_(I); }
     /// u·n = u_solid·n on closed faces.
     void set_faces(MacState<D>& s) const;
     /// The solids move at other speeds than when they were placed.
     void see_velocities(const MacState<D>& s);
     /// Continues s.before one face into solids with free slip: tangentially as the flow beside, through the surface as the solid moves.
-    void extend_velocity(MacState<D>& s) const;
+    void extend_velocity(MacState<D>& s);
     /// Continues a field's `before` one cell into solids: the mean of the neighbours that are not solid.
     void extend_field(const MacState<D>& s, Padded<D>& before) const;
     /// Largest |velocity| / h of a solid's face now [1/s].
@@ -46,11 +77,15 @@ private:
         Vec<D> normal, velocity;  // of the solid there
         real value;
     };
+    void find_changed(const MacState<D>& s);
+    CellBox<D> box_around(const MacState<D>& s, std::size_t solid) const;
     void find_extended(const MacState<D>& s);
 
     geometry::Solids<D> solids_;
-    Grid<real, D> corner_;  // signed distance at the corners of cells
-    mutable std::vector<Extended> extended_;
+    Grid<real, D> corner_;                    // signed distance at the corners of cells
+    std::vector<CellBox<D>> changed_, held_;  // held_: around each solid that is free, when placed last
+    std::vector<Extended> extended_;
+    bool placed_ = false, extends_ = false;  // extends_: extended_ is of the solids as they stand
 };
 
 /// Force of the pressure on all solids [N; per metre of depth in 2D]: Σ p S, S the area of solid surface in each fluid cell, whose

@@ -4,6 +4,8 @@
 #include "core/scratch.hpp"
 #include "surface/marker_lanes.hpp"
 
+#include <cstring>
+
 namespace weir::surface {
 
 /// Part of a cell's width: a marker nearer to the surface than this may be on either side of it.
@@ -22,6 +24,30 @@ LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
     layer_start_.assign(static_cast<std::size_t>(layers_) + 1, 0);
 }
 
+/// f(I) for cells that are open and have a closed neighbour, in the order of the grid.
+template <int D>
+template <class F>
+void LevelSet<D>::for_each_open_beside_closed(F&& f) const {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    const auto has_closed = [&](std::size_t line) { return std::memchr(&closed_[line], 1, n) != nullptr; };
+    for (std::size_t line = 0; line < closed_.size(); line += n) {
+        std::array<const std::uint8_t*, 2 * D> beside{};  // lines of cells next to this one, and itself
+        std::size_t count = 0;
+        Index<D> I = frame_.index_of(line);
+        if (has_closed(line)) beside[count++] = &closed_[line];
+        for (int d = 1; d < D; ++d)
+            for (const int by : {-1, 1})
+                if (Index<D> J = I; frame_.step(J, d, by) && has_closed(closed_.linear(J))) beside[count++] = &closed_(J);
+        for (std::size_t i = 0; count > 0 && i < n; ++i) {
+            if (closed_[line + i]) continue;
+            bool found = i == 0 || i + 1 == n || closed_[line + i - 1] || closed_[line + i + 1];
+            for (std::size_t k = 0; k < count; ++k) found = found || beside[k][i];
+            I[0] = static_cast<int>(i);
+            if (found) f(I);
+        }
+    }
+}
+
 template <int D>
 void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed) {
     closed_ = closed;
@@ -35,8 +61,7 @@ void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed) {
                 if (frame_.step(J, d, by) && closed_(J) && layer_(J) != seen) layer_(J) = seen, skin_.push_back(J);
             }
     };
-    for (std::size_t i = 0; i < closed_.size(); ++i)
-        if (!closed_[i]) add_neighbours(frame_.index_of(i));
+    for_each_open_beside_closed(add_neighbours);
     for (int layer = 1; layer < 3; ++layer) {  // three cells deep: as far as interpolation beside a solid looks
         const std::size_t last = skin_.size();
         for (; first < last; ++first) add_neighbours(Index<D>(skin_[first]));

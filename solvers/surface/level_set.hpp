@@ -61,6 +61,8 @@ public:
     std::size_t bytes() const;
 
 private:
+    template <class F>
+    void for_each_open_beside_closed(F&& f) const;
     void continue_into_solids();
     /// How wide the cell is across the surface next to it [m].
     real width_at(const Index<D>& I) const;

@@ -6,8 +6,12 @@
 namespace weir::surface {
 
 template <int D>
-void mark_near_solids(const geometry::Solids<D>& solids, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid) {
-    for_each_cell(frame.cells, [&](const Index<D>& I) { near_solid(I) = solids.distance(frame.centre(I)) < norm(frame.h); });
+void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid) {
+    for (const CellBox<D>& box : placement.changed())
+        for_each_in(box.lo, box.hi, [&](const Index<D>& I) {  // the middle is half a diagonal from the corner
+            near_solid(I) =
+                placement.corner_distance(I) < 2 * norm(frame.h) && placement.solids().distance(frame.centre(I)) < norm(frame.h);
+        });
 }
 
 namespace {
@@ -105,8 +109,8 @@ std::size_t remove_departed(Markers<D>& markers, const Frame<D>& frame, const ge
     return before - markers.count();
 }
 
-template void mark_near_solids(const geometry::Solids<2>&, const Frame<2>&, Grid<std::uint8_t, 2>&);
-template void mark_near_solids(const geometry::Solids<3>&, const Frame<3>&, Grid<std::uint8_t, 3>&);
+template void mark_near_solids(const SolidPlacement<2>&, const Frame<2>&, Grid<std::uint8_t, 2>&);
+template void mark_near_solids(const SolidPlacement<3>&, const Frame<3>&, Grid<std::uint8_t, 3>&);
 template void move_markers(Markers<2>&, const MacVelocity<2>&, const Frame<2>&, real, Trace, const geometry::Sides<2>&,
                            const geometry::Solids<2>&, const Grid<std::uint8_t, 2>&);
 template void move_markers(Markers<3>&, const MacVelocity<3>&, const Frame<3>&, real, Trace, const geometry::Sides<3>&,

@@ -1,7 +1,7 @@
 // Dx/Dt = u: markers carried by the face velocity with Runge–Kutta steps (RK2: midpoint; RK3: Ralston 1962, as Bridson 2015 advises),
 // kept out of solids and inside the domain.
 #pragma once
-#include "geometry/solids.hpp"
+#include "staggered/solid_faces.hpp"
 #include "surface/markers.hpp"
 
 #include <cstdint>
@@ -27,7 +27,7 @@ inline constexpr real wall_margin = 1e-3;
 
 /// Which cells are so near to a solid that a marker there must be checked: within one cell diagonal, or inside.
 template <int D>
-void mark_near_solids(const geometry::Solids<D>& solids, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid);
+void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid);
 
 /// Moves all markers by dt. Beyond open sides they leave the domain (see left_domain), at walls and solids they stop.
 /// near_solid is empty where there are no solids. Markers must be sorted; afterwards they are not.

@@ -1,26 +1,43 @@
 #include "surface/solid_faces.hpp"
 
-#include "staggered/solid_faces.hpp"
+#include <algorithm>
 
 namespace weir::surface {
 
+/// Keeps the faces that lie in no box that has changed.
 template <int D>
-void FacesInSolids<D>::find(const geometry::Solids<D>& solids, const MacState<D>& state, const Frame<D>& frame, bool room) {
+void FacesInSolids<D>::forget_changed(const std::vector<CellBox<D>>& changed, int a) {
+    auto& faces = faces_[static_cast<std::size_t>(a)];
+    auto& solid = solid_[static_cast<std::size_t>(a)];
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (std::any_of(changed.begin(), changed.end(), [&](const CellBox<D>& box) { return box.faces(a).holds(faces[i]); })) continue;
+        faces[kept] = faces[i], solid[kept] = solid[i];
+        ++kept;
+    }
+    faces.resize(kept), solid.resize(kept);
+}
+
+template <int D>
+void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D>& state, const Frame<D>& frame, bool room) {
+    const geometry::Solids<D>& solids = placement.solids();
+    const auto& changed = placement.changed();
     const real deepest = -3 * norm(frame.h), eps = 1e-3 * frame.h_min();
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         const auto& open = state.solid.open[at];
-        faces_[at].clear();
-        solid_[at].clear();
-        for (std::size_t i = 0; i < open.size(); ++i) {
-            if (open[i] >= least_trusted_fraction) continue;
-            const Index<D> I = index_of<D>(open.extent(), i);
-            if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) continue;  // the side's own
-            const Vec<D> x = state.u.face_centre(a, I);
-            if (solids.distance(x) < deepest) continue;
-            faces_[at].push_back(I);
-            solid_[at].push_back({solids.normal(x, eps), solids.velocity(x), solids[solids.nearest(x)].no_slip});
-        }
+        forget_changed(changed, a);
+        for (std::size_t box = 0; box < changed.size(); ++box)
+            changed[box].faces(a).in_order([&](const Index<D>& I) {
+                if (open(I) >= least_trusted_fraction) return;
+                if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) return;  // the side's own
+                for (std::size_t other = 0; other < box; ++other)
+                    if (changed[other].faces(a).holds(I)) return;  // found there
+                const Vec<D> x = state.u.face_centre(a, I);
+                if (solids.distance(x) < deepest) return;
+                faces_[at].push_back(I);
+                solid_[at].push_back({solids.normal(x, eps), solids.velocity(x), solids[solids.nearest(x)].no_slip});
+            });
         if (!room) continue;
         faces_[at].reserve(2 * faces_[at].size());
         solid_[at].reserve(2 * solid_[at].size());

@@ -3,6 +3,7 @@
 // stands there before and after the pressure is made in one way, so that FLIP's difference is that of the liquid's own velocity.
 #pragma once
 #include "geometry/solids.hpp"
+#include "staggered/solid_faces.hpp"
 #include "staggered/state.hpp"
 #include "surface/extrapolate.hpp"
 
@@ -12,9 +13,9 @@ namespace weir::surface {
 template <int D>
 class FacesInSolids {
 public:
-    /// Of the solids as they stand. `room`: there is to be room for twice as many, for solids that move may come to cut more faces, so that
-    /// no step allocates.
-    void find(const geometry::Solids<D>& solids, const MacState<D>& state, const Frame<D>& frame, bool room);
+    /// Of the solids as they stand, where that has changed. `room`: there is to be room for twice as many, for solids that move may come to
+    /// cut more faces, so that no step allocates.
+    void find(const SolidPlacement<D>& placement, const MacState<D>& state, const Frame<D>& frame, bool room);
     /// The solids move at other speeds than when they were found.
     void see_velocities(const geometry::Solids<D>& solids, const MacState<D>& state);
     /// Markers reach over a solid's surface with their hats, but what they leave there is not the liquid's velocity.
@@ -25,6 +26,7 @@ public:
     std::size_t bytes() const;
 
 private:
+    void forget_changed(const std::vector<CellBox<D>>& changed, int a);
     /// What a solid does to the liquid's velocity on a face inside it.
     struct SolidFace {
         Vec<D> normal, velocity;  // of the solid

@@ -36,7 +36,7 @@ void TallCells<D>::place_solids(real t) {
     solids_.place(state_, t);
     for_each_cell(frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
     surface_.set_closed(closed_);
-    in_solids_.find(solids_.solids(), state_, frame_, steps_ == 0);
+    in_solids_.find(solids_, state_, frame_, steps_ == 0);
 }
 
 template <int D>

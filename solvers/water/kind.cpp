@@ -64,6 +64,7 @@ scene::SolverKind kind() {
     schema.dims = {2, 3};
     schema.keys = {{.name = "time", .type = Type::table, .keys = {{.name = "cfl", .type = Type::number, .fallback = 1.0}}},
                    rigid::bodies_key(),
+                   rigid::joints_key(),
                    rigid::probe_key(),
                    scheme_keys(),
                    initial_keys(),

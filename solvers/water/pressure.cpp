@@ -17,6 +17,7 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
       b_(frame.cells),
       liquid_(b_.size() / static_cast<std::size_t>(frame.cells[0])),
       solver_(poisson::make_solver<D>(choice.method, choice.options)),
+      tolerance_(choice.options.tolerance),
       h2_(frame.h[0] * frame.h[0]),
       largest_cut_(1 + frame.h_max() / frame.h_min() / thinnest) {
     A_.cells = Grid<Cell, D>(frame.cells, Cell::air);
@@ -153,13 +154,13 @@ template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
     if (!has_liquid_) {  // every drop has left or is thinner than a cell: nothing is under pressure
-        if (bodies) bodies->react(state, *solids, dt, nullptr, nullptr);
+        if (bodies) bodies->solve(state, *solids, dt, nullptr, tolerance_, nullptr);
         return nothing_to_do_;
     }
     set_rhs(state, surface, dt, sigma, curvature);
     solver_->setup(A_);
-    const poisson::Report& report = solver_->solve(state.p, b_);  // the last pressure is the first guess
-    if (bodies) bodies->react(state, *solids, dt, solver_.get(), &b_);
+    const poisson::Report& report =  // the last pressure is the first guess
+        bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solver_->solve(state.p, b_);
     subtract_gradient(state, dt);
     if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature);
     return report;

@@ -61,6 +61,7 @@ private:
     bool has_liquid_ = false;
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;
+    real tolerance_ = 0;
     real h2_ = 0;           // h of axis 0, squared: what the matrix is scaled by
     real largest_cut_ = 0;  // of 1/θ, along the longest edge of a cell
 };

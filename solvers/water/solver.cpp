@@ -43,10 +43,15 @@ template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
     solids_.place(state_, t);
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
+    for (const CellBox<D>& box : solids_.changed())
+        for_each_in(box.lo, box.hi, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
+    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
+        for (std::size_t i = at; i < at + static_cast<std::size_t>(frame_.cells[0]); ++i)
+            state_.cells[i] = closed_[i] ? poisson::Cell::solid : poisson::Cell::fluid;
+    });
     surface_.set_closed(closed_);
-    mark_near_solids(solids_.solids(), frame_, near_solid_);
-    in_solids_.find(solids_.solids(), state_, frame_, steps_ == 0);
+    mark_near_solids(solids_, frame_, near_solid_);
+    in_solids_.find(solids_, state_, frame_, steps_ == 0);
 }
 
 template <int D>

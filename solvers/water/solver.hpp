@@ -62,6 +62,10 @@ public:
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     Hand* hand() const override { return hand_.get(); }
+    std::vector<EditableField> editable() override;
+    void edited(const EditableField& field) override;
+    bool add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) override;
+    bool remove_particles(std::string_view set, std::span<const unsigned char> gone) override;
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
@@ -104,6 +108,13 @@ private:
     poisson::Report project(real dt);
     void extend_velocity(real dt);
     void momentum_to_markers(real dt);
+
+    // Edits between steps (edit.cpp)
+    void keep_faces();
+    void take_velocity();
+    void join_cell(const Index<D>& I);
+    void find_liquid();
+    void follow_new_liquid(const Grid<poisson::Cell, D>& before, const Markers<D>& added);
 
     void advect_faces(real dt);
     void control_volume();

@@ -226,6 +226,7 @@ void Water<D>::redistribute_markers() {
     template void Water<D>::impose_emitters(real, real Emitter<D>::Face::*); \
     template void Water<D>::carry_emitters_velocity(real);                   \
     template const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real);    \
+    template bool Water<D>::is_free(const Vec<D>&) const;                    \
     template void Water<D>::redistribute_markers();
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

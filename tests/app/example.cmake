@@ -42,6 +42,16 @@ execute_process(COMMAND ${BUILD}/example/example nowhere.toml ERROR_VARIABLE sai
 if(NOT failed EQUAL 2 OR NOT said MATCHES "nowhere.toml: there is no such file")
   message(FATAL_ERROR "the example said of a scene that is not there: ${said}")
 endif()
+function(says program wanted)
+  execute_process(COMMAND ${BUILD}/example/${program} OUTPUT_VARIABLE said RESULT_VARIABLE failed)
+  message("${said}")
+  if(failed OR NOT said MATCHES "${wanted}")
+    message(FATAL_ERROR "${program} did not answer as it should: ${wanted}")
+  endif()
+endfunction()
+says(steer "t = 0.6 s, step [0-9]+, dt = [0-9.e-]+ s\nthe level was between 0.[0-9]+ m and 0.[0-9]+ m in [0-9]+ samples.*\nrefused: .*grid.cells")
+# Heating of 10 K/s in a disc of 124 of 1024 cells for 2 s, with walls that keep it: the mean is exact. Both misspellings are named.
+says(own_solver "t = 2 s, [0-9]+ steps, mean T = 295.421875 K, corner T = 293.[0-9]+ K\n.*plate.toml:9:1: unknown key \"alhpa\".*did you mean \"alpha\"")
 
 # The installed executable runs a case by its name, outside the clone.
 file(MAKE_DIRECTORY ${BUILD}/installed/elsewhere)

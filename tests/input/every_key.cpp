@@ -76,6 +76,18 @@ const std::vector<std::string> bodies{
         "shape = \"difference\", from = { shape = \"box\", min = [0.6, 0.6], max = [0.8, 0.8] }, minus = [ { shape = \"sphere\", centre = "
         "[0.7, 0.7], radius = 0.05 } ] } ]",
 };
+const std::string two_bodies =
+    "bodies = [ { name = \"a\", mass = 2, shape = \"sphere\", centre = [0.7, 0.7], radius = 0.1 }, { name = \"b\", mass = "
+    "2, shape = \"sphere\", centre = [0.3, 0.7], radius = 0.1 } ]\njoints = [ { body = \"a\", to = \"b\", kind = ";
+const std::vector<std::string> joints{
+    two_bodies + "\"hinge\", at = [0.5, 0.7] } ]",
+    two_bodies + "\"slider\", at = [0.5, 0.7], axis = [1, 0] } ]",
+    two_bodies + "\"mooring\", at = [0.6, 0.7], anchor = [0.4, 0.7], length = 0.1, stiffness = 10, damping = 1 } ]",
+};
+const std::string mesh_in_space =
+    "bodies = [ { mass = 2, shape = \"mesh\", file = \"" + std::string(WEIR_SOURCE_DIR) +
+    "/tests/input/bad/meshes/box.obj\", scale = 0.5, at = [0.4, 0.4, 0.4], axis = [0, 0, 1], angle = 1, resolution = 16 } ]\n"
+    "joints = [ { kind = \"hinge\", body = \"0\", at = [0.5, 0.5, 0.5], axis = [1, 0, 0] } ]";
 const std::vector<std::string> endless_bodies{body + "shape = \"plane\", point = [0.8, 0.8], normal = [-1, -1] } ]",
                                               body + "shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"};
 const std::vector<std::string> poisson{"scheme.poisson = { method = \"cg\", tolerance = 1e-6, max_iterations = 100, fixed = false }"};
@@ -139,8 +151,8 @@ std::map<std::string, Said> everything() {
     const Lines refused_by_particles{inflow + " } }", "output.fields = [\"vorticity\"]"};
     said["mac"] = {
         {},
-        all(of_the_run, probes("pressure"), Lines{at_the_wall}, solids, bodies, poisson, grid_velocities, of_field("temperature", true),
-            of_field("smoke", true), walls, open_sides,
+        all(of_the_run, probes("pressure"), Lines{at_the_wall}, solids, bodies, joints, poisson, grid_velocities,
+            of_field("temperature", true), of_field("smoke", true), walls, open_sides,
             Lines{inflow + ", profile = \"parabolic\" }, x_max = \"outflow\" }", emitter + ", smoke = 1, temperature = 1 } ]",
                   "scheme = { advection = \"maccormack\", interpolation = \"linear\", trace = \"rk2\", limiter = \"clamp\" }",
                   "scheme = { advection = \"conservative\", flux = \"central\" }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
@@ -149,20 +161,22 @@ std::map<std::string, Said> everything() {
                   "effects.cooling = { rate = 1, ambient = 0 }", "effects.decay = { rate = 1 }", hand,
                   "effects.viscosity = { scheme = \"explicit\" }\nfluid.viscosity = 1"}),
         all(of_the_surface, endless_bodies),
-        {"solids = [ { shape = \"cylinder\", from = [0.4, 0.4, 0.4], to = [0.6, 0.4, 0.4], radius = 0.2, motion = { kind = \"rotation\", "
+        {mesh_in_space,
+         "solids = [ { shape = \"cylinder\", from = [0.4, 0.4, 0.4], to = [0.6, 0.4, 0.4], radius = 0.2, motion = { kind = \"rotation\", "
          "centre = [0.5, 0.5, 0.5], axis = [0, 0, 1], rate = 1 } } ]",
          "solids = [ { shape = \"sphere\", centre = [0.4, 0.4, 0.4], radius = 0.2, motion = { kind = \"keyframes\", axis = [0, 0, 1], "
          "frames = [ "
          "{ t = 0, angle = 0 }, { t = 1, angle = 1 } ] } } ]"}};
     said["mac_water"] = {
         liquid,
-        all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, bodies, poisson, grid_velocities, walls, open_sides,
-            Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
+        all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, bodies, joints, poisson, grid_velocities, walls,
+            open_sides, Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
             Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }", hand,
                   "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
                   "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
                   "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"}),
-        endless_bodies, all(of_surfaces, Lines{of_level_set})};
+        endless_bodies,
+        all(of_surfaces, Lines{of_level_set, "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [1, 0.2, 1] } ]\n" + mesh_in_space})};
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
                             Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",
@@ -251,28 +265,31 @@ std::map<std::string, Said> everything() {
                   fluids[0], fluids[1]})};
     said["pbf"] = {
         liquid,
-        all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
-            Lines{"time.cfl = 0.4", "fluid.density = 2",
+        all(of_the_run, particles, solids, bodies, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
+            Lines{"time.cfl = 0.4", "fluid.density = 2", wax + "heat.vapour = { name = \"own\", density = 600 }",
                   "scheme = { kernel = \"cubic\", support = 2, iterations = 3, cfm = 1, relaxation = 1, warm_start = 0, settle = 1 "
                   "}",
                   "scheme = { tolerance = 0.1, max_iterations = 9, backend = \"threads\" }",
                   "effects.artificial_pressure = { k = 1, dq = 0.1 }"}),
         all(probes("density"),
-            Lines{walls[1], at_the_wall, wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
-            refused_by_particles, no_heat),
+            Lines{walls[1], at_the_wall, wax + "heat.vapour = \"substance\"",
+                  wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
+            refused_by_particles, no_heat, endless_bodies),
         of_surfaces};
     said["sph"] = {
         liquid,
-        all(of_the_run, particles, solids, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall}, open_sides,
+        all(of_the_run, particles, solids, bodies, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall}, open_sides,
             Lines{"substance = \"water\"\nfluid = { density = 1000, viscosity = 0.01 }\neffects.viscosity = {}\ninitial.temperature = { "
                   "name = \"constant\", value = 280 "
                   "}\nsides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
+            Lines{wax + "scheme.density = \"summation\"\nheat.vapour = \"substance\"",
+                  wax + "scheme.density = \"summation\"\nheat.vapour = { name = \"own\", density = 600 }"},
             Lines{walls[1] + "\neffects.viscosity = {}\nfluid.viscosity = 0.01", "fluid.density = 2", "initial.surface = [0, 1]",
                   "scheme = { kernel = \"cubic\", support = 2, sound_speed = 10, state = \"tait\", gamma = 7, density = \"delta\" }",
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
                   "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
                   "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
-        all(probes("density"), refused_by_particles, no_heat), of_surfaces};
+        all(probes("density"), refused_by_particles, no_heat, endless_bodies), of_surfaces};
     const std::string of_input = std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/", asc = of_input + "hill.asc",
                       pgm = of_input + "hill.pgm";
     const std::string hill = "terrain = { kind = ";

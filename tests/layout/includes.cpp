@@ -85,7 +85,7 @@ std::vector<Include> includes_of(const fs::path& folder) {
 /// The folder of ours that an include names, relative to the root; empty where it is none. Folders of pieces that are compiled as part of
 /// another (solvers/particles/kernels) count as that one.
 std::string folder_of(const std::string& what) {
-    static const std::set<std::string> parts{"solvers/particles/kernels", "app/picture"};
+    static const std::set<std::string> parts{"solvers/particles/kernels", "solvers/geometry/mesh", "app/picture"};
     const std::string folder = fs::path(what).parent_path().string();
     if (folder.empty()) return "";
     for (const std::string& candidate : {"solvers/" + folder, folder})

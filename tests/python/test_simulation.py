@@ -134,6 +134,12 @@ def test_a_stale_field_raises():
         np.asarray(p)
     with pytest.raises(weir.StaleField):
         p.shape
+    u = sim["velocity"]
+    sim.step()
+    with pytest.raises(weir.StaleField):
+        np.asarray(u.x)
+    with pytest.raises(weir.StaleField):
+        np.asarray(u[1])
     assert repr(p) == '<stale field "pressure">'
     assert sim["pressure"].shape == (32, 16)
 
@@ -316,7 +322,8 @@ def test_ctrl_c_ends_a_run():
 
 
 def test_a_step_from_python_costs_little():
-    """At most 20 microseconds more than a step of the library itself: of the same steps, called one by one and in one call."""
+    """At most 20 microseconds more than a step of the library itself: of the same steps, called one by one and in one call. Of this
+    process's own time: what others do on the machine is no overhead."""
     sim = weir.Simulation({"solver": "mac", "dim": 2, "grid": {"cells": [2, 2], "size": [1.0, 1.0]}, "time": {"end": 1e6, "dt": 1e-3}})
     count = 500
 
@@ -332,6 +339,96 @@ def test_a_step_from_python_costs_little():
 
 
 def seconds(f):
-    start = time.perf_counter()
+    start = time.process_time()
     f()
-    return time.perf_counter() - start
+    return time.process_time() - start
+
+
+# --- a hand in the run
+drop = changed(grid={"cells": [32, 32], "size": [1.0, 1.0]}, liquid=[{"shape": "sphere", "centre": [0.5, 0.5], "radius": 0.2}], effects={}, probes=[])
+
+
+def test_a_velocity_is_written_and_made_good():
+    """The library's tests say what is made good; here it is the same field, in the shapes in which it is shown."""
+    sim = weir.Simulation(drop, set={"scheme.reseed": False})
+    assert sim.editable == ["velocity"]
+    before = sim["markers.position"].x.copy()
+    stale = sim["velocity"]
+    with sim.edit("velocity") as u:
+        assert u.x.shape == (33, 32) and u.y.shape == (32, 33) and u.x.flags.writeable
+        u.x, u[1][...] = 1.0, 0.5
+    with pytest.raises(weir.StaleField):
+        stale.x.shape
+    sim.step()
+    assert np.mean(sim["markers.position"].x) - np.mean(before) == pytest.approx(sim.time, abs=1e-12)  # they change places in the array
+
+
+def test_an_edit_is_all_or_nothing():
+    sim = weir.Simulation("dam_break_particles", set={"time.end": 0.01})
+    before = sim["velocity"].copy()
+    with pytest.raises(ZeroDivisionError):
+        with sim.edit("velocity") as u:
+            u.x = 1 / 0
+    with pytest.raises(weir.BadInput, match="not finite at 7"):
+        with sim.edit("velocity") as u:
+            u.x[7] = np.nan
+    with pytest.raises(weir.BadInput, match="known: particles.position, particles.velocity"):
+        with sim.edit("density"):
+            pass
+    with pytest.raises(BufferError):
+        look = sim["velocity"].x[:3]
+        with sim.edit("velocity") as u:
+            u.x = 1
+    del look
+    assert np.array_equal(before, sim["velocity"])
+
+
+def test_smoke_is_written_as_an_array():
+    sim = weir.Simulation({"solver": "mac", "dim": 2, "grid": {"cells": [8, 8], "size": [1.0, 1.0]}, "time": {"end": 1.0},
+                           "initial": {"smoke": {"name": "ball", "centre": [0.5, 0.5], "radius": 10.0, "value": 0.25}}})
+    with sim.edit("smoke") as smoke:
+        smoke[2, 3] = 1.0
+        assert np.max(smoke) == 1
+    expected = np.full((8, 8), 0.25)
+    expected[2, 3] = 1
+    assert np.array_equal(sim["smoke"], expected)
+
+
+def test_particles_come_and_go():
+    sim = weir.Simulation("dam_break_particles", set={"time.end": 0.01})
+    count = sim["id"].shape[0]
+    sim.add_particles([[0.9, 0.9]] if sim.dim == 2 else [[0.9, 0.9, 0.1]])
+    assert sim["id"].shape[0] == count + 1
+    sim.remove_particles(np.asarray(sim["id"]) < 10)
+    assert sim["id"].shape[0] == count - 9 and np.min(sim["id"]) == 10
+    sim.remove_particles([0])
+    sim.step()
+    with pytest.raises(weir.BadInput, match="the domain is"):
+        sim.add_particles(np.full((1, sim.dim), 99.0))
+    with pytest.raises(ValueError, match="coordinates"):
+        sim.add_particles([[0.5]])
+    with pytest.raises(ValueError, match="one entry a particle"):
+        sim.remove_particles(np.array([True, False]))
+
+
+def test_observers_look_on_and_steer():
+    sim = weir.Simulation(dam)
+    frames, steps = [], []
+    sim.observe(lambda s, report: frames.append(round(s.time, 9)))
+    sim.observe(lambda s, report: steps.append((s.steps, report.dt)), every=2)
+    sim.observe(lambda s, report: s.set("effects.gravity.g", [0.0, -1.6]) if s.steps == 4 else None, every=4)
+    sim.step(5)
+    sim.run()
+    assert frames == [0.05, 0.1, 0.15, 0.2] and [n for n, _ in steps] == list(range(2, sim.steps + 1, 2))
+    assert "g = [0, -1.6]" in sim.scene
+    with pytest.raises(ValueError, match="number of steps"):
+        sim.observe(print, every=0)
+    late = weir.Simulation(dam)
+
+    def enough(s, report):
+        raise StopIteration
+
+    late.observe(enough, every=3)
+    with pytest.raises(StopIteration):
+        late.run_until(0.1)
+    assert late.steps == 3

@@ -12,9 +12,9 @@ def test_everything_has_words():
         thing = getattr(weir, name)
         if callable(thing):
             assert inspect.getdoc(thing), name
-    for cls in (weir.Simulation, weir.Field):
+    for cls in (weir.Simulation, weir.Field, weir.Edit):
         for name, thing in vars(cls).items():
-            if name[0] != "_" and (callable(thing) or isinstance(thing, property)) and name not in "xyz":
+            if name[0] != "_" and (callable(thing) or isinstance(thing, property)) and name not in ("x", "y", "z"):
                 assert inspect.getdoc(thing), f"{cls.__name__}.{name}"
 
 

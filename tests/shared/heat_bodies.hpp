@@ -22,7 +22,7 @@ scene::Scene heat_scene(const std::string& solver, const std::string& on, const 
         "1000.0\nliquid = [{{ shape = \"box\", min = {}, max = {} }}]\nscheme = {{ backend = \"{}\"{} }}\n"
         "substance = {{ name = \"own\", triple = [300.0, 1000.0], critical = [800.0, 5e6], fusion = 3e4, vaporisation = 2e6, solid = {{ "
         "density = 1000.0, heat_capacity = 2000.0, conductivity = 2e6 }}, liquid = {{ density = 1000.0, heat_capacity = 4000.0, "
-        "conductivity = 1e6 }}, vapour = {{ heat_capacity = 2000.0 }} }}\n"
+        "conductivity = 1e6 }}, vapour = {{ heat_capacity = 2000.0, conductivity = 1e5 }} }}\n"
         "initial.temperature = {{ name = \"linear\", value = 300.0, gradient = {}, at = {} }}\n{}\n",
         solver, D, D == 2 ? "[8, 12]" : "[8, 12, 8]", D == 2 ? "[1, 1.5]" : "[1, 1.5, 1]", D == 2 ? "[0, 0]" : "[0, 0, 0]",
         D == 2 ? "[1, 1]" : "[1, 1, 1]", on, scheme.empty() ? "" : ", " + scheme, list<D>(20, 30, 10), list<D>(0.5, 0.5, 0.5), more);
@@ -203,4 +203,100 @@ TEST("an emitter lets in particles of its temperature, on every backend") {
             }
         EXPECT_EQ(born, 2) << name;
     }
+}
+
+namespace weir::test {
+namespace {
+
+/// A block that boils: enthalpies that rise with the height of a scene of heat_scene(), from the warm liquid at its bottom to half vapour.
+template <int D>
+void heat_through(Fluid<D>& fluid, real lowest, real highest) {
+    for (int i = 0; i < fluid.count(); ++i)
+        fluid.enthalpy[static_cast<std::size_t>(i)] = lowest + (highest - lowest) * fluid.position(i)[1];
+}
+
+template <int D, class Run>
+void on_both_boiling(Run&& run) {
+    const std::string place = "heat.vapour = { name = \"own\", density = 400.0 }\neffects.gravity.g = " + list<D>(0, -9.81, 0) +
+                              "\nsides.x_min = { kind = \"wall\", temperature = 600.0 }\n";
+    const std::string scheme = "kernel = \"cubic\", support = 3.0";
+    run(std::type_identity<Sph<D>>{}, std::type_identity<sph::ReferenceSphSolver<D>>{}, "sph", place, scheme + ", density = \"summation\"");
+    run(std::type_identity<Pbf<D>>{}, std::type_identity<pbf::ReferencePbfSolver<D>>{}, "pbf", place, scheme + ", settle = 0");
+}
+
+}  // namespace
+}  // namespace weir::test
+
+TEST_IN_2D_AND_3D("a step of a liquid that boils agrees with the double reference, in its places and in its heat") {
+    NEEDS_BACKEND;
+    test::on_both_boiling<D>([&](auto here, auto there, const char* name, const std::string& place, const std::string& scheme) {
+        typename decltype(here)::type solver(test::heat_scene<D>(name, test::backend, place, scheme));
+        typename decltype(there)::type reference(test::heat_scene<D>(name, "reference", place, scheme));
+        for (Fluid<D>* fluid : {&solver.fluid(), &reference.fluid()}) test::shake(*fluid, 0.1), test::heat_through(*fluid, 4e5, 2e6);
+        const Fluid<D> before = reference.fluid();
+        const auto left = solver.step(0.0005), wanted = reference.step(0.0005);
+        EXPECT_NEAR(left.max_density_error, wanted.max_density_error, 1e-5 * (1 + wanted.max_density_error)) << name;
+        const Fluid<D>& a = solver.fluid();
+        const Fluid<D>& b = reference.fluid();
+        real moved = 0, apart = 0, warmed = 0, worst = 0;
+        for (int i = 0; i < before.count(); ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            moved = std::max(moved, norm(b.position(i) - before.position(i)));
+            apart = std::max(apart, norm(a.position(i) - b.position(i)));
+            warmed = std::max(warmed, std::abs(b.enthalpy[at] - before.enthalpy[at]));
+            worst = std::max(worst, std::abs(a.enthalpy[at] - b.enthalpy[at]));
+        }
+        EXPECT_GT(moved, 1e-4) << name;  // what boils drives apart
+        EXPECT_GT(warmed, 100) << name;
+        EXPECT_LE(apart, 1e-3 * moved) << name;  // single precision's 6e-8 of sums of some 30 terms that are up to 100 times their sum
+        EXPECT_LE(worst, 1e-4 * warmed) << name;
+        EXPECT_NEAR(test::sum_of("vapour_mass", solver), test::sum_of("vapour_mass", reference), 1e-5 * b.mass * b.count()) << name;
+        EXPECT_GT(test::sum_of("vapour_mass", solver), 0.1 * b.mass * b.count()) << name;
+        EXPECT_NE(solver.concern().find("not the physical one"), std::string::npos) << name;
+    });
+}
+
+TEST_IN_2D_AND_3D("a liquid that boils keeps its heat to round-off, and goes on from a checkpoint to the last bit") {
+    NEEDS_BACKEND;
+    test::on_both_boiling<D>([&](auto here, auto, const char* name, const std::string& place, const std::string& scheme) {
+        using S = typename decltype(here)::type;
+        const auto solver = [&] {
+            auto s = std::make_unique<S>(test::heat_scene<D>(name, test::backend, place, scheme));
+            test::shake(s->fluid(), 0.1), test::heat_through(s->fluid(), 4e5, 2e6);
+            return s;
+        };
+        auto through = solver(), first = solver(), second = solver();
+        const real before = test::sum_of("heat", *through);
+        for (int s = 0; s < 20; ++s) through->step(0.0005);
+        EXPECT_NEAR(test::sum_of("heat", *through) - test::sum_of("heat_added", *through), before, 1e-13 * std::abs(before)) << name;
+        for (int s = 0; s < 13; ++s) first->step(0.0005);
+        Checkpoint saved;
+        first->save(saved);
+        second->restore(saved);
+        for (int s = 13; s < 20; ++s) second->step(0.0005);
+        EXPECT_EQ(through->fluid().enthalpy, second->fluid().enthalpy) << name;
+        EXPECT_EQ(through->fluid().x, second->fluid().x) << name;
+    });
+}
+
+/// What a thousand times as much heat than moves in a step would do to the order of temperatures is seen in ten steps.
+TEST_IN_2D_AND_3D("what boils becomes no warmer than the warmest and no colder than the coldest, at any depth") {
+    NEEDS_BACKEND;
+    test::on_both_boiling<D>([&](auto here, auto, const char* name, const std::string& place, const std::string& scheme) {
+        typename decltype(here)::type solver(test::heat_scene<D>(name, test::backend, place, scheme));
+        test::shake(solver.fluid(), 0.1), test::heat_through(solver.fluid(), 1e5, 3e6);
+        const auto ends = [&] {
+            const auto set = solver.fields();
+            const auto& T = set.find("temperature")->data[0];
+            return std::pair{*std::min_element(T.begin(), T.end()), *std::max_element(T.begin(), T.end())};
+        };
+        const auto [cold, warm] = ends();
+        EXPECT_GT(warm, cold + 100) << name;
+        for (int s = 0; s < 10; ++s) {
+            solver.step(0.0005);
+            const auto [c, w] = ends();
+            EXPECT_GE(c, cold - 1e-5 * cold) << name;  // of thetas in single precision, over the conductivities' ratio
+            EXPECT_LE(w, std::max(warm, 600.0) * (1 + 1e-5)) << name;
+        }
+    });
 }

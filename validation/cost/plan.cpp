@@ -107,7 +107,9 @@ std::string run_line(const Study& study, const CostCurve& curve, const Priced& a
     return line;
 }
 
-Plan make_plan(const PlanOptions& options, const Solvers& solvers) {
+Plan make_plan(const PlanOptions& asked, const Solvers& solvers) {
+    PlanOptions options = asked;
+    if (options.tables.empty()) options.tables = published("cost");
     if (options.error.empty() && options.budget.empty())
         throw BadInput("weir plan needs --error, how wrong the result may be (2%), or --budget, what a frame may cost (16ms), or both");
     const auto folder = find_case(options.name);

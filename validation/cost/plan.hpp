@@ -11,8 +11,8 @@ namespace weir::validation {
 struct PlanOptions {
     std::string name{};                      // of a case with a study
     std::string budget{}, error{}, frame{};  // as typed; an empty frame is a sixtieth of a second
-    std::filesystem::path tables = "results/cost";
-    bool as_measured = false;  // tables of another machine stay as they are
+    std::filesystem::path tables{};          // empty: ./results/cost, or those installed with this program, or of its source
+    bool as_measured = false;                // tables of another machine stay as they are
 };
 /// What the tables say of a case, for this machine, and what follows for the budget.
 struct Plan {

@@ -1,4 +1,6 @@
-// Bodies that float, are let go, heave and capsize. The scene's probe "body" follows the one that is asked about.
+// Bodies that float, are let go, heave, capsize and are moored. The scene's probe "body" follows the one that is asked about; what is said
+// of all bodies asks for a probe of each.
+#include "rigid/bodies.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/signal.hpp"
 
@@ -89,6 +91,70 @@ Panel body_tilt_panel(const RunRecord& run, const Reference&) {
     return {.title = "Angle", .x = {"t [s]"}, .y = {"angle [rad]"}, .curves = {c}};
 }
 
+/// The greatest of what `of` says of all bodies at the times of their probes.
+template <int D, class F>
+real greatest_of(const RunRecord& run, F&& of) {
+    rigid::Bodies<D> bodies(*run.scene);
+    std::vector<const ProbeSeries*> series;
+    for (const auto& body : bodies.all())
+        for (const auto& table : run.scene->root().tables("probes"))
+            if (table.text("kind") == "body" && table.text("body") == body.name) series.push_back(&run.probe(table.text("name")));
+    if (series.empty() || series.size() != bodies.count()) throw BadInput("a probe \"body\" of each body is what this is measured by");
+    real greatest = -infinity;
+    for (std::size_t row = 0; row < series[0]->times.size(); ++row) {
+        bodies.recall([&](const char* field, std::size_t component, std::size_t body) {
+            const std::string name = D == 2 && std::string_view(field) == "angle" ? field : std::string(field) + '_' + "xyz"[component];
+            const auto& columns = series[body]->columns;
+            for (std::size_t c = 0; c < columns.size(); ++c)
+                if (columns[c].substr(0, columns[c].find(' ')) == name) return series[body]->values.at(row).at(c);
+            throw BadInput("the probe \"" + series[body]->name + "\" has no column \"" + name + "\"");
+        });
+        greatest = std::max(greatest, of(bodies));
+    }
+    return greatest;
+}
+
+template <int D>
+real lean_of(const rigid::Bodies<D>& bodies) {
+    real most = 0;
+    for (const auto& body : bodies.all()) most = std::max(most, std::acos(std::clamp(body.pose().rotation[1][1], -1.0, 1.0)));
+    return most;
+}
+
+template <int D>
+real outside_of(const rigid::Bodies<D>& bodies, const scene::Scene& scene) {
+    const Vec<D> min = scene.vec<D>("grid.origin"), max = min + scene.vec<D>("grid.size");
+    real most = 0;
+    for (const auto& body : bodies.all())
+        for (const auto& feeler : body.feelers) {
+            const Vec<D> x = body.pose().to_world(feeler.at);
+            for (int a = 0; a < D; ++a) most = std::max({most, min[a] - x[a] + feeler.radius, x[a] + feeler.radius - max[a]});
+        }
+    return most;
+}
+
+template <int D>
+real overstretch_of(const rigid::Bodies<D>& bodies) {
+    real most = -infinity;
+    for (const auto& joint : bodies.joints().all())
+        if (joint.kind == rigid::JointKind::mooring) {
+            const auto ends = bodies.joints().ends(joint, bodies.all());
+            most = std::max(most, norm(ends[0] - ends[1]) - joint.length);
+        }
+    return most;
+}
+
+real bodies_lean(const RunRecord& run, const Reference&) {
+    return run.scene->dim() == 2 ? greatest_of<2>(run, lean_of<2>) : greatest_of<3>(run, lean_of<3>);
+}
+real bodies_outside(const RunRecord& run, const Reference&) {
+    const auto of = [&](const auto& bodies) { return outside_of(bodies, *run.scene); };
+    return run.scene->dim() == 2 ? greatest_of<2>(run, of) : greatest_of<3>(run, of);
+}
+real mooring_stretch(const RunRecord& run, const Reference&) {
+    return run.scene->dim() == 2 ? greatest_of<2>(run, overstretch_of<2>) : greatest_of<3>(run, overstretch_of<3>);
+}
+
 }  // namespace
 
 std::vector<Metric> body_metrics() {
@@ -119,6 +185,18 @@ std::vector<Metric> body_metrics() {
                  return std::abs(body_late_mean(track(run, "angle"), 0.75 * run.time, tilt) - ref.number("angle"));
              },
          .figure = body_tilt_panel},
+        {.name = "bodies.lean",
+         .unit = "rad",
+         .doc = "Greatest angle by which any body was tilted from how the scene puts it.",
+         .measure = bodies_lean},
+        {.name = "bodies.outside",
+         .unit = "m",
+         .doc = "Greatest length by which any body reached out of the domain.",
+         .measure = bodies_outside},
+        {.name = "mooring.stretch",
+         .unit = "m",
+         .doc = "Greatest length of a mooring beyond its length without tension; negative where it was always slack.",
+         .measure = mooring_stretch},
     };
 }
 

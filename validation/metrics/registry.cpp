@@ -26,7 +26,8 @@ const std::vector<Metric>& metrics() {
                                  melting_metrics(),
                                  melting_convection_metrics(),
                                  surface_metrics(),
-                                 vessel_metrics()})
+                                 vessel_metrics(),
+                                 boiling_metrics()})
             list.insert(list.end(), part.begin(), part.end());
         return list;
     }();

@@ -37,7 +37,7 @@ std::string claims_table(const json& verdicts, const std::string& prefix) {
     const Asked parts[] = {{"Are the equations solved right?", {"exact", "convergence"}},
                            {"Are they the right equations?", {"benchmark"}},
                            {"What does accuracy cost a solver?", {"iterations"}}};
-    std::string s = "### What is claimed\n| question | claims that hold | cases |\n|---|---|---|\n";
+    std::string s = "### What is claimed\n| question | claims that hold | in cases |\n|---|---|---|\n";
     for (const Asked& part : parts) {
         std::size_t held = 0, all = 0;
         std::set<std::string> cases;
@@ -46,9 +46,7 @@ std::string claims_table(const json& verdicts, const std::string& prefix) {
             held += v.value("pass", false) ? 1 : 0, ++all;
             cases.insert(text_at(v, "case"));
         }
-        std::string links;
-        for (const std::string& name : cases) links += fmt::format("{}[{}]({}/index.md#{})", links.empty() ? "" : ", ", name, prefix, name);
-        s += fmt::format("| {} | {} of {} | {} |\n", part.title, held, all, links);
+        s += fmt::format("| {} | {} of {} | [{}]({}/index.md) |\n", part.title, held, all, cases.size(), prefix);
     }
     return s;
 }

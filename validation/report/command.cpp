@@ -94,6 +94,17 @@ std::filesystem::path find_case_scene(const std::string& name) {
                                fmt::join(looked, ", ")));
 }
 
+std::filesystem::path scene_named(const std::string& word) {
+    const bool is_path = word.find_first_of("./") != std::string::npos;
+    return is_path || std::filesystem::exists(word) ? std::filesystem::path(word) : find_case_scene(word);
+}
+
+std::filesystem::path published(const std::string& what) {
+    for (const auto& root : case_roots())
+        if (const auto folder = root.parent_path() / "results" / what; std::filesystem::is_directory(folder)) return folder;
+    return std::filesystem::path("results") / what;
+}
+
 std::filesystem::path find_case(const std::string& name) {
     const auto holds_something = [](const std::filesystem::path& folder) {
         const auto holds = [&](const char* file) { return std::filesystem::exists(folder / file); };

@@ -28,6 +28,10 @@ std::vector<std::filesystem::path> case_roots();
 std::filesystem::path case_root();
 /// The folder of a case that has a scene.toml, by its name. Throws BadInput with where was looked and the nearest known name.
 std::filesystem::path find_case_scene(const std::string& name);
+/// What a user names: a path; or, where nothing stands there, a case.
+std::filesystem::path scene_named(const std::string& word);
+/// The first folder of published tables that is there, beside the cases: of weir cost ("cost"), ...
+std::filesystem::path published(const std::string& what);
 /// The folder of a case by its name, or a folder that holds a case.toml. Throws BadInput with the nearest known name.
 std::filesystem::path find_case(const std::string& name);
 /// The folders that a command works on: those named, or all that `find` gives. Throws BadInput where the choice is none or both.

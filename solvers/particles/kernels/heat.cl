@@ -2,9 +2,14 @@
 
 /* theta as the fourth number of sorted positions. */
 __kernel void load_theta(int count, __constant HeatStates* s, __global const int* order, __global const double* enthalpy,
-                         __global float4* at) {
+                         __global const double* shift, __global float4* at) {
     const int k = get_global_id(0);
-    if (k < count) at[k].w = (float)heat_theta(enthalpy[order[k]], 0, s);
+    if (k >= count) return;
+#ifdef WEIR_VAPOUR
+    at[k].w = (float)heat_theta_at(heat_temperature(enthalpy[order[k]], shift[order[k]], s), s);
+#else
+    at[k].w = (float)heat_theta(enthalpy[order[k]], 0, s);
+#endif
 }
 
 WEIR_FN float heat_height(const float* x, int plane, __constant HeatWalls* w) {
@@ -146,4 +151,11 @@ __kernel void feed_wall(int count, int stride, int axis, double plane, double si
                         __global double* enthalpy) {
     const int i = get_global_id(0);
     if (i < count) enthalpy[i] += each * flux_weight(x[(size_t)axis * stride + i], plane, sign, spacing);
+}
+
+/* Densities that sorted particles are to have over the liquid's, where ice moves. */
+__kernel void rests_of_ice(int count, __constant HeatStates* s, __global const int* order, __global const double* enthalpy,
+                           __global float* rests) {
+    const int k = get_global_id(0);
+    if (k < count) rests[k] = (float)heat_rest(enthalpy[order[k]], s);
 }

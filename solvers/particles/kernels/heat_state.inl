@@ -21,6 +21,13 @@ WEIR_FN double heat_theta(double h, double shift, WEIR_PARAM HeatStates* s) {
     return heat_rise(h, shift, s->k_c[0], s->k_c[1], s->k_c[2], s);
 }
 
+/* The same of a liquid that may boil, under pressures that differ from place to place: of the temperature alone, so that no heat passes
+   between two that are as warm as each other. The vapour's conductivity begins where the liquid boils in the deepest place. */
+WEIR_FN double heat_theta_at(double T, WEIR_PARAM HeatStates* s) {
+    return s->k[0] * heat_low(T - s->T, 0) + s->k[1] * (heat_low(heat_high(T, s->T), s->T_vapour) - s->T) +
+           s->k[2] * heat_high(T - s->T_vapour, 0);
+}
+
 /* How much of the mass is no longer solid, and how much has become vapour. */
 WEIR_FN double heat_share(double h, double begin, double end) { return h >= end ? 1 : h <= begin ? 0 : (h - begin) / (end - begin); }
 WEIR_FN double heat_melted(double h, WEIR_PARAM HeatStates* s) { return heat_share(h, s->solid_end, s->liquid_begin); }

@@ -1,6 +1,13 @@
 /* The passes of Position Based Fluids (Macklin & Mueller 2013): pbf_pair.inl over every particle's neighbours. Positions are float4 with
    lambda as their fourth number; lambda reads A and writes B, correct reads B and writes A. */
 
+/* What a particle's density is to be (pbf_passes.inl). */
+#ifdef WEIR_RESTS
+#define REST(k) rests[k]
+#else
+#define REST(k) 1.0f
+#endif
+
 #ifdef WEIR_KEEP
 /* B = A with what the iterations start from; factor: the kept part times dt^2. */
 __kernel void start_multipliers(int count, double factor, __global const int* order, __global const double* carried,
@@ -16,19 +23,10 @@ __kernel void start_multipliers(int count, double factor, __global const int* or
 #endif
 
 __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
-                     __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to,
-                     __global float* density, __global float* multiplier
-#ifdef WEIR_ICE
-                     , __global const int* order, __global const double* enthalpy, __constant HeatStates* states
-#endif
-                     ) {
+                     __global const float* rests, __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to,
+                     __global float* density, __global float* multiplier) {
     const int i = get_global_id(0);
     if (i >= count) return;
-#ifdef WEIR_ICE
-    const float rest = (float)heat_rest(enthalpy[order[i]], states);
-#else
-    const float rest = 1;
-#endif
     float4 me = from[i];
     float rho = p->self, neighbours2 = 0, gx = 0, gy = 0, gz = 0;
     const int n = neighbours[i];
@@ -43,17 +41,18 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
         gz = FMA(slope, d.z, gz);
     }
     const float4 w = walls_at(me, walls, terms, i);
-    rho += w.w;
-    gx += w.x;
-    gy += w.y;
-    gz += w.z;
+    const float rest = REST(i);
+    rho += w.w * rest;
+    gx += w.x * rest;
+    gy += w.y * rest;
+    gz += w.z * rest;
     const float own2 = dot3(gx, gy, gz, gx, gy, gz);
 #ifdef WEIR_KEEP
     const float before = multiplier[i];
 #else
     const float before = 0;
 #endif
-    const float sum = pbf_multiplier(before, rho, rest, neighbours2, own2, p);
+    const float sum = pbf_multiplier(before, rho + (1 - rest), neighbours2, own2, p);
 #ifdef WEIR_KEEP
     multiplier[i] = sum;
 #endif
@@ -63,7 +62,7 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
 }
 
 __kernel void correct(int count, int stride, __constant StateParams* s, __constant PbfParams* p, __constant WallParams* walls,
-                      __global const float4* terms, __global uint* clamps, __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to) {
+                      __global const float4* terms, __global const float* rests, __global uint* clamps, __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = from[i];
@@ -81,7 +80,8 @@ __kernel void correct(int count, int stride, __constant StateParams* s, __consta
         cz = FMA(factor, d.z, cz);
     }
     const float4 w = walls_at(me, walls, terms, i);
-    const float4 free = (float4)(me.x + FMA(me.w, w.x, cx), me.y + FMA(me.w, w.y, cy), me.z + FMA(me.w, w.z, cz), 0.0f);
+    const float push = me.w * REST(i);
+    const float4 free = (float4)(me.x + FMA(push, w.x, cx), me.y + FMA(push, w.y, cy), me.z + FMA(push, w.z, cz), 0.0f);
     const float4 inside =
         (float4)(clamp(free.x, walls->keep_lo[0], walls->keep_hi[0]), clamp(free.y, walls->keep_lo[1], walls->keep_hi[1]),
                  clamp(free.z, walls->keep_lo[2], walls->keep_hi[2]), 0.0f);
@@ -90,9 +90,9 @@ __kernel void correct(int count, int stride, __constant StateParams* s, __consta
     to[i] = inside;
 }
 
-/* Density over rest density at the final positions. */
+/* Density over rest density of a liquid at the final positions. */
 __kernel void densities(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
-                        __global const float4* at, __global const int* neighbours, __global const int* list, __global float* density) {
+                        __global const float* rests, __global const float4* at, __global const int* neighbours, __global const int* list, __global float* density) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = at[i];
@@ -102,15 +102,15 @@ __kernel void densities(int count, int stride, __constant PbfParams* p, __consta
         const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
         rho = pbf_add_density(rho, DISTANCE2(d, p), p);
     }
-    density[i] = rho + walls_at(me, walls, terms, i).w;
+    density[i] = rho + walls_at(me, walls, terms, i).w * REST(i);
 }
 
 /* Compression of sorted particles, of each group (reduce_parts). */
-__kernel void pbf_compressions(int count, __global const float* density, __global double* parts) {
+__kernel void pbf_compressions(int count, __global const float* rests, __global const float* density, __global double* parts) {
     __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
     double largest = 0, sum = 0;
     for (int k = get_global_id(0); k < count; k += get_global_size(0)) {
-        const double excess = fmax((double)density[k] - 1, 0.0);
+        const double excess = fmax((double)density[k] / REST(k) - 1, 0.0);
         largest = larger(excess, largest);
         sum += excess;
     }

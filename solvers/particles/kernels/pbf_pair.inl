@@ -1,6 +1,5 @@
 /* Position Based Fluids (Macklin & Mueller 2013): what one pair, and one particle, contribute. See pair.inl for the language.
-   The constraint of particle i is C_i = rho_i / rho0 - 1 <= 0 (Macklin et al. 2014: a liquid resists compression, not separation). Of ice
-   that is less dense, rho_i / rho0 <= rest: densities count particles (Solenthaler & Pajarola 2008), each of which has a rest of its own. */
+   The constraint of particle i is C_i = rho_i / rho0 - 1 <= 0 (Macklin et al. 2014: a liquid resists compression, not separation). */
 
 /* m W(r) / rho0 of one neighbour                                                                                      eq. 2 */
 WEIR_FN REAL pbf_density(REAL r2, WEIR_PARAM PbfParams* p) { return p->density * WEIR_DENSITY(r2, p); }
@@ -14,8 +13,8 @@ WEIR_FN REAL pbf_slope(REAL r2, WEIR_PARAM PbfParams* p) { return p->gradient * 
    `before` is what this step's iterations have already given. A liquid is pushed, never pulled: the sum stays <= 0. With before = 0 in
    every iteration this is lambda of the paper for C > 0 and 0 elsewhere; kept, it is the multiplier of the constraint
    (Macklin, Mueller & Chentanez 2016), which the next step can start from. Returns the sum. */
-WEIR_FN REAL pbf_multiplier(REAL before, REAL density, REAL rest, REAL neighbours2, REAL own2, WEIR_PARAM PbfParams* p) {
-    return -MAX0(p->relaxation * (density - rest) / (neighbours2 + own2 + p->cfm) - before);
+WEIR_FN REAL pbf_multiplier(REAL before, REAL density, REAL neighbours2, REAL own2, WEIR_PARAM PbfParams* p) {
+    return -MAX0(p->relaxation * (density - (SCALAR)1) / (neighbours2 + own2 + p->cfm) - before);
 }
 
 /* s_corr = -k (W(r) / W(dq))^4                                                                                        eq. 13 */

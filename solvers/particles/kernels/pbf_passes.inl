@@ -2,6 +2,10 @@
 
 #include "particles/kernels/pbf_pair.inl"
 
+/* What a particle's density is to be, which is that of what stands behind walls: 1 of a liquid, less of what boils. Its constraint is
+   rho_i - rest_i <= 0 over rho0, so that the pressure of both sides of a surface is one. */
+static vf rest_of(const PbfPass& a, int first) { return a.rest ? load_numbers(a.rest, first) : broadcast(1); }
+
 /* Density and lambda of every particle: reads `from`, writes x, y, z, lambda to `to`. */
 static void lambda(const PbfPass& a, const ListChunk& chunk) {
     const single::PbfParams* p = a.p;
@@ -23,14 +27,14 @@ static void lambda(const PbfPass& a, const ListChunk& chunk) {
             gz = FMA(slope, dz, gz);
         }
         const Four w = walls_at(i, a.walls, a.solid, first);
-        rho += w.w;
-        gx += w.x;
-        gy += w.y;
-        gz += w.z;
+        const vf rest = rest_of(a, first);
+        rho += w.w * rest;
+        gx += w.x * rest;
+        gy += w.y * rest;
+        gz += w.z * rest;
         const vf own2 = dot3(gx, gy, gz, gx, gy, gz);
         const vf before = a.multiplier ? load_numbers(a.multiplier, first) : broadcast(0);
-        const vf rest = a.rest ? load_numbers(a.rest, first) : broadcast(1);
-        const vf sum = pbf_multiplier(before, rho, rest, neighbours2, own2, p);
+        const vf sum = pbf_multiplier(before, rho + (broadcast(1) - rest), neighbours2, own2, p);
         if (a.multiplier) store_numbers(a.multiplier, first, live(first, a.count), sum);
         store(a.to, first, live(first, a.count), {i.x, i.y, i.z, sum - before});
         store_numbers(a.density, first, live(first, a.count), rho);
@@ -57,9 +61,10 @@ static void correct(const PbfPass& a, const ListChunk& chunk) {
             cz = FMA(factor, dz, cz);
         }
         const Four w = walls_at(i, a.walls, a.solid, first);
-        cx = FMA(i.w, w.x, cx);
-        cy = FMA(i.w, w.y, cy);
-        cz = FMA(i.w, w.z, cz);
+        const vf push = i.w * rest_of(a, first);
+        cx = FMA(push, w.x, cx);
+        cy = FMA(push, w.y, cy);
+        cz = FMA(push, w.z, cz);
         const vf x = i.x + cx, y = i.y + cy, z = i.z + cz;
         const Four inside{kept(x, a.walls, 0), kept(y, a.walls, 1), kept(z, a.walls, 2), broadcast(0)};
         store(a.to, first, live(first, a.count), inside);
@@ -84,7 +89,7 @@ static void density(const PbfPass& a, const ListChunk& chunk) {
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
             rho = pbf_add_density(rho, distance2(dx, dy, dz, p->guard), p);
         }
-        store_numbers(a.density, first, live(first, a.count), rho + walls_at(i, a.walls, a.solid, first).w);
+        store_numbers(a.density, first, live(first, a.count), rho + walls_at(i, a.walls, a.solid, first).w * rest_of(a, first));
     }
 }
 

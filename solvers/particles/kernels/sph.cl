@@ -6,7 +6,7 @@
 #ifndef WEIR_CONTINUITY
 /* rho_i = sum_j m W                                                                               Mueller et al. 2003, eq. 3 */
 __kernel void sph_densities(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* terms,
-                            float wall_rho, __global const float4* at, __global const int* neighbours, __global const int* list,
+                            float wall_rho, __global const float* rests, __global const float4* at, __global const int* neighbours, __global const int* list,
                             __global const int* order, __global double* density) {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -17,6 +17,9 @@ __kernel void sph_densities(int count, int stride, __constant SphParams* p, __co
         const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
         rho = sph_add_density(rho, DISTANCE2(d, p), p);
     }
+#ifdef WEIR_RESTS
+    wall_rho *= rests[i];
+#endif
     density[order[i]] = (double)(rho + wall_rho * walls_at(me, walls, terms, i).w);
 }
 #endif
@@ -30,22 +33,15 @@ WEIR_FN float4 velocity_of(int i, int stride, __global const double* v, double m
 }
 
 /* The equation of state, and what the force pass reads. tait: (c^2 rho0 / gamma, gamma); linear: (c^2, 1)               eq. 12 */
-__kernel void find_pressures(int count, int stride, double2 state, double rest, __global const int* order, __global const double* v,
+__kernel void find_pressures(int count, int stride, double2 state, double rest, __global const float* rests, __global const int* order, __global const double* v,
                              __global const double* density, __global double* pressure, __global float4* at,
-                             __global float4* velocities
-#ifdef WEIR_ICE
-                             , __global const double* enthalpy, __constant HeatStates* states
-#endif
-                             ) {
+                             __global float4* velocities) {
     const int k = get_global_id(0);
     if (k >= count) return;
     const int i = order[k];
-#ifdef WEIR_ICE
-    const double swollen = heat_rest(enthalpy[i], states);
-    rest *= swollen;
-#ifdef WEIR_TAIT
-    state.x *= swollen;
-#endif
+#ifdef WEIR_RESTS
+    rest *= rests[k];
+    state.x *= state.y == 1 ? 1 : rests[k]; /* c^2 rho0 / gamma */
 #endif
 #ifdef WEIR_TAIT
     double p = state.x * (pow(density[i] / rest, state.y) - 1);
@@ -192,16 +188,12 @@ __kernel void accelerations(int count, __global const float4* acceleration, __gl
 
 #ifdef WEIR_CONTINUITY
 /* The new velocities and the density's excess, as the rate reads them. */
-__kernel void load_excess(int count, int stride, double rho0, __global const int* order, __global const double* v,
-                          __global const double* density, __global float4* velocities
-#ifdef WEIR_ICE
-                          , __global const double* enthalpy, __constant HeatStates* states
-#endif
-                          ) {
+__kernel void load_excess(int count, int stride, double rho0, __global const float* rests, __global const int* order, __global const double* v,
+                          __global const double* density, __global float4* velocities) {
     const int k = get_global_id(0);
     if (k >= count) return;
-#ifdef WEIR_ICE
-    rho0 *= heat_rest(enthalpy[order[k]], states);
+#ifdef WEIR_RESTS
+    rho0 *= rests[k];
 #endif
     velocities[k] = velocity_of(order[k], stride, v, density[order[k]] - rho0);
 }

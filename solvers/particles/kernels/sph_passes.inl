@@ -15,7 +15,8 @@ static void sph_densities(const SphPass& a, const ListChunk& chunk) {
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
             rho = sph_add_density(rho, distance2(dx, dy, dz, p->guard), p);
         }
-        store_numbers(a.density, first, live(first, a.count), rho + p->wall_rho * walls_at(i, a.walls, a.solid, first).w);
+        const vf behind = a.rest ? broadcast(p->wall_rho) * load_numbers(a.rest, first) : broadcast(p->wall_rho);
+        store_numbers(a.density, first, live(first, a.count), rho + behind * walls_at(i, a.walls, a.solid, first).w);
     }
 }
 

@@ -123,11 +123,16 @@ __kernel void speeds(int count, int stride, __global const double* x, __global c
 }
 
 /* Compression max(0, rho / rest - 1) of the state's densities. */
-__kernel void compressions(int count, double rest, __global const double* density, __global double* parts) {
+__kernel void compressions(int count, double rest, __global const int* order, __global const float* rests, __global const double* density,
+                           __global double* parts) {
     __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
     double largest = 0, sum = 0;
-    for (int i = get_global_id(0); i < count; i += get_global_size(0)) {
-        const double ratio = density[i] / rest - 1, excess = ratio > 0 ? ratio : 0;
+    for (int k = get_global_id(0); k < count; k += get_global_size(0)) {
+#ifdef WEIR_RESTS
+        const double ratio = density[order[k]] / (rest * rests[k]) - 1, excess = ratio > 0 ? ratio : 0;
+#else
+        const double ratio = density[k] / rest - 1, excess = ratio > 0 ? ratio : 0;
+#endif
         largest = larger(excess, largest);
         sum += excess;
     }

@@ -1,7 +1,11 @@
 // What enthalpy means to particles, and the sums over a lattice by which conduction is divided.
 #include "particles/heat.hpp"
 #include "matter/substance.hpp"
+#include "particles/flow.hpp"
+#include "sph/solver.hpp"
 #include "support/test.hpp"
+
+#include <fmt/format.h>
 
 namespace weir {
 namespace {
@@ -68,6 +72,88 @@ TEST("temperatures and shares are those of the substance's curve, through both l
         EXPECT_NEAR(particles::heat_theta(curve.enthalpy(T + 20), 0, &states), 20 * 0.6, 1e-9);
         EXPECT_NEAR(particles::heat_theta(curve.enthalpy(boils + 20), 0, &states), (boils - T) * 0.6 + 20 * 0.025, 1e-9);
         EXPECT_EQ(particles::heat_theta(0.5 * (curve.highest(0) + curve.lowest(1)), 0, &states), 0);  // ice and water together
+    }
+}
+
+TEST("above the critical pressure the state beyond the liquid stands in the vapour's place, and nothing else is written over") {
+    const auto curve = thermo::water()->heat_curve(3e7);
+    const auto states = particles::heat_states(curve, {2.2, 0.6, 0.025});
+    const real h = curve.enthalpy(260);
+    EXPECT_NEAR(particles::heat_temperature(h, 0, &states), 260, 1e-9);
+    EXPECT_NEAR(particles::heat_theta(h, 0, &states), 2.2 * (260 - curve.begins_at(1)), 1e-9);
+    EXPECT_NEAR(particles::heat_temperature(curve.enthalpy(700), 0, &states), 700, 1e-9);
+}
+
+scene::Scene pot(const std::string& more, const std::string& surface = "0.5") {
+    return scene::parse(
+        "solver = \"sph\"\ndim = 2\ngrid = { cells = [8, 20], size = [0.4, 1.0] }\ntime.end = 1.0\nfluid.density = 1000.0\n"
+        "liquid = [{ shape = \"box\", min = [0, 0], max = [0.4, " +
+            surface +
+            "] }]\nscheme.density = \"summation\"\nsubstance = \"water\"\n"
+            "initial.temperature = { name = \"constant\", value = 300.0 }\n" +
+            more,
+        "test.toml", {sph::kind().schema});
+}
+
+TEST("a liquid boils at the saturation temperature of the pressure at its depth, and expands by its volumes") {
+    for (const real p : {2e4, 101325.0, 5e5}) {
+        const auto scene = pot(
+            fmt::format("heat = {{ pressure = {}, vapour = {{ name = \"own\", density = 10.0 }} }}\neffects.gravity.g = [0, -9.81]\n", p));
+        auto fluid = particles::initial_fluid<2>(scene);
+        const particles::Heat<2> heat(scene, fluid.domain);
+        const auto water = thermo::water();
+        const auto& states = heat.states();
+        fluid.enthalpy.assign(fluid.enthalpy.size(), 0.5 * (states.liquid_end + states.vapour_begin));  // all of it boils
+        heat.place(fluid);
+        for (int i = 0; i < fluid.count(); ++i) {
+            const real d = 0.5 - fluid.position(i)[1];
+            // the table's straight pieces of 1/128 m and water's own second derivative: 1e-6 K at 20 kPa
+            EXPECT_NEAR(particles::heat_temperature(fluid.enthalpy[static_cast<std::size_t>(i)], heat.shift(i), &states),
+                        water->temperature(thermo::Boundary::saturation, p + 1000 * 9.81 * d), 1e-4)
+                << p << ' ' << d;
+            const real share = particles::heat_vapour(fluid.enthalpy[static_cast<std::size_t>(i)], heat.shift(i), &states);
+            EXPECT_NEAR(heat.vapour()->rest(i), 1 / (1 - share + share * 100), 1e-12);
+        }
+    }
+}
+
+TEST("depth is the weight above over the area, whatever way gravity points and whether it is liquid or vapour") {
+    for (const char* g : {"[0, 9.81]", "[-9.81, 0]", "[9.81, 1]"}) {
+        const auto scene = pot(std::string("heat.vapour = { name = \"own\", density = 10.0 }\neffects.gravity.g = ") + g + "\n", "1.0");
+        auto fluid = particles::initial_fluid<2>(scene);
+        const particles::Heat<2> heat(scene, fluid.domain);
+        EXPECT_FALSE(heat.place(fluid));  // nothing boils, and nothing needs to know
+        fluid.enthalpy[0] = heat.states().vapour_begin;
+        EXPECT_TRUE(heat.place(fluid));
+        const auto water = thermo::water();
+        const auto& states = heat.states();
+        for (int i = 0; i < fluid.count(); ++i) {
+            const Vec<2> x = fluid.position(i);
+            const real d = g[1] == '0' ? x[1] : g[1] == '-' ? 0.4 - x[0] : x[0];
+            const real boils = particles::heat_temperature(states.liquid_end + heat.shift(i), heat.shift(i), &states);
+            EXPECT_NEAR(boils, water->temperature(thermo::Boundary::saturation, 101325 + 9810 * d), 1e-4) << g;
+        }
+    }
+}
+
+TEST("no heat passes between two that are as warm as each other, in whatever state and at whatever depth") {
+    const auto scene = pot("heat.vapour = { name = \"own\", density = 10.0 }\neffects.gravity.g = [0, -9.81]\n");
+    auto fluid = particles::initial_fluid<2>(scene);
+    const particles::Heat<2> heat(scene, fluid.domain);
+    fluid.enthalpy[0] = heat.states().vapour_begin;  // something boils
+    heat.place(fluid);
+    const auto& s = heat.states();
+    for (const real T : {280.0, 372.0, 373.5, 374.0, 400.0}) {
+        std::vector<real> thetas;
+        for (int i = 0; i < fluid.count(); ++i) {  // the enthalpy that has this temperature there
+            real lo = -1e6, hi = 4e6;
+            for (int k = 0; k < 100; ++k) {
+                const real h = 0.5 * (lo + hi);
+                (particles::heat_temperature(h, heat.shift(i), &s) < T ? lo : hi) = h;
+            }
+            thetas.push_back(heat.theta(i, hi));
+        }
+        for (const real theta : thetas) EXPECT_NEAR(theta, thetas[0], 1e-9 * std::abs(thetas[0]));
     }
 }
 

@@ -5,48 +5,6 @@ using namespace weir;
 using namespace weir::rigid;
 using namespace weir::test;
 
-namespace {
-
-/// Bodies under gravity in a box, with solids of the scene.
-template <int D>
-struct Dry {
-    Bodies<D> bodies;
-    geometry::Solids<D> solids;
-    Contacts<D> contacts;
-    Mobility mobility;
-    Vec<D> gravity{};
-    real time = 0;
-
-    explicit Dry(const std::string& lines, real g = 9.81) : Dry(body_scene(D, lines), g) {}
-    Dry(const scene::Scene& scene, real g) : bodies(scene) {
-        if (scene.has("solids")) solids = geometry::Solids<D>(scene.root().tables("solids"));
-        bodies.join(solids);
-        gravity[1] = -g;
-    }
-    void step(real dt) {
-        for (auto& body : bodies.all()) body.fly(dt, gravity);
-        bodies.place(solids);
-        const std::size_t n = freedoms<D>;
-        std::vector<real> v(n * bodies.count());
-        for (std::size_t b = 0; b < bodies.count(); ++b)
-            for (std::size_t k = 0; k < n; ++k) v[b * n + k] = bodies[b].velocity[k] + (k < D && !bodies[b].held[k] ? dt * gravity[k] : 0);
-        dry_mobility(bodies.all(), mobility);
-        contacts.find(bodies.all(), bodies.surroundings(solids));
-        for (auto& body : bodies.all()) body.touches = false;
-        contacts.resolve(bodies.all(), mobility, v, dt, norm(gravity));
-        for (std::size_t b = 0; b < bodies.count(); ++b)
-            for (std::size_t k = 0; k < n; ++k) bodies[b].velocity[k] = v[b * n + k];
-        time += dt;
-    }
-    real energy() const {
-        real e = 0;
-        for (const auto& b : bodies.all()) e += b.kinetic_energy() - b.mass * dot(gravity, b.at);
-        return e;
-    }
-};
-
-}  // namespace
-
 TEST_IN_2D_AND_3D("a ball dropped from h bounces to h e²") {
     for (const real e : {0.5, 0.9}) {
         Dry<D> world(fmt::format("bodies = [ {{ shape = \"sphere\", centre = {}, radius = 0.25, density = 100.0, restitution = {} }} ]",

@@ -18,7 +18,7 @@ TEST_IN_2D_AND_3D("a uniform flow is continued into a ball without what would pa
     const auto scene = test::mac_scene(test::unit_box(D, 24, ball(D, "")));
     MacState<D> state(scene, {});
     state.before = PaddedVelocity<D>(state.u);
-    const SolidPlacement<D> solids(geometry::Solids<D>(scene.root().tables("solids")), state);
+    SolidPlacement<D> solids(geometry::Solids<D>(scene.root().tables("solids")), state);
     Vec<D> u{};
     for (int a = 0; a < D; ++a) {
         u[a] = 1 + 0.5 * a;

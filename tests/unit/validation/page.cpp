@@ -175,7 +175,7 @@ TEST("the README's results are written between its markers, the rest stays, and 
     EXPECT_EQ(once.substr(0, 7), "before\n");
     EXPECT_EQ(once.substr(once.size() - 7), "\nafter\n");
     EXPECT_EQ(once.find("\nold\n"), std::string::npos);
-    EXPECT_NE(once.find("| Are the equations solved right? | 1 of 2 | [tank]("), std::string::npos) << once;
+    EXPECT_NE(once.find("| Are the equations solved right? | 1 of 2 | [1]("), std::string::npos) << once;
     EXPECT_NE(once.find("2 limits measured, 1 of them not reached"), std::string::npos) << once;
     EXPECT_NE(once.find("1 below the floor"), std::string::npos);
     update_readme(readme, folder.path());

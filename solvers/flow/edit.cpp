@@ -1,0 +1,41 @@
+// Fields of the flow that are written between two steps, and what is made good afterwards: a velocity that walls, solids and ∇·u = 0 allow,
+// sources that hold what they prescribe.
+#include "flow/solver.hpp"
+#include "staggered/inflow.hpp"
+
+namespace weir::flow {
+
+/// Not the velocity beside bodies, whose motion goes with it, nor where ice holds it; nor what follows from an enthalpy.
+template <int D>
+std::vector<EditableField> FlowSolver<D>::editable() {
+    std::vector<EditableField> list;
+    if (!bodies_ && !heat_) {
+        EditableField velocity{"", "velocity", {}};
+        for (int a = 0; a < D; ++a) velocity.data.emplace_back(state_.u[a].values());
+        list.push_back(std::move(velocity));
+    }
+    for (auto& field : state_.fields)
+        if (!field.derived && !heat_) list.push_back({"", field.name, {field.values.values()}});
+    return list;
+}
+
+/// The pressure that the next step begins with is that of before: what projects the new velocity is no pressure of the flow.
+template <int D>
+void FlowSolver<D>::edited(const EditableField& field) {
+    if (field.name != "velocity") return hold();
+    set_side_faces(state_.u, state_.sides, state_.nu);
+    sync_periodic(state_.u, state_.sides);
+    solids_.set_faces(state_);
+    const Grid<real, D> pressure = state_.p;
+    state_.p.fill(0);
+    projection_.project(state_, 1);
+    state_.p = pressure;
+    fastest_ = not_applicable;
+}
+
+template std::vector<EditableField> FlowSolver<2>::editable();
+template std::vector<EditableField> FlowSolver<3>::editable();
+template void FlowSolver<2>::edited(const EditableField&);
+template void FlowSolver<3>::edited(const EditableField&);
+
+}  // namespace weir::flow

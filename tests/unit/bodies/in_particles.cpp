@@ -1,0 +1,192 @@
+// Bodies among particles: what water and bodies give each other, bodies of any weight, drafts, what is kept from step to step, and the
+// plain double-precision reference beside the threads.
+#include "pbf/solver.hpp"
+#include "sph/solver.hpp"
+#include "support.hpp"
+
+using namespace weir;
+using namespace weir::test;
+
+namespace {
+
+std::unique_ptr<Solver> particles_of(const std::string& text) {
+    static const std::vector<scene::SolverSchema> schemas{sph::kind().schema, pbf::kind().schema};
+    const scene::Scene scene = scene::parse(text, "bodies.toml", schemas);
+    return scene.solver() == "sph" ? sph::kind().make(scene) : pbf::kind().make(scene);
+}
+
+/// A tank of 1 m by 0.8 m, 0.4 m deep, with bodies.
+std::string tank(const char* solver, int cells, const std::string& bodies, const std::string& more = "") {
+    return fmt::format(R"(solver = "{}"
+dim = 2
+grid = {{ cells = [{}, {}], size = [1.0, 0.8] }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1000.0 }}
+liquid = [ {{ shape = "box", min = [0.0, 0.0], max = [1.0, 0.4] }} ]
+effects = {{ gravity = {{ g = [0.0, -9.81] }} }}
+{}
+{}
+)",
+                       solver, cells, cells * 4 / 5, bodies.empty() ? "" : "bodies = [ " + bodies + " ]", more);
+}
+
+/// A blob of liquid far from all walls, without gravity, that a body flies into, turning.
+std::string collision(const char* solver, int dim, const std::string& more = "") {
+    const bool flat = dim == 2;
+    return fmt::format(R"(solver = "{}"
+dim = {}
+grid = {{ cells = [{}], size = [{}] }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1000.0 }}
+liquid = [ {{ shape = "sphere", centre = [{}], radius = 0.2 }} ]
+bodies = [ {{ shape = "box", min = [{}], max = [{}], density = 300.0, velocity = [{}], spin = [{}] }} ]
+{}
+)",
+                       solver, dim, flat ? "40, 40" : "28, 28, 28", flat ? "1.0, 1.0" : "1.0, 1.0, 1.0",
+                       flat ? "0.4, 0.5" : "0.4, 0.5, 0.5", flat ? "0.61, 0.45" : "0.61, 0.45, 0.4",
+                       flat ? "0.81, 0.57" : "0.81, 0.57, 0.6", flat ? "-1.0, 0.0" : "-1.0, 0.0, 0.0", flat ? "3.0" : "1.0, 2.0, 3.0",
+                       more);
+}
+
+real sum_of(const Solver& solver, const std::string& name) {
+    for (const Integral& i : solver.integrals())
+        if (i.name == name) return i.value;
+    throw std::runtime_error("no integral " + name);
+}
+
+/// Of water and body about the origin, about z.
+real turning(const Solver& solver, int dim) {
+    const FieldSet set = solver.fields();
+    const auto &x = set.find("particles", "position")->data, &v = set.find("particles", "velocity")->data;
+    real l = 0;
+    const real mass = sum_of(solver, "mass") / static_cast<real>(x[0].size());
+    for (std::size_t i = 0; i < x[0].size(); ++i) l += mass * (x[0][i] * v[1][i] - x[1][i] * v[0][i]);
+    const auto add = [&](const auto& body) {
+        l += body.mass * (body.at[0] * body.velocity[1] - body.at[1] * body.velocity[0]) + body.angular_momentum()[2];
+    };
+    if (dim == 2)
+        add(dynamic_cast<const particles::ParticleSolver<2>&>(solver).carried()->bodies()[0]);
+    else
+        add(dynamic_cast<const particles::ParticleSolver<3>&>(solver).carried()->bodies()[0]);
+    return l;
+}
+
+}  // namespace
+
+// Forces between particles are sums of some hundred numbers in single precision, each good to 6e-8 of the largest: of m v that changes
+// hands, 1e-5 is left for 30 steps on threads. The reference has double precision throughout.
+TEST("momentum of water and body is kept to round-off, and angular momentum by SPH") {
+    const OneThread alone;
+    for (const char* solver : {"sph", "pbf"})
+        for (const int dim : {2, 3})
+            for (const bool plain : {false, true}) {
+                if (plain && dim == 3) continue;
+                const auto s = particles_of(collision(solver, dim, plain ? "scheme.backend = \"reference\"" : ""));
+                const auto momentum = [&](const char* axis) {
+                    return sum_of(*s, std::string("momentum_") + axis) + sum_of(*s, std::string("bodies_momentum_") + axis);
+                };
+                const real x = momentum("x"), y = momentum("y"), l = turning(*s, dim), water = sum_of(*s, "momentum_x");
+                const real dt = s->advised_dt();
+                for (int i = 0; i < (plain ? 12 : 30); ++i) s->step(dt);
+                const real changed = std::abs(sum_of(*s, "momentum_x") - water);
+                EXPECT_GT(changed, 1e-3 * std::abs(x)) << "they have met: " << solver << dim << plain;
+                const real bound = (plain ? 1e-10 : 1e-5) * std::abs(x);
+                EXPECT_NEAR(momentum("x"), x, bound) << solver << dim << plain;
+                EXPECT_NEAR(momentum("y"), y, bound) << solver << dim << plain;
+                if (std::string(solver) == "sph") {
+                    EXPECT_NEAR(turning(*s, dim), l, bound) << solver << dim << plain;
+                }
+            }
+}
+
+TEST("the threads' step is the reference's, with a body in the water") {
+    const OneThread alone;
+    for (const char* solver : {"sph", "pbf"}) {
+        const std::string body = "{ shape = \"box\", min = [0.31, 0.34], max = [0.71, 0.46], density = 300.0, spin = [0.5] }";
+        const std::string unsettled = std::string(solver) == "pbf" ? "scheme = { settle = 0, backend = \"" : "scheme = { backend = \"";
+        const auto fast = particles_of(tank(solver, 20, body, unsettled + "threads\" }"));
+        const auto plain = particles_of(tank(solver, 20, body, unsettled + "reference\" }"));
+        const real dt = fast->advised_dt();
+        fast->step(dt), plain->step(dt);
+        for (const char* field : {"position", "velocity", "spin", "force"})
+            for (std::size_t a = 0; a < (std::string(field) == "spin" ? 1u : 2u); ++a) {
+                // single precision of pressures and multipliers: 1e-4 of what the first step does
+                const real scale = std::string(field) == "force" ? 1000 * 9.81 * 0.4 * 0.12 : 1;
+                EXPECT_NEAR(shown(*fast, field, a), shown(*plain, field, a), 1e-4 * scale) << solver << field << a;
+            }
+    }
+}
+
+TEST("bodies of any weight among particles: none is thrown, none stirs the water") {
+    const OneThread alone;
+    for (const char* solver : {"sph", "pbf"})
+        for (const real density : {0.0, 1.0, 100.0, 1000.0, 1e6}) {
+            const auto s = particles_of(
+                tank(solver, 20, fmt::format("{{ shape = \"sphere\", centre = [0.5, 0.4], radius = 0.15, density = {} }}", density)));
+            real fastest = 0;
+            while (s->time() < 0.5) s->step(s->advised_dt()), fastest = std::max(fastest, std::abs(shown(*s, "velocity", 1)));
+            // nothing here falls or rises further than 0.4 m
+            EXPECT_LT(fastest, std::sqrt(2 * 9.81 * 0.4)) << solver << density;
+            EXPECT_GT(shown(*s, "position", 1), 0.14) << solver << density;
+        }
+}
+
+TEST("a body falls through the air as a stone, beside the water, by its own weight") {
+    const OneThread alone;
+    for (const char* solver : {"sph", "pbf"}) {
+        const auto s = particles_of(tank(solver, 20, "{ shape = \"box\", min = [0.4, 0.6], max = [0.6, 0.7], density = 3000.0 }"));
+        const real dt = 0.0005;
+        for (int i = 0; i < 100; ++i) s->step(dt);  // 0.05 s: 1.2 cm
+        EXPECT_NEAR(shown(*s, "position", 1), 0.65 - 0.5 * 9.81 * 0.0025, 1e-12) << solver;
+    }
+}
+
+TEST("particles and bodies that touch continue from a checkpoint bit for bit, with two threads as with one") {
+    const std::string bodies =
+        "{ shape = \"box\", min = [0.1, 0.41], max = [0.3, 0.55], density = 300.0, friction = 0.3 }, { shape = \"box\", min = [0.12, "
+        "0.56], "
+        "max = [0.28, 0.66], density = 2000.0 }, { shape = \"sphere\", centre = [0.7, 0.101], radius = 0.1, density = 5000.0, spin = [1.0] "
+        "}";
+    for (const char* solver : {"sph", "pbf"}) {
+        set_threads(1);
+        const auto one = particles_of(tank(solver, 20, bodies)), two = particles_of(tank(solver, 20, bodies));
+        for (int i = 0; i < 40; ++i) one->step(0.001);
+        Checkpoint checkpoint;
+        one->save(checkpoint);
+        two->restore(checkpoint);
+        for (int i = 0; i < 10; ++i) one->step(0.001);
+        set_threads(2);
+        for (int i = 0; i < 10; ++i) two->step(0.001);
+        set_threads(0);
+        for (std::size_t body = 0; body < 3; ++body)
+            for (const char* field : {"position", "velocity", "force"})
+                for (const std::size_t a : {0u, 1u}) EXPECT_EQ(shown(*one, field, a, body), shown(*two, field, a, body)) << solver << field;
+        Checkpoint a, b;
+        one->save(a), two->save(b);
+        std::vector<real> p, q;
+        a.get("particles.x1", p), b.get("particles.x1", q);
+        EXPECT_EQ(p, q) << solver;
+    }
+}
+
+TEST("a scene of particles without bodies holds none, and runs no pass for them") {
+    const OneThread alone;
+    for (const char* solver : {"sph", "pbf"}) {
+        const auto without = particles_of(tank(solver, 10, ""));
+        without->step(0.001);
+        EXPECT_EQ(without->fields().find(rigid::body_set_name, "position"), nullptr);
+        for (const auto& pass : without->passes().list()) EXPECT_NE(pass.name, "bodies") << solver;
+        const auto with = particles_of(tank(solver, 10, "{ shape = \"sphere\", centre = [0.5, 0.6], radius = 0.05, density = 500.0 }"));
+        with->step(0.001);
+        EXPECT_LT(without->bytes(), with->bytes()) << solver;
+    }
+}
+
+TEST("the water that a body displaces at the start is taken out to a particle") {
+    for (const real low : {0.31, 0.3375, 0.34, 0.355}) {  // a flat bottom anywhere between the particles' rows
+        const auto s = particles_of(
+            tank("sph", 40, fmt::format("{{ shape = \"box\", min = [0.31, {}], max = [0.71, {}], density = 500.0 }}", low, low + 0.2)));
+        EXPECT_NEAR(sum_of(*s, "volume"), 0.4 - 0.4 * (0.4 - low), 1.5 * 0.025 * 0.025)
+            << low;  // of each of 16 cells half an eighth, and half a particle
+    }
+}
