@@ -105,6 +105,7 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
             vapour_ = constant(vapour->params());
             above_ = device_->alloc(static_cast<std::size_t>(vapour->columns() * (vapour->rows() + 1)) * sizeof(int));
         }
+        if (effects_.heat->free()) ice_ = std::make_unique<Ice<D>>(*effects_.heat, host_.domain), plan_.want(rests, sizeof(float));
     }
     plan_.want(list, static_cast<std::size_t>(room_) * sizeof(int));
     state_params = constant(state_params_of(effects, host_.domain, support_));
@@ -138,6 +139,7 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
     if (!sinks.empty()) defines += " -DWEIR_SINKS";
     if (heated) defines += " -DWEIR_HEATERS";
     if (boils) defines += " -DWEIR_VAPOUR";
+    if (boils || (effects_.heat && effects_.heat->free())) defines += " -DWEIR_RESTS";
     if (effects_.gravity) defines += " -DWEIR_GRAVITY";
     if (effects_.central_force) defines += " -DWEIR_CENTRAL_FORCE";
     if (effects_.xsph) defines += " -DWEIR_XSPH";
@@ -221,7 +223,7 @@ template <int D>
 void DeviceFluid<D>::predict(real dt) {
     pass_time(dt);
     run("predict", {count(), stride_, state_params, poses, dt, pull(dt), clamps, x, v, x_star});
-    hold_prediction();
+    hold_prediction(dt);
 }
 
 template <int D>

@@ -8,6 +8,7 @@
 #include "particles/device_memory.hpp"
 #include "particles/emitters.hpp"
 #include "particles/heat.hpp"
+#include "particles/ice.hpp"
 #include "particles/passes.hpp"
 #include "particles/scheme.hpp"
 
@@ -113,10 +114,15 @@ public:
     void conduct(Heat<D>& heat, real dt);
     /// After the neighbours are found: what density particles are to have, where the scene lets them boil.
     void expand();
-    /// What is frozen does not move: it has no velocity, and is predicted and corrected to where it is.
+    /// What is frozen does not move: it has no velocity, and is predicted and corrected to where it is. Or it moves in pieces.
     void hold();
-    void hold_prediction();
+    void hold_again();
+    void hold_prediction(real dt);
     void hold_places();
+    /// Pieces of ice after an update of positions, what moved them in dt; and by a drift of dt.
+    void arrive(real dt);
+    void carry_ice(real dt);
+    bool ice_moves() const { return ice_ && effects_.heat->frozen() > 0; }
     /// Counts a step; the state follows the sorted order now and then, so that gathers stay near in memory; what has crossed a side is
     /// taken back or out.
     void end_step();
@@ -176,6 +182,11 @@ private:
     void append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities,
                 const std::vector<real>& enthalpies);
     void feed(Heat<D>& heat, real dt);
+    void find_ice();
+    void predict_ice(real dt);
+    void place_ice();
+    void fetch(const Memory& from, std::array<std::vector<real>, D>& to) const;
+    void send(const std::array<std::vector<real>, D>& from, const Memory& to);
     bool take_out(std::string_view find_stayers);
     std::size_t most_particles() const;
 
@@ -196,6 +207,10 @@ private:
     Memory start_, members_, blocks_, parts_, needed_;
     std::size_t cells_room_ = 0;
     std::vector<double> host_parts_, host_poses_;
+    std::unique_ptr<Ice<D>> ice_;  // where what is frozen moves
+    std::array<std::vector<real>, D> ice_places_;
+    std::vector<int> ice_order_, ice_sorted_;
+    std::vector<float> ice_four_;
 };
 
 }  // namespace weir::particles

@@ -33,6 +33,7 @@ void DeviceFluid<D>::feed(Heat<D>& heat, real dt) {
 
 template <int D>
 void DeviceFluid<D>::expand() {
+    if (ice_ && count() > 0) run("rests_of_ice", {count(), heat_states_, order, enthalpy, rests});
     if (!effects_.heat || !effects_.heat->vapour() || count() == 0) return;
     const auto& vapour = *effects_.heat->vapour();
     const int columns = vapour.columns(), rows = vapour.rows();
@@ -47,18 +48,21 @@ template <int D>
 void DeviceFluid<D>::hold() {
     if (!effects_.heat || count() == 0) return;
     if (device_is_old_) upload();
+    if (ice_) return find_ice();
     effects_.heat->set_frozen(static_cast<int>(reduce("count_frozen", {count(), heat_states_, enthalpy, parts_}).sum));
     if (effects_.heat->frozen() > 0) run("hold", {count(), stride_, heat_states_, enthalpy, v});
 }
 
 template <int D>
-void DeviceFluid<D>::hold_prediction() {
+void DeviceFluid<D>::hold_prediction(real dt) {
+    if (ice_ && count() > 0) return predict_ice(dt);
     hold();
     if (effects_.heat && effects_.heat->frozen() > 0) run("hold_prediction", {count(), stride_, heat_states_, enthalpy, x, x_star});
 }
 
 template <int D>
 void DeviceFluid<D>::hold_places() {
+    if (ice_moves()) return place_ice();
     if (effects_.heat && effects_.heat->frozen() > 0)
         run("hold_places", {count(), stride_, state_params, heat_states_, order, enthalpy, x, a});
 }
@@ -86,8 +90,8 @@ template void DeviceFluid<2>::expand();
 template void DeviceFluid<3>::expand();
 template void DeviceFluid<2>::hold();
 template void DeviceFluid<3>::hold();
-template void DeviceFluid<2>::hold_prediction();
-template void DeviceFluid<3>::hold_prediction();
+template void DeviceFluid<2>::hold_prediction(real);
+template void DeviceFluid<3>::hold_prediction(real);
 template void DeviceFluid<2>::hold_places();
 template void DeviceFluid<3>::hold_places();
 template void DeviceFluid<2>::conduct(Heat<2>&, real);

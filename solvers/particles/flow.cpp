@@ -2,6 +2,7 @@
 
 #include "particles/emitters.hpp"
 #include "particles/heat.hpp"
+#include "particles/ice.hpp"
 #include "scene/names.hpp"
 
 namespace weir::particles {
@@ -102,6 +103,7 @@ void refuse_nothing(const scene::Scene& scene, const Fluid<D>& fluid) {
 template <int D>
 Fluid<D> initial_fluid(const scene::Scene& scene) {
     Fluid<D> fluid(scene);
+    spread_ice(scene, fluid);
     refuse_nothing(scene, fluid);
     set_initial_velocity(scene, fluid);
     if (heat_is_named(scene)) Heat<D>(scene, fluid.domain).start(scene, fluid);

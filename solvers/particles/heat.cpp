@@ -37,7 +37,7 @@ LatticeSums lattice_sums(const Scheme& scheme, real spacing) {
 
 HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>& conductivity) {
     constexpr real far = 1e300;
-    HeatStates s{far, far, far, far, {0, 0, 0}, {0, 0, 0}, 0, {conductivity[0], conductivity[1], conductivity[2]}, far};
+    HeatStates s{far, far, far, far, {0, 0, 0}, {0, 0, 0}, 0, {conductivity[0], conductivity[1], conductivity[2]}, far, 0};
     for (int i = 0; i < curve.states(); ++i) {
         const auto state = static_cast<std::size_t>(std::min(curve.state(i), thermo::State::vapour));  // or supercritical
         s.per_c[state] = 1 / curve.heat_capacity(i);
@@ -86,7 +86,7 @@ int Heat<D>::count_frozen(const Fluid<D>& fluid) {
 template <int D>
 std::string Heat<D>::concern() const {
     std::string text = vapour_ ? vapour_->concern() : "";
-    if (frozen_ > 0)
+    if (frozen_ > 0 && !free_)
         text += (text.empty() ? "" : "; ") + std::to_string(frozen_) +
                 " particles are frozen: they are held where they are, ice neither floats nor sinks";
     return text;

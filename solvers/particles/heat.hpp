@@ -10,7 +10,9 @@
 #include "particles/scheme.hpp"
 #include "particles/vapour.hpp"
 #include "thermo/heat_curve.hpp"
+#include "thermo/substance.hpp"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -30,6 +32,9 @@ HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>
 bool heat_is_named(const scene::Scene& scene);
 /// "substance", "heat", "heaters", and walls with a flux; and "initial.temperature".
 std::vector<scene::Key> heat_keys();
+/// Whether a place is frozen at the start.
+template <int D>
+std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene& scene);
 scene::Key initial_temperature_key();
 /// Of what scene.emitters[i] lets in, of its temperature [J/kg].
 real emitted_enthalpy(const scene::Scene& scene, std::size_t i);
@@ -46,6 +51,14 @@ public:
     const single::HeatWalls& single_walls() const { return single_walls_; }
     const plain::HeatWalls& plain_walls() const { return plain_walls_; }
     const HeatStates& states() const { return states_; }
+    /// Whether what is frozen moves, in pieces (ice.hpp), and takes the room of a solid; else it is held in place.
+    bool free() const { return free_; }
+    /// The rest density of a particle over the liquid's [1].
+    real rest(real h) const { return heat_rest(h, &states_); }
+    /// The solid's density over the liquid's, where what is frozen moves [1].
+    real solid_rest() const { return 1 / (1 + states_.swells); }
+    /// Whether particles hold to this wall: it is colder than they freeze at.
+    bool freezing(int axis, int end) const { return freezing_[static_cast<std::size_t>(2 * axis + end)]; }
     /// Whether heat passes from walls that are held at a temperature.
     bool held() const { return held_; }
     /// Into how many equal parts a step is cut in each of which explicit conduction is stable; and remembers it.
@@ -115,6 +128,7 @@ private:
     void refuse_boiling(const scene::Scene& scene, const std::string& path, real T, const std::string& why) const;
     real theta_of_wall(real T) const;
     void set_pairs(const Scheme& scheme);
+    void set_ice(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance);
     void read_sides(const scene::Scene& scene, const Domain<D>& domain);
     void read_heaters(const scene::Scene& scene, const Domain<D>& domain);
 
@@ -126,7 +140,8 @@ private:
     plain::HeatWalls plain_walls_;
     Vec<D> lo_, hi_;
     real spacing_, rho0_;
-    bool held_ = false;
+    bool held_ = false, free_ = false;
+    std::array<bool, 6> freezing_{};  // walls, two an axis
     real stable_dt_ = infinity;
     int parts_ = 0;   // of the last step
     int frozen_ = 0;  // particles

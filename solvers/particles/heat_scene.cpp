@@ -72,6 +72,17 @@ std::function<real(const Vec<D>&)> temperature_function(const scene::Scene& scen
     };
 }
 
+Key frozen_key() {
+    return {.name = "frozen",
+            .type = Type::text,
+            .doc =
+                "What becomes of particles that are more than half frozen. held: each stays where it is, and takes a liquid's room. free: "
+                "those that are neighbours are one rigid piece, which floats or sinks; it takes the room of the solid, and what has "
+                "frozen to a wall that is colder than it melts stays there.",
+            .fallback = std::string("held"),
+            .choices = {"held", "free"}};
+}
+
 }  // namespace
 
 bool heat_is_named(const scene::Scene& scene) { return scene.has("substance"); }
@@ -82,12 +93,12 @@ std::vector<Key> heat_keys() {
         for (const char* end : {"_min", "_max"})
             sides.keys.push_back({.name = std::string(axis) + end, .type = Type::table, .variants = {matter::wall_with_heat_flux()}});
     return {
-        matter::substance_key_of_heat(
-            "Naming it lets particles carry heat, melt and freeze, with `fluid.density` for solid and liquid alike."),
+        matter::substance_key_of_heat("Naming it lets particles carry heat, melt and freeze; `fluid.density` is the liquid's, and the "
+                                      "solid's too where `heat.frozen` does not say otherwise."),
         {.name = "heat",
          .type = Type::table,
          .doc = "How a substance takes up heat. Only where `substance` is named.",
-         .keys = {matter::pressure_key(), vapour_key()}},
+         .keys = {matter::pressure_key(), frozen_key(), vapour_key()}},
         matter::heaters_key(
             "Regions that give off heat, evenly over the particles inside; while there is none, nothing. Only where `substance` is named."),
         sides};
@@ -138,6 +149,7 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
             k[static_cast<std::size_t>(curve_.state(i))] = substance->conduction(curve_.state(i)).conductivity;
     states_ = heat_states(curve_, k);
     check_density(scene, *substance, states_);
+    set_ice(scene, domain, *substance);
     if (vapour_is_named(scene)) {
         vapour_ = std::make_unique<Vapour<D>>(scene, domain, *substance, states_);
         const real highest = vapour_->params().shift[WEIR_SHIFT_PIECES];
@@ -148,6 +160,44 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
     set_pairs(scheme);
     read_sides(scene, domain);
     read_heaters(scene, domain);
+}
+
+/// Frozen particles that move stand further apart, and conduct as the solid does all the same: each of a pair is fewer by a volume's ratio.
+template <int D>
+void Heat<D>::set_ice(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance) {
+    free_ = scene.text("heat.frozen") == "free";
+    if (!free_) return;
+    if (!substance.has(thermo::Boundary::melting))
+        scene.refuse("heat.frozen", std::string(substance.name()) + " never freezes",
+                     "substance.fusion and a triple point make one that does");
+    if (vapour_is_named(scene))
+        scene.refuse("heat.frozen", "ice that moves and vapour are not simulated together", "heat.frozen = \"held\", or no heat.vapour");
+    if (!scene.root().tables("bodies").empty())
+        scene.refuse("heat.frozen", "pieces of ice do not meet bodies that move, and this scene has both", "heat.frozen = \"held\"");
+    for (int a = 0; a < D; ++a)
+        if (domain.sides.periodic(a))
+            scene.refuse("heat.frozen",
+                         "pieces of ice do not cross periodic sides, and this scene has them along " + std::string(1, "xyz"[a]),
+                         "heat.frozen = \"held\"");
+    const real liquid = substance.warmer_density(thermo::Boundary::melting, states_.T),
+               solid = substance.colder_density(thermo::Boundary::melting, states_.T);
+    if (std::abs(rho0_ - liquid) > std::abs(rho0_ - solid))
+        scene.refuse(
+            "fluid.density",
+            "fluid.density is " + scene::number_text(rho0_) + " kg/m^3, nearer the solid's than the liquid's, and heat.frozen is \"free\"",
+            "liquid " + scene::number_text(std::round(liquid * 10) / 10) + " kg/m^3: ice that moves has a density of its own");
+    states_.swells = liquid / solid - 1;
+    states_.k_c[0] *= (liquid / solid) * (liquid / solid);
+}
+
+template <int D>
+std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene& scene) {
+    if (!scene.has("initial.temperature.name")) return [](const Vec<D>&) { return false; };
+    return [value = temperature_function<D>(scene), curve = liquid_curve(scene, *matter::substance_of(scene)),
+            states = heat_states(liquid_curve(scene, *matter::substance_of(scene)), {0, 0, 0})](const Vec<D>& x) {
+        const real T = value(x);
+        return T > 0 && heat_melted(curve.enthalpy(T), &states) < 0.5;
+    };
 }
 
 template <int D>
@@ -188,6 +238,7 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
                 matter::check_temperature(scene, path + ".temperature", *T);
                 if (!vapour_) refuse_boiling(scene, path + ".temperature", *T, "the scene names no heat.vapour");
                 held_ = true;
+                freezing_[static_cast<std::size_t>(2 * a + end)] = *T < states_.T;
             }
             place(single_walls_), place(plain_walls_);
             if (!scene.has(path + ".heat_flux")) continue;
@@ -233,6 +284,7 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
         if (!(T >= coldest)) coldest = T;
         hottest = std::max(hottest, T);
         fluid.enthalpy.push_back(curve_.enthalpy(T));
+        if (free_) fluid.density[static_cast<std::size_t>(i)] = rho0_ * rest(fluid.enthalpy.back());
     }
     if (!(coldest > 0))
         scene.refuse("initial.temperature", "somewhere it is " + scene::number_text(coldest) + " K at the start",
@@ -242,6 +294,8 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
 
 #define WEIR_INSTANTIATE(D)                                                                                         \
     template Heat<D>::Heat(const scene::Scene&, const Domain<D>&);                                                  \
+    template void Heat<D>::set_ice(const scene::Scene&, const Domain<D>&, const thermo::Substance&);                \
+    template std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene&);                               \
     template void Heat<D>::refuse_boiling(const scene::Scene&, const std::string&, real, const std::string&) const; \
     template real Heat<D>::theta_of_wall(real) const;                                                               \
     template void Heat<D>::read_sides(const scene::Scene&, const Domain<D>&);                                       \

@@ -196,7 +196,7 @@ std::vector<double> ReferenceSph::rates(const std::vector<Point>& x, const std::
         double relative = 2 * (wall[0] * v[i][0] + wall[1] * v[i][1] + wall[2] * v[i][2]), spread = 0;
         for (const std::size_t j : neighbours[i]) {
             const Point d = apart(x[i], x[j], period), u = difference(v[i], v[j]);
-            double excess = (rho[j] - rho0) - (rho[i] - rho0);
+            double excess = (rho[j] - rho0 * rest_of(*this, j)) - (rho[i] - rho0 * rest_of(*this, i));
             for (std::size_t b = 0; b < 3; ++b) excess += p.layers[b] * d[b];
             relative += functions[kernel].sph_rate(apart2(d, p), d[0] * u[0] + d[1] * u[1] + d[2] * u[2], 1 / rho[j], &p);
             spread += functions[kernel].sph_diffusion(apart2(d, p), excess, 1 / rho[j], &p);

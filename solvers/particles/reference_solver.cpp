@@ -18,7 +18,7 @@ ReferenceSolver<D, Physics>::ReferenceSolver(const Scheme& scheme, Fluid<D>&& st
 template <int D, class Physics>
 void ReferenceSolver<D, Physics>::take(const scene::Scene& scene, const ReferenceEffects& effects) {
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
-    if (fluid_.warm) this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain), this->heat_->count_frozen(fluid_);
+    this->take_heat(scene);
     for (const auto& [name, pass] : effects)
         if (scene.effect(name)) plans_.push_back({.name = name, .inside = pass});
 }
@@ -31,17 +31,10 @@ void ReferenceSolver<D, Physics>::end_step() {
 
 template <int D, class Physics>
 void ReferenceSolver<D, Physics>::expand() {
-    if (!this->vapour()) return;
-    this->heat_->place(fluid_);
+    if (!this->vapour() && !this->ice_) return;
+    if (this->vapour()) this->heat_->place(fluid_);
     reference_.rest.clear();
-    for (int i = 0; i < fluid_.count(); ++i) reference_.rest.push_back(this->vapour()->rest(i));
-}
-
-template <int D, class Physics>
-void ReferenceSolver<D, Physics>::hold() {
-    if (!this->heat_ || this->heat_->count_frozen(fluid_) == 0) return;
-    for (int i = 0; i < fluid_.count(); ++i)
-        if (held(static_cast<std::size_t>(i))) Fluid<D>::put(fluid_.v, i, Vec<D>{});
+    for (int i = 0; i < fluid_.count(); ++i) reference_.rest.push_back(this->ice_ ? this->ice_rest(i) : this->vapour()->rest(i));
 }
 
 template <int D, class Physics>

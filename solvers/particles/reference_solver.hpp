@@ -32,8 +32,6 @@ protected:
     void end_step();
     /// As on threads.
     void expand();
-    void hold();
-    bool held(std::size_t i) const { return this->heat_ && this->heat_->frozen(fluid_.enthalpy[i]); }
     /// Between particles that are at x, whose neighbours are known.
     void conduct_at(const std::vector<Point>& x, real dt);
 

@@ -77,6 +77,30 @@ void HostSolver<D>::restore_state(const Checkpoint& from) {
     speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // the device does not keep it
 }
 
+template <int D>
+void HostSolver<D>::take_heat(const scene::Scene& scene) {
+    if (!fluid_.warm) return;
+    this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain);
+    this->heat_->count_frozen(fluid_);
+    if (this->heat_->free()) this->ice_ = std::make_unique<Ice<D>>(*this->heat_, fluid_.domain);
+}
+
+template <int D>
+void HostSolver<D>::hold() {
+    if (!this->heat_ || this->heat_->count_frozen(fluid_) == 0) return;
+    if (this->ice_) return this->ice_->find(fluid_);
+    hold_again();
+}
+
+template <int D>
+void HostSolver<D>::hold_again() {
+    if (!this->heat_ || this->heat_->frozen() == 0) return;
+    if (this->ice_) return this->ice_->move_as_one(fluid_);
+    parallel_for(0, fluid_.count(), [&](int i) {
+        if (held(i)) Fluid<D>::put(fluid_.v, i, Vec<D>{});
+    });
+}
+
 /// Neighbours and densities are found anew in every step: there is nothing else that would have to follow.
 template <int D>
 std::vector<EditableField> HostSolver<D>::editable() {

@@ -8,8 +8,7 @@
 #include "particles/emitters.hpp"
 #include "particles/fluid.hpp"
 #include "particles/heat.hpp"
-
-#include <memory>
+#include "particles/ice.hpp"
 
 namespace weir::particles {
 
@@ -66,6 +65,7 @@ protected:
 
     Passes passes_;
     std::shared_ptr<Heat<D>> heat_;              // where the scene names a substance
+    std::unique_ptr<Ice<D>> ice_;                // where what is frozen moves
     std::shared_ptr<BodiesInLiquid<D>> bodies_;  // where it names bodies
 };
 
@@ -97,6 +97,20 @@ protected:
     }
     void save_state(Checkpoint& to) const final;
     void restore_state(const Checkpoint& from) final;
+    void take_heat(const scene::Scene& scene);
+    /// Particles that are frozen do not move, or move with their pieces, which it finds: forgets what else was done to their velocities.
+    void hold();
+    /// The same where nothing has melted or frozen since.
+    void hold_again();
+    /// Whether particle i of the state is frozen and does not move, where hold() has found any.
+    bool held(int i) const {
+        if (!this->heat_ || this->heat_->frozen() == 0) return false;
+        return this->ice_ ? this->ice_->fixed(i) : this->heat_->frozen(fluid_.enthalpy[static_cast<std::size_t>(i)]);
+    }
+    /// Whether pieces of ice move in this step.
+    bool ice_moves() const { return this->ice_ && this->heat_->frozen() > 0; }
+    /// The rest density of particle i over the liquid's where what is frozen moves; else 1.
+    real ice_rest(int i) const { return this->ice_ ? this->heat_->rest(fluid_.enthalpy[static_cast<std::size_t>(i)]) : 1; }
     void refuse_outside(int first) const;
 
     Fluid<D> fluid_;

@@ -11,7 +11,7 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
       flow_{fluid_, pairs_, kernels_, {}, {}, scheme.kernel()} {
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
-    if (fluid_.warm) this->heat_ = std::make_shared<Heat<D>>(scene, fluid_.domain), this->heat_->count_frozen(fluid_);
+    this->take_heat(scene);
     this->hand_ = geometry::make_hand(scene, this->heat_ ? geometry::warming_kinds : geometry::moving_kinds);
     if (!this->hand_) return;
     auto hand = std::make_unique<HandOnParticles<D>>(this->hand_);
@@ -26,15 +26,11 @@ void ThreadedSolver<D>::end_step() {
 }
 
 template <int D>
-void ThreadedSolver<D>::hold() {
-    if (!this->heat_ || this->heat_->count_frozen(fluid_) == 0) return;
-    parallel_for(0, fluid_.count(), [&](int i) {
-        if (held(i)) Fluid<D>::put(fluid_.v, i, Vec<D>{});
-    });
-}
-
-template <int D>
 void ThreadedSolver<D>::expand() {
+    if (this->ice_) {
+        pairs_.fit(rest_, 1);
+        pairs_.each([&](int k) { rest_[static_cast<std::size_t>(k)] = static_cast<float>(this->ice_rest(pairs_.owner(k))); });
+    }
     if (!this->heat_ || !this->heat_->vapour()) return;
     const auto timed = this->passes_.time("vapour");
     if (!this->heat_->place(fluid_)) return;
@@ -80,7 +76,7 @@ template <int D>
 std::size_t ThreadedSolver<D>::bytes() const {
     return fluid_.bytes() + pairs_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes() +
            (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + rest_.capacity() * sizeof(float) +
-           (this->heat_ ? this->heat_->bytes() : 0) + (this->bodies_ ? this->bodies_->bytes() : 0);
+           (this->heat_ ? this->heat_->bytes() : 0) + (this->bodies_ ? this->bodies_->bytes() : 0) + (this->ice_ ? this->ice_->bytes() : 0);
 }
 
 template class ThreadedSolver<2>;

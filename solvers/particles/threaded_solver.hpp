@@ -36,15 +36,8 @@ protected:
     void conduct(real dt) final;
     /// After the pairs are found: what density particles are to have, where the scene lets them boil.
     void expand();
-    /// Of sorted particles, over the liquid's; null: nothing boils.
-    const float* rest() const { return this->vapour() && this->vapour()->boils() ? rest_.data() : nullptr; }
-    /// Particles that are frozen do not move: forgets what was done to their velocities.
-    void hold();
-    /// Whether particle i of the state is frozen, where hold() has found any.
-    bool held(int i) const {
-        return this->heat_ && this->heat_->frozen() > 0 && this->heat_->frozen(fluid_.enthalpy[static_cast<std::size_t>(i)]);
-    }
-
+    /// Of sorted particles, over the liquid's; null: nothing boils, and no ice moves.
+    const float* rest() const { return this->ice_ || (this->vapour() && this->vapour()->boils()) ? rest_.data() : nullptr; }
     using HostSolver<D>::fluid_;
     single::PbfParams kernels_{};  // the method's, as PBF, XSPH and vorticity read them
     single::WallParams walls_;

@@ -56,7 +56,7 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     update(dt, std::max(dt, last_dt_));  // 20-21, 23-24
     last_dt_ = dt;
     fluid_.finish(dt);  // 22
-    fluid_.hold();
+    fluid_.hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = fluid_.max_speed();
     const Reduced c = find_compression();
@@ -113,6 +113,7 @@ void DevicePbfSolver<D>::update(real dt, real slow) {
     fluid_.run("densities", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.rests, f.a, f.neighbours, f.list, density_});
     fluid_.run("update", {f.count(), f.stride(), f.state_params, f.poses, dt, slow, f.rest_density(), f.order, f.a, f.x_star, density_,
                           multiplier_, f.x, f.v, f.density, f.carried});
+    if (dt > 0) fluid_.arrive(slow);
 }
 
 template <int D>

@@ -23,17 +23,18 @@ Fluid<D> start_of(const scene::Scene& scene) {
 }  // namespace
 
 template <int D>
-ReferencePbfSolver<D>::ReferencePbfSolver(const scene::Scene& scene) : ReferencePbfSolver(Options(scene), start_of<D>(scene)) {
-    this->take(scene, pbf::effects());
+ReferencePbfSolver<D>::ReferencePbfSolver(const scene::Scene& scene) : ReferencePbfSolver(Options(scene), start_of<D>(scene), &scene) {
     Fluid<D> unsettled = start_of<D>(scene);
     step_ = even_step(scene, unsettled);  // as on threads
 }
 
 template <int D>
-ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start) : Base(options, std::move(start)) {
+ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start, const scene::Scene* scene)
+    : Base(options, std::move(start)) {
     reference_.p = pbf_params<particles::plain::PbfParams, D>(options_, fluid_.domain.spacing);
     reference_.least_back = particles::least_clamp * fluid_.domain.spacing;
     give_ = give_at_walls<D>(options_, fluid_.domain.spacing);
+    if (scene) this->take(*scene, pbf::effects());
     this->settle();
 }
 
@@ -56,7 +57,7 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
         for (std::size_t i = 0; i < multiplier_.size(); ++i) fluid_.carried[i] = multiplier_[i] / (slow * slow);
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) bodies_->end(fluid_.domain, dt, slow), carried_dt_ = 0;
-    this->hold();
+    this->hold_again();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
     const real speed = speed_ = this->speed();
@@ -79,10 +80,14 @@ void ReferencePbfSolver<D>::predict(real dt) {
         const auto timed = passes_.time("predict");
         fluid_.time += dt;
         fluid_.domain.solids.set_time(fluid_.time);
+        for (int i = 0; i < fluid_.count(); ++i) Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * fluid_.gravity);
+        this->hold();  // what is frozen
         predicted_.clear(), x_star_.clear();
-        for (int i = 0; i < fluid_.count(); ++i) {
-            Fluid<D>::put(fluid_.v, i, this->held(static_cast<std::size_t>(i)) ? Vec<D>{} : fluid_.velocity(i) + dt * fluid_.gravity);
+        for (int i = 0; i < fluid_.count(); ++i)
             predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
+        if (this->ice_moves()) {
+            this->ice_->fly(dt);
+            this->ice_->each_place([&](int i, const Vec<D>& place) { predicted_[static_cast<std::size_t>(i)] = place; });
         }
         if (carried_dt_ > 0) push_bodies_ahead();
         for (const Vec<D>& x : predicted_) x_star_.push_back(particles::point_of(x - fluid_.domain.centre()));
@@ -125,7 +130,11 @@ void ReferencePbfSolver<D>::correct() {
     else if (!fluid_.domain.solids.empty())
         for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x), fluid_.clamps) - centre);
     for (std::size_t i = 0; i < x_star_.size(); ++i)
-        if (this->held(i)) x_star_[i] = particles::point_of(predicted_[i] - centre);
+        if (this->held(static_cast<int>(i))) x_star_[i] = particles::point_of(predicted_[i] - centre);
+    if (!this->ice_moves()) return;
+    this->ice_->follow(
+        [&](int i, const Vec<D>& from) { return centre + particles::vec_of<D>(x_star_[static_cast<std::size_t>(i)]) - from; });
+    this->ice_->each_place([&](int i, const Vec<D>& to) { x_star_[static_cast<std::size_t>(i)] = particles::point_of(to - centre); });
 }
 
 /// Bodies fall by their weight, and go where their velocities take them.
@@ -206,6 +215,7 @@ void ReferencePbfSolver<D>::update(real dt, real slow) {
         Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[at] = fluid_.rho0 * density_[at];
     }
+    if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
 }
 
 template <int D>

@@ -11,7 +11,7 @@ class ReferencePbfSolver final : public Pbf<particles::ReferenceSolver<D, partic
 public:
     explicit ReferencePbfSolver(const scene::Scene& scene);
     /// Without a scene: from particles in a domain; gravity is the fluid's.
-    ReferencePbfSolver(const Options& options, particles::Fluid<D> start);
+    ReferencePbfSolver(const Options& options, particles::Fluid<D> start, const scene::Scene* scene = nullptr);
     StepReport step(real dt) override;
     const std::vector<double>& lambda() const { return lambda_; }  // of the last iteration
 

@@ -40,7 +40,7 @@ StepReport PbfSolver<D>::step(real dt) {
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
-    this->hold();
+    this->hold_again();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
     const real speed = speed_ = this->speed();
@@ -72,6 +72,9 @@ void PbfSolver<D>::predict(real dt) {
         particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
     });
     if (carried_dt_ > 0) push_bodies_ahead();
+    if (!this->ice_moves()) return;
+    this->ice_->fly(dt);
+    this->ice_->each_place([&](int i, const Vec<D>& place) { particles::Fluid<D>::put(x_star_, i, place); });
 }
 
 template <int D>
@@ -81,6 +84,11 @@ void PbfSolver<D>::find_neighbours() {
     pairs_.fit(density_, 1);
     solids_.mark(pairs_);
     this->expand();
+    if (!this->ice_) return;
+    sorted_.resize(fluid_.id.size());
+    pairs_.each([&](int k) {
+        if (!pairs_.is_image(k)) sorted_[static_cast<std::size_t>(pairs_.owner(k))] = k;
+    });
 }
 
 template <int D>
@@ -155,7 +163,7 @@ void PbfSolver<D>::correct() {
     if (tally.count > 0) fluid_.clamps.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
 }
 
-/// What is frozen stays where the list found it.
+/// What is frozen stays where the list found it, or moves with its piece.
 template <int D>
 void PbfSolver<D>::hold_places() {
     if (!this->heat_ || this->heat_->frozen() == 0) return;
@@ -163,6 +171,16 @@ void PbfSolver<D>::hold_places() {
     pairs_.each([&](int k) {
         if (this->held(pairs_.owner(k)))
             for (int a = 0; a < 3; ++a) x[4 * k + a] = pairs_.found_at(k, a);
+    });
+    if (!this->ice_moves()) return;
+    const auto at = [&](int i) { return x + 4 * sorted_[static_cast<std::size_t>(i)]; };
+    this->ice_->follow([&](int i, const Vec<D>& from) {
+        Vec<D> by;
+        for (int a = 0; a < D; ++a) by[a] = static_cast<real>(at(i)[a]) - static_cast<real>(pairs_.local(from[a], a));
+        return by;
+    });
+    this->ice_->each_place([&](int i, const Vec<D>& to) {
+        for (int a = 0; a < D; ++a) at(i)[a] = pairs_.local(to[a], a);
     });
 }
 
@@ -286,6 +304,7 @@ void PbfSolver<D>::update(real dt, real slow) {
         particles::Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[static_cast<std::size_t>(i)] = fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
     });
+    if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
 }
 
 template <int D>
@@ -303,7 +322,8 @@ Compression PbfSolver<D>::compression() const {
 
 template <int D>
 std::size_t PbfSolver<D>::own_bytes() const {
-    return D * x_star_[0].capacity() * sizeof(real) + (density_.capacity() + multiplier_.capacity()) * sizeof(float);
+    return D * x_star_[0].capacity() * sizeof(real) + (density_.capacity() + multiplier_.capacity()) * sizeof(float) +
+           sorted_.capacity() * sizeof(int);
 }
 
 template class PbfSolver<2>;

@@ -42,6 +42,7 @@ private:
 
     std::array<std::vector<real>, D> x_star_;
     std::vector<float> density_;      // rho / rho0 of each sorted particle
+    std::vector<int> sorted_;         // where each particle of the state stands, where ice moves
     std::vector<float> before_push_;  // places of particles near solids, before they are put out of them
     real give_ = 0;                   // of walls that give way [m^2]
     real carried_dt_ = 0;             // length of the step where bodies move in it, else 0 [s]

@@ -149,6 +149,20 @@ void Body<D>::turn(real dt) {
     }
 }
 
+template <int D>
+void Body<D>::shift(const Twist<D>& by) {
+    for (int a = 0; a < D; ++a) at[a] += by[static_cast<std::size_t>(a)];
+    if constexpr (D == 2) {
+        orientation[0] += by[2];
+    } else {
+        const Vec<3> turn{{by[3], by[4], by[5]}};
+        const real angle = norm(turn);
+        if (angle == 0) return;
+        orientation = product(turn_about(turn / angle, angle), orientation);
+        normalise(orientation);
+    }
+}
+
 /// In the frame of the principal axes the momentum turns by the opposite of what the body does.
 template <int D>
 void Body<D>::turn_freely(real dt) {

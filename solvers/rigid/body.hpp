@@ -66,6 +66,8 @@ struct Body {
     /// A time dt on its own: along its velocity, and where neither water nor walls touch it along the parabola of `gravity`, whose push on
     /// the velocity comes later.
     void fly(real dt, const Vec<D>& gravity);
+    /// Moves it and turns it by so much [m], then [rad], whatever its velocity.
+    void shift(const Twist<D>& by);
     /// Mass and inertia of a shape of density one times `density`, about the centre of mass.
     void weigh(real total_mass, const Vec<D>& centre_of_mass);
 

@@ -69,7 +69,7 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     drift(dt);
     fluid_.finish(dt);  // XSPH, vorticity
-    fluid_.hold();
+    fluid_.hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = fluid_.max_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.order, fluid_.rests, fluid_.density, fluid_.parts()});
@@ -121,7 +121,7 @@ void DeviceSphSolver<D>::kick(real dt) {
 template <int D>
 void DeviceSphSolver<D>::advance_densities(real dt) {
     const auto& f = fluid_;
-    fluid_.run("load_excess", {f.count(), f.stride(), f.rest_density(), f.order, f.v, f.density, velocities_});
+    fluid_.run("load_excess", {f.count(), f.stride(), f.rest_density(), f.rests, f.order, f.v, f.density, velocities_});
     fluid_.run("advance_densities", {f.count(), f.stride(), f.state_params, f.poses, f.near_solid, params_, f.wall_params, f.terms, dt,
                                      f.rest_density(), f.a, velocities_, f.neighbours, f.list, f.order, f.density});
 }
@@ -131,6 +131,7 @@ template <int D>
 void DeviceSphSolver<D>::drift(real dt) {
     fluid_.pass_time(dt);
     fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.clamps, fluid_.x, fluid_.v});
+    fluid_.carry_ice(dt);
 }
 
 template class DeviceSphSolver<2>;

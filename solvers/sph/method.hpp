@@ -38,7 +38,11 @@ protected:
     }
 
     /// Of particle i [kg/m^3].
-    real rest_of(int i) const { return this->vapour() ? rho_rest_ * this->vapour()->rest(i) : rho_rest_; }
+    real rest_of(int i) const {
+        if (this->vapour()) return rho_rest_ * this->vapour()->rest(i);
+        const auto& heat = this->heat_;
+        return heat && heat->free() ? rho_rest_ * heat->rest(this->setting().enthalpy[static_cast<std::size_t>(i)]) : rho_rest_;
+    }
 
     const char* method() const final { return "sph"; }
     StepLimit stable_at(real speed) const final { return stable_step(options_, this->setting(), speed); }
@@ -55,6 +59,12 @@ protected:
     void save_more(Checkpoint& to) const final { to.put_value("sph.max_acceleration", max_acceleration_); }
     void restore_more(const Checkpoint& from) final { max_acceleration_ = from.get_value<real>("sph.max_acceleration"); }
 
+    /// After the drift of particles: pieces of ice go as bodies do.
+    void carry_ice(real dt) {
+        if (!this->ice_moves()) return;
+        this->ice_->fly(dt);
+        this->ice_->arrive(this->fluid_, dt);
+    }
     StepReport report(real dt, real speed, const Compression& c) const {
         return {.dt = dt,
                 .cfl = dt * (speed + options_.sound) / this->setting().domain.spacing,

@@ -58,7 +58,8 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     if (bodies_) move_bodies(dt);
     drift(fluid_, dt);
     if (bodies_) give_back();  // of what pushed
-    this->conduct(dt);         // only where a substance is named
+    this->carry_ice(dt);
+    this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = this->speed();
     real sum = 0, worst = 0;
     for (int i = 0; i < fluid_.count(); ++i) {

@@ -61,7 +61,7 @@ StepReport SphSolver<D>::step(real dt) {
     drift(dt);
     if (bodies_) give_back();                           // of what pushed
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
-    this->hold();
+    this->hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = this->speed();
     const Compression c = particles::compression_of(fluid_, rho_rest_, this->vapour());
@@ -115,7 +115,7 @@ void SphSolver<D>::find_densities() {
 template <int D>
 void SphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");
-    load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0; });
+    load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0 * this->ice_rest(i); });
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
     const auto rate = table.rate[options_.diffusion > 0];
@@ -259,6 +259,7 @@ template <int D>
 void SphSolver<D>::drift(real dt) {
     const auto timed = passes_.time("integrate");
     sph::drift(fluid_, dt);
+    this->carry_ice(dt);
 }
 
 template <int D>

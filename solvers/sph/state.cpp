@@ -62,7 +62,7 @@ void start_pressure(const scene::Scene& scene, const Options& options, particles
     for (int i = 0; i < fluid.count(); ++i) {
         const auto at = static_cast<std::size_t>(i);
         fluid.carried[at] = std::max<real>(0, fluid.rho0 * dot(fluid.gravity, fluid.position(i) - surface));
-        fluid.density[at] = options.density(fluid.carried[at], fluid.rho0);
+        fluid.density[at] = options.density(fluid.carried[at], fluid.density[at]);
     }
 }
 

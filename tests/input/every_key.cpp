@@ -233,6 +233,7 @@ std::map<std::string, Said> everything() {
     for (const std::string& line : of_field("temperature", true)) said["mac_water"].refused.push_back(line);  // of no substance
     Lines of_heat{"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }",
                   wax + "heat.pressure = 2e3",
+                  wax + "heat.frozen = \"free\"",
                   wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }",
                   wax + "sides.x_min = { kind = \"wall\", temperature = 320 }",
                   wax + emitter + ", temperature = 310 } ]",

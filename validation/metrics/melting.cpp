@@ -36,16 +36,21 @@ Panel front_panel(const RunRecord& run, const Reference& ref) {
     return {.title = "The front of melting", .x = {"t [s]"}, .y = {"x [m]"}, .curves = {exact, ours}};
 }
 
+/// Of all that is there, as liquid: of particles theirs, else the box is full.
+real volume_of(const RunRecord& run) {
+    if (run.fields.find("particles", "position")) return run.series("volume").y.front();
+    real volume = 1;
+    for (const real s : run.scene->root().numbers("grid.size")) volume *= s;
+    return volume;
+}
+
 /// What a box of ice and water at two temperatures comes to, by the lever rule.
 struct Balance {
     real T, liquid;
 };
 Balance lever(const RunRecord& run, const Reference& ref) {
     const auto number = [&](const char* name) { return ref.number(name); };
-    const auto& size = run.scene->root().numbers("grid.size");
-    real volume = 1;
-    for (const real s : size) volume *= s;
-    const real water = run.series("liquid_volume").y.front() / volume, ice = 1 - water;
+    const real water = run.series("liquid_volume").y.front() / volume_of(run), ice = 1 - water;
     const real to_melting = water * number("c_liquid") * (number("warm") - number("melts"));  // [J/kg of all]
     const real to_warm = ice * number("c_solid") * (number("melts") - number("cold")), to_melt = ice * number("fusion");
     const real left = to_melting - to_warm;
@@ -62,10 +67,7 @@ real lever_temperature(const RunRecord& run, const Reference& ref) {
 }
 
 real lever_liquid(const RunRecord& run, const Reference& ref) {
-    const auto& size = run.scene->root().numbers("grid.size");
-    real volume = 1;
-    for (const real s : size) volume *= s;
-    return std::abs(run.series("liquid_volume").y.back() / volume - lever(run, ref).liquid);
+    return std::abs(run.series("liquid_volume").y.back() / volume_of(run) - lever(run, ref).liquid);
 }
 
 Panel lever_panel(const RunRecord& run, const Reference& ref) {

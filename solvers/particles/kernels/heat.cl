@@ -152,3 +152,10 @@ __kernel void feed_wall(int count, int stride, int axis, double plane, double si
     const int i = get_global_id(0);
     if (i < count) enthalpy[i] += each * flux_weight(x[(size_t)axis * stride + i], plane, sign, spacing);
 }
+
+/* Densities that sorted particles are to have over the liquid's, where ice moves. */
+__kernel void rests_of_ice(int count, __constant HeatStates* s, __global const int* order, __global const double* enthalpy,
+                           __global float* rests) {
+    const int k = get_global_id(0);
+    if (k < count) rests[k] = (float)heat_rest(enthalpy[order[k]], s);
+}

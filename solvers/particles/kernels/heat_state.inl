@@ -34,3 +34,6 @@ WEIR_FN double heat_melted(double h, WEIR_PARAM HeatStates* s) { return heat_sha
 WEIR_FN double heat_vapour(double h, double shift, WEIR_PARAM HeatStates* s) {
     return heat_share(h, s->liquid_end + shift, s->vapour_begin + shift);
 }
+
+/* The rest density over the liquid's: the volumes of what is solid and of what has melted add up. */
+WEIR_FN double heat_rest(double h, WEIR_PARAM HeatStates* s) { return 1 / (1 + s->swells * (1 - heat_melted(h, s))); }

@@ -2,7 +2,7 @@
    lambda as their fourth number; lambda reads A and writes B, correct reads B and writes A. */
 
 /* What a particle's density is to be (pbf_passes.inl). */
-#ifdef WEIR_VAPOUR
+#ifdef WEIR_RESTS
 #define REST(k) rests[k]
 #else
 #define REST(k) 1.0f

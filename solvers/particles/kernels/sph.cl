@@ -17,7 +17,7 @@ __kernel void sph_densities(int count, int stride, __constant SphParams* p, __co
         const float4 d = APART(me, at[list[(size_t)k * stride + i]]);
         rho = sph_add_density(rho, DISTANCE2(d, p), p);
     }
-#ifdef WEIR_VAPOUR
+#ifdef WEIR_RESTS
     wall_rho *= rests[i];
 #endif
     density[order[i]] = (double)(rho + wall_rho * walls_at(me, walls, terms, i).w);
@@ -39,7 +39,7 @@ __kernel void find_pressures(int count, int stride, double2 state, double rest, 
     const int k = get_global_id(0);
     if (k >= count) return;
     const int i = order[k];
-#ifdef WEIR_VAPOUR
+#ifdef WEIR_RESTS
     rest *= rests[k];
     state.x *= state.y == 1 ? 1 : rests[k]; /* c^2 rho0 / gamma */
 #endif
@@ -188,10 +188,14 @@ __kernel void accelerations(int count, __global const float4* acceleration, __gl
 
 #ifdef WEIR_CONTINUITY
 /* The new velocities and the density's excess, as the rate reads them. */
-__kernel void load_excess(int count, int stride, double rho0, __global const int* order, __global const double* v,
+__kernel void load_excess(int count, int stride, double rho0, __global const float* rests, __global const int* order, __global const double* v,
                           __global const double* density, __global float4* velocities) {
     const int k = get_global_id(0);
-    if (k < count) velocities[k] = velocity_of(order[k], stride, v, density[order[k]] - rho0);
+    if (k >= count) return;
+#ifdef WEIR_RESTS
+    rho0 *= rests[k];
+#endif
+    velocities[k] = velocity_of(order[k], stride, v, density[order[k]] - rho0);
 }
 
 /* d rho / dt = rate, from the new velocities and the old places (Colagrossi & Landrini 2003, eq. 10). Behind a wall the velocity's image moves

@@ -128,7 +128,7 @@ __kernel void compressions(int count, double rest, __global const int* order, __
     __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
     double largest = 0, sum = 0;
     for (int k = get_global_id(0); k < count; k += get_global_size(0)) {
-#ifdef WEIR_VAPOUR
+#ifdef WEIR_RESTS
         const double ratio = density[order[k]] / (rest * rests[k]) - 1, excess = ratio > 0 ? ratio : 0;
 #else
         const double ratio = density[k] / rest - 1, excess = ratio > 0 ? ratio : 0;

@@ -1,0 +1,133 @@
+// Ice that moves: a frozen particle holds to its frozen neighbours, and what holds together is one rigid body. It moves as fluid does that
+// is made rigid again (Carlson, Mucha & Turk 2004): the passes of a step treat frozen particles as those of a liquid, and each piece then
+// has the linear and angular momentum of its particles. Forces between two particles cancel, so that both are kept by what happens inside
+// a piece, and exchanged with the liquid without loss. How much room ice takes: heat_state.inl.
+#pragma once
+#include "particles/heat.hpp"
+#include "rigid/body.hpp"
+
+#include <vector>
+
+namespace weir::particles {
+
+/// Where a scene lets ice move, particles that are frozen at the start stand on a lattice of their own, as wide as the solid's density
+/// asks, in the middle of each part of the domain that is frozen.
+template <int D>
+void spread_ice(const scene::Scene& scene, Fluid<D>& fluid);
+
+template <int D>
+class Ice {
+public:
+    Ice(const Heat<D>& heat, const Domain<D>& domain);
+
+    /// The pieces of a state, whose particles get their velocities.
+    void find(Fluid<D>& fluid);
+    /// The same pieces after something else has changed velocities.
+    void move_as_one(Fluid<D>& fluid);
+    int pieces() const { return static_cast<int>(pieces_.size()); }
+    const rigid::Body<D>& body(int piece) const { return pieces_[static_cast<std::size_t>(piece)].body; }
+    /// Of a particle of the state: -1 where it is not frozen.
+    int piece_of(int i) const { return piece_of_[static_cast<std::size_t>(i)]; }
+    /// Frozen, and to a wall; all that is frozen while the pieces rest.
+    bool fixed(int i) const { return piece_of(i) >= 0 && (resting_ || pieces_[static_cast<std::size_t>(piece_of(i))].fixed); }
+
+    // A step.
+    /// The pieces go on by themselves; walls and solids stop them. dt = 0: they rest, and so do they in what follows.
+    void fly(real dt);
+    /// After an iteration has moved particles, moved(i, place) from where their pieces had them: the pieces move as all of that together.
+    template <class Moved>
+    void follow(Moved&& moved) {
+        for (Piece& piece : pieces_) {
+            if (resting_ || piece.fixed) continue;
+            const auto turned = rigid::rotation<D>(piece.body.orientation);
+            const auto all = sums<D + 3>(piece, [&](std::size_t m, std::array<real, D + 3>& sum) {
+                const Vec<D> arm = times(turned, rest_[m]), by = moved(members_[m], piece.body.at + arm);
+                const Vec<3> torque = cross(arm, by);
+                for (std::size_t a = 0; a < D; ++a) sum[a] += by[static_cast<int>(a)];
+                for (std::size_t a = 0; a < 3; ++a) sum[D + a] += torque[static_cast<int>(a)];
+            });
+            push(piece, all);
+        }
+    }
+    /// f(i, place) for all particles of pieces that move.
+    template <class F>
+    void each_place(F&& f) const {
+        for (const Piece& piece : pieces_) {
+            if (resting_ || piece.fixed) continue;
+            const auto turned = rigid::rotation<D>(piece.body.orientation);
+            parallel_for(piece.begin, piece.end, [&](int m) {
+                const auto at = static_cast<std::size_t>(m);
+                f(members_[at], piece.body.at + times(turned, rest_[at]));
+            });
+        }
+    }
+    /// Where the step has brought the pieces, and how fast: what moved them on top of their flight was a velocity times `dt`.
+    void arrive(Fluid<D>& fluid, real dt);
+
+    std::size_t bytes() const;
+
+private:
+    struct Piece {
+        int begin = 0, end = 0;  // of members_
+        bool fixed = false;
+        rigid::Body<D> body;
+        Vec<3> spin_momentum{};             // [kg m²/s]
+        std::array<real, D + 3> impulse{};  // of this step: moves of the centre [m], then angular momentum times time [kg m²]
+        int count() const { return end - begin; }
+    };
+    static Vec<3> cross(const Vec<D>& a, const Vec<D>& b) {
+        if constexpr (D == 2)
+            return {{0, 0, a[0] * b[1] - a[1] * b[0]}};
+        else
+            return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+    }
+    static Vec<D> times(const std::array<Vec<D>, D>& rows, const Vec<D>& v) {
+        Vec<D> to;
+        for (int a = 0; a < D; ++a) to[a] = dot(rows[static_cast<std::size_t>(a)], v);
+        return to;
+    }
+    /// Of K numbers over the members of a piece, in blocks of fixed size.
+    template <std::size_t K, class F>
+    std::array<real, K> sums(const Piece& piece, F&& add) {
+        constexpr int block = 1024;
+        const int blocks = (piece.count() + block - 1) / block;
+        if (sums_.size() < K * static_cast<std::size_t>(blocks)) sums_.resize(K * static_cast<std::size_t>(blocks));
+        parallel_for(0, blocks, [&](int b) {
+            std::array<real, K> sum{};
+            for (int m = piece.begin + b * block; m < std::min(piece.end, piece.begin + (b + 1) * block); ++m)
+                add(static_cast<std::size_t>(m), sum);
+            std::copy(sum.begin(), sum.end(), sums_.begin() + static_cast<std::ptrdiff_t>(K * static_cast<std::size_t>(b)));
+        });
+        std::array<real, K> all{};
+        for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b)
+            for (std::size_t k = 0; k < K; ++k) all[k] += sums_[K * b + k];
+        return all;
+    }
+    void list_frozen(const Fluid<D>& fluid);
+    void join_neighbours(const Fluid<D>& fluid);
+    void gather_pieces(const Fluid<D>& fluid);
+    int root(int f);
+    void weigh(const Fluid<D>& fluid, Piece& piece);
+    void set_velocities(Fluid<D>& fluid, const Piece& piece) const;
+    void push(Piece& piece, const std::array<real, D + 3>& moves);
+    void move(Piece& piece, const std::array<real, D + 3>& impulse);
+    void keep_in(Piece& piece);
+    real leave(Piece& piece, int axis, int end);
+    real leave_solids(Piece& piece);
+    static Vec<3> turning(const rigid::Body<D>& body, const Vec<3>& momentum);
+
+    const Heat<D>& heat_;
+    const Domain<D>& domain_;
+    real reach_, wall_reach_;  // neighbours hold to each other, and particles to a wall, that are nearer [m]
+    real mass_ = 0;            // of a particle [kg]
+    bool resting_ = false;
+    std::vector<Piece> pieces_;
+    std::vector<int> members_, piece_of_;
+    std::vector<Vec<D>> rest_;  // of members: from the centre of mass, as the piece was found [m]
+    // Of the search: what is frozen, its trees, and cells as wide as the reach.
+    std::vector<int> frozen_, parent_, start_, sorted_, cell_;
+    Index<D> cells_{};
+    std::vector<real> sums_;
+};
+
+}  // namespace weir::particles
