@@ -42,6 +42,7 @@ SolidPlacement<D>::SolidPlacement(geometry::Solids<D> solids, MacState<D>& state
     state.allocate_solids();
     corner_ = Grid<real, D>(state.extent() + Index<D>::constant(1));
     place(state, 0);
+    placed_ = false;  // whoever keeps something of the solids in each cell has seen nothing of this yet
 }
 
 template <int D>
