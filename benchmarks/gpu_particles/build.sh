@@ -25,14 +25,15 @@ cd "$root/solvers"
         particles/{cell_sort,device_heat,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,heat,kernels}.cpp \
         particles/{scheme,solver,walls}.cpp
 } >"$work/solvers.cpp"
-printf '#include "%s"\n' particles/{bodies_in_liquid,device_ice,ice,ice_lattice,ice_pieces,vapour}.cpp rigid/*.cpp >"$work/pieces.cpp"
+printf '#include "%s"\n' particles/{bodies_in_liquid,device_ice,ice,ice_pieces,vapour}.cpp rigid/*.cpp >"$work/pieces.cpp"
 printf '#include "%s"\n' particles/device_fluid.cpp pbf/device_solver.cpp "$work/kernel_text.cpp" >"$work/step.cpp"
 compile() { # NAME SOURCE
     ${CXX:-c++} -std=c++20 ${CXXFLAGS:--O2} -ffp-contract=off -ffunction-sections -fdata-sections -I"$work" -I. -I"$root" -c "$2" \
         -o "$work/$1.o"
 }
 pids=()
-for source in "$root/benchmarks/gpu_particles/gpu_particles.cpp" "$work/solvers.cpp" "$work/pieces.cpp" "$work/step.cpp"; do
+for source in "$root/benchmarks/gpu_particles/gpu_particles.cpp" "$work/solvers.cpp" "$work/pieces.cpp" particles/ice_lattice.cpp \
+    "$work/step.cpp"; do
     compile "$(basename "$source" .cpp)" "$source" &
     pids+=($!)
 done
