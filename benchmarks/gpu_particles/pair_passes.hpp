@@ -128,7 +128,8 @@ private:
     particles::CellGrid grid_;
     std::array<int, 4> cells_{};
     Places begin_;  // sorted
-    Memory params_, walls_, state_, terms_, sorted_cell_, start_, a_, b_, density_, multiplier_, neighbours_, list_, needed_, clamps_;
+    Memory params_, walls_, state_, terms_, rests_, sorted_cell_, start_, a_, b_, density_, multiplier_, neighbours_, list_, needed_,
+        clamps_;
 };
 
 template <int D>
@@ -144,7 +145,7 @@ PairPasses<D>::PairPasses(const pbf::Options& options, const particles::Fluid<D>
     const auto params = pbf::pbf_params<particles::single::PbfParams, D>(options, d);
     const auto walls = particles::wall_params<particles::single::WallParams>(options, fluid.domain);
     params_ = copy_of(&params, 1), walls_ = copy_of(&walls, 1);
-    state_ = terms_ = device_->alloc(1024);  // read where axes repeat and solids are: nowhere here
+    state_ = terms_ = rests_ = device_->alloc(1024);  // read where axes repeat, solids are, or something boils: nowhere here
     clamps_ = device_->alloc(8);
     sort(fluid, dt);
     const auto n = static_cast<std::size_t>(count_);
@@ -205,8 +206,9 @@ typename PairPasses<D>::Places PairPasses<D>::after(int iterations, bool over_ce
             device_->launch("correct_cells", n, group, {count_, cells_, params_, walls_, terms_, b_, sorted_cell_, start_, a_});
         } else {
             device_->launch("lambda", n, group,
-                            {count_, count_, params_, walls_, terms_, a_, neighbours_, list_, b_, density_, multiplier_});
-            device_->launch("correct", n, group, {count_, count_, state_, params_, walls_, terms_, clamps_, b_, neighbours_, list_, a_});
+                            {count_, count_, params_, walls_, terms_, rests_, a_, neighbours_, list_, b_, density_, multiplier_});
+            device_->launch("correct", n, group,
+                            {count_, count_, state_, params_, walls_, terms_, rests_, clamps_, b_, neighbours_, list_, a_});
         }
     Places places(n);
     device_->download(places.data(), a_, n * 16);

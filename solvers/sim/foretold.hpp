@@ -21,7 +21,7 @@ struct ForetoldField {
 struct Foretold {
     double bytes = 0;  // of state and scratch, after the first step, in which lists and solves take what they need
     double bytes_at_start = 0;
-    double surface_bytes = 0;   // what making output.surface takes
+    double surface_bytes = 0;  // what making output.surface takes
     double cells = 0, particles = 0;
     bool particle_solver = false;  // it consists of particles
     bool exact = false;            // a scene so small that it was built itself
