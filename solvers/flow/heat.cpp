@@ -1,7 +1,6 @@
 #include "flow/heat.hpp"
 
 #include "core/error.hpp"
-#include "staggered/ice.hpp"
 #include "staggered/rows.hpp"
 
 #include <algorithm>
@@ -75,29 +74,13 @@ void Heat<D>::lift(MacState<D>& s, real dt) const {
     });
 }
 
-/// Where all is liquid, and was before, there is nothing to do; room for what ice holds back is taken when there is the first ice.
+/// Where all is liquid, and was before, there is nothing to do.
 template <int D>
 bool Heat<D>::slow(MacState<D>& s, real dt) {
     const bool was_ice = std::exchange(slows_, any_ice_);
     if (!any_ice_ && !was_ice) return false;
-    if (slowed_[0].empty()) slowed_ = MacVelocity<D>(s.u.cells, s.u.h, s.u.origin);
-    hold_back(s, liquid_, dt * drag_ / s.rho);
-    for (int a = 0; a < D; ++a) slowed_[a] = s.u[a];
+    ice_.hold_back(s, liquid_, dt * drag_ / s.rho);
     return true;
-}
-
-template <int D>
-void Heat<D>::give_back(MacState<D>& s) const {
-    if (!slows_) return;
-    for (int a = 0; a < D; ++a) {
-        const auto& mobility = s.mobility[static_cast<std::size_t>(a)];
-        for_each_row(Index<D>{}, s.u[a].extent(), [&](const Index<D>& first, int count) {
-            const real *beta = &mobility(first), *held = &slowed_[a](first);
-            real* u = &s.u[a](first);
-#pragma omp simd
-            for (int i = 0; i < count; ++i) u[i] = beta[i] < 1 ? (1 - beta[i]) * held[i] + beta[i] * u[i] : u[i];
-        });
-    }
 }
 
 template <int D>
@@ -144,7 +127,7 @@ void Heat<D>::restore(const Checkpoint& from, MacState<D>& s) {
 
 template <int D>
 std::size_t Heat<D>::bytes() const {
-    return slowed_.bytes() + conduction_.bytes() + supply_.bytes() + (liquid_.size() + coldest_.size()) * sizeof(real);
+    return conduction_.bytes() + supply_.bytes() + ice_.bytes() + (liquid_.size() + coldest_.size()) * sizeof(real);
 }
 
 template class Heat<2>;

@@ -12,6 +12,7 @@
 #include "staggered/conduction.hpp"
 #include "staggered/ghosts.hpp"
 #include "staggered/heat_supply.hpp"
+#include "staggered/ice.hpp"
 
 #include <optional>
 
@@ -40,8 +41,6 @@ public:
     bool lifts() const { return lightness_.has_value(); }
     /// u* becomes β u*, and the state's mobility is β. Whether that may have changed.
     bool slow(MacState<D>& s, real dt);
-    /// After the projection, which has taken all of (dt/ρ) ∇p away: gives back 1 − β of it.
-    void give_back(MacState<D>& s) const;
     /// Beyond which explicit conduction breaks [s]; and with it the time to the next switch of a heater.
     real stable_dt(const MacState<D>& s) const;
     real max_dt(const MacState<D>& s) const;
@@ -65,9 +64,9 @@ private:
     bool explicit_, beside_flow_;  // in one stage; while it flows, not after: with fluxes, whose steady states know no step
     Conduction<D> conduction_;
     HeatSupply<D> supply_;
+    Ice<D> ice_;
     Grid<real, D> liquid_;
     std::vector<real> coldest_;             // of each plane [J/kg]
-    MacVelocity<D> slowed_;                 // β u*
     bool any_ice_ = false, slows_ = false;  // anywhere; and in the last step
     real added_ = 0;                        // by sides and heaters since the start [J, in 2D a metre]
 };

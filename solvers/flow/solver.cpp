@@ -306,7 +306,6 @@ void FlowSolver<D>::project(real dt) {
     const auto timed = passes_.time("project");
     report_ = &projection_.project(state_, dt, bodies_.get(), &solids_);
     if (bodies_) solids_.see_velocities(state_);
-    if (heat_) heat_->give_back(state_);
     impulse_ += dt * pressure_force(state_);
 }
 

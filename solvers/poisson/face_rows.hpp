@@ -39,6 +39,7 @@ struct DerivedRows {
         const int n = problem.extent()[0];
         to.resize(n);
         const std::uint8_t* c = problem.cells(problem.row(q, j));
+        if (problem.weighted() && problem.is_amid_fluid(q, j)) return amid_fluid(q, j, c, to);
         float* zero = to.row[D].data();
         std::uint8_t* is_fluid = to.fluid.data();
         for (int i = 0; i < n; ++i) {
@@ -57,6 +58,27 @@ struct DerivedRows {
     }
 
 private:
+    /// Where there is fluid all around, at most the ends of the row are joined to anything else.
+    FaceRow<D> amid_fluid(int q, int j, const std::uint8_t* c, RowBuffers<D>& to) const {
+        const int n = problem.extent()[0];
+        FaceRow<D> out;
+        for (int a = 0; a < D; ++a) {
+            const real* w = problem.faces(a, q, j);
+            float* face = to.row[static_cast<std::size_t>(a)].data();
+            for (int i = 0; i < n; ++i) face[i] = static_cast<float>(w[i]);
+            out.face[static_cast<std::size_t>(a)] = face;
+        }
+        float *first = to.row[0].data(), *zero = to.row[D].data();
+        const real* w = problem.faces(0, q, j);
+        std::fill_n(zero, n, 0.0f);
+        std::fill_n(to.fluid.data(), n, std::uint8_t{1});
+        if (c[-1] != fluid) first[0] = 0;
+        if (c[-1] == air) zero[0] += static_cast<float>(w[0]);
+        if (c[n] == air) zero[n - 1] += static_cast<float>(w[n]);
+        out.zero = zero, out.fluid = to.fluid.data();
+        return out;
+    }
+
     static constexpr auto fluid = static_cast<std::uint8_t>(Cell::fluid), air = static_cast<std::uint8_t>(Cell::air);
 
     /// Weights of the faces towards one side: to fluid neighbours into `face` (if wanted), to air added to `zero`.

@@ -51,7 +51,9 @@ void Natural<D>::copy_cells(const Operator<D>& A) {
         std::memcpy(to, from + static_cast<std::ptrdiff_t>(r) * nx, static_cast<std::size_t>(nx));
         to[-1] = periodic_[0] ? to[nx - 1] : outside;
         to[nx] = periodic_[0] ? to[0] : outside;
-        wet_[static_cast<std::size_t>(r)] = std::memchr(to, fluid, static_cast<std::size_t>(nx)) != nullptr;
+        int any = 0, all = 1;
+        for (int i = 0; i < nx; ++i) any |= to[i] == fluid, all &= to[i] == fluid;
+        wet_[static_cast<std::size_t>(r)] = all != 0 ? full : any != 0 ? some : dry;
     });
 }
 
@@ -102,6 +104,10 @@ void Natural<D>::clean_faces(const Operator<D>& A) {
                 const real* w =
                     given.empty() ? nullptr : given.data() + face_offset(a, wraps && a == D - 1 ? 0 : q, wraps && a != D - 1 ? 0 : j);
                 real* to = clean.data() + face_offset(a, q, j);
+                if (a > 0 && w != nullptr && is_full(up_row) && is_full(low_row)) {
+                    for (int i = 0; i < entries; ++i) to[i] = scale * w[i];
+                    continue;
+                }
                 for (int i = 0; i < entries; ++i) {
                     const bool open = (up[i] == fluid && low[i] != solid) || (low[i] == fluid && up[i] != solid);
                     const bool side = a == 0 ? !ring && (i == 0 || i == n_[0]) : up_row < 0 || low_row < 0;

@@ -59,6 +59,13 @@ public:
 
     /// Is no cell of the row fluid?
     bool is_dry(int row) const { return runs_begin(row) == runs_end(row); }
+    /// Are all cells of the row fluid, and all of the rows beside it?
+    bool is_amid_fluid(int q, int j) const {
+        bool amid = is_full(row(q, j));
+        for (int a = 1; a < D; ++a)
+            for (int side = 0; side < 2; ++side) amid = amid && is_full(neighbour(q, j, a, side));
+        return amid;
+    }
     /// r[i] = b[i] − mean for the fluid cells of a row, 0 elsewhere: the residual of p = 0.
     void rhs_row(int row, const real* b, real* r) const;
     /// r[i] = b[i] − mean − (A p)[i] for the cells of a row, 0 elsewhere. p is zero outside fluid.
@@ -75,14 +82,16 @@ private:
     void find_runs();
     void find_closed();
     void mark_open();
-    bool is_wet(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)]; }
+    bool is_wet(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)] != dry; }
+    bool is_full(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)] == full; }
+    static constexpr std::uint8_t dry = 0, some = 1, full = 2;
 
     Index<D> n_{};
     bool weighted_ = false;
     Vec<D> axis_weight_{};
     std::array<bool, D> periodic_{};
     std::vector<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
-    std::vector<std::uint8_t> wet_;            // rows that hold fluid
+    std::vector<std::uint8_t> wet_;            // how much of each row is fluid
     std::array<std::vector<real>, D> faces_;
     std::vector<int> run_start_;
     std::vector<Run> runs_;

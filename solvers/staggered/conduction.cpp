@@ -31,12 +31,6 @@ Boundary<D> without_values(Boundary<D> boundary) {
     return boundary;
 }
 
-template <int D>
-Index<D> rows_of(Index<D> cells) {
-    cells[0] = 1;
-    return cells;
-}
-
 /// max_over, a row at a time.
 template <int D, class F>
 real max_of_rows(const Index<D>& extent, F&& f) {
@@ -62,6 +56,7 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
       cell_volume_(1),
       boundary_(temperature),
       no_flux_(without_values(temperature)),
+      even_cells_(rows_of(cells)),
       change_{Grid<real, D>(cells), Grid<real, D>(cells)},
       T_{Padded<D>(cells), Padded<D>(cells)},
       alike_(rows_of(cells)),
@@ -73,25 +68,21 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
         Index<D> faces = cells;
         ++faces[a];
         conductance_[static_cast<std::size_t>(a)] = Grid<real, D>(faces);
+        even_faces_[static_cast<std::size_t>(a)] = Grid<real, D>(rows_of(faces), -1);
     }
 }
 
 /// Conductances stay what they are while all is liquid and the cells stay what they are.
 template <int D>
 void Conduction<D>::prepare(const Grid<real, D>& H, const Given& given) {
-    const int n = H.extent()[0];
-    const real colder = max_of_rows(H.extent(), [&](const Index<D>& I) {  // H below the liquid's
-        const real *at = &H(I), *before = given.before ? given.before->at(I) : at;
-        const Cell* cell = &given.cells(I);
-        real most = -infinity;
-#pragma omp simd reduction(max : most)
-        for (int i = 0; i < n; ++i)
-            most = std::max(most, cell[i] == Cell::fluid ? melting_.h_liquid - std::min(at[i], before[i]) : -infinity);
-        return most;
-    });
-    const bool liquid = colder <= 0;
+    const bool liquid = is_liquid(H, given);
     if (known_ && !given.cells_changed && liquid && all_liquid_) return;
-    set_conductances(H, given.cells);
+    set_conductivities(H, given);
+    for (int a = 0; a < D; ++a) set_conductances(a);
+    weaken_exchanges();
+    find_rows_alike();
+    const Index<D> rows = alike_.extent();
+    most_conductance_ = max_over(rows, [&](const Index<D>& row) { return conducts_most(row); });
     const auto& cells = given.cells.values();
     const auto exchanges = [](real alpha) { return alpha > 0; };
     uniform_ = liquid && std::none_of(exchange_.begin(), exchange_.end(), exchanges) &&
@@ -100,64 +91,103 @@ void Conduction<D>::prepare(const Grid<real, D>& H, const Given& given) {
 }
 
 template <int D>
-void Conduction<D>::set_conductances(const Grid<real, D>& H, const Grid<Cell, D>& cells) {
-    const Index<D> n = H.extent();
-    const real per_heat = 1 / std::max(melting_.h_liquid - melting_.h_solid, std::numeric_limits<real>::min());
-    Padded<D>& conductivity = T_[1];  // of cells; not needed otherwise before the first stage
-    fill_rows(conductivity, no_flux_, [&](const Index<D>& first, int count, real* k) {
-        const real* at = &H(first);
-        const Cell* cell = &cells(first);
-#pragma omp simd
-        for (int i = 0; i < count; ++i) {
-            const real f = std::clamp((at[i] - melting_.h_solid) * per_heat, real(0), real(1));
-            const real mixed = melting_.k_solid + f * (melting_.k_liquid - melting_.k_solid);
-            k[i] = cell[i] != Cell::fluid ? 0 : f > 0 && f < 1 ? -mixed : mixed;
-        }
-    });
-    for (int a = 0; a < D; ++a) {
-        auto& g = conductance_[static_cast<std::size_t>(a)];
-        const real factor = 1 / (h_[a] * h_[a]);
-        for_each_row(Index<D>{}, g.extent(), [&](const Index<D>& first, int count) {
-            real* to = &g(first);
-            const real *above = conductivity.at(first), *below = above - conductivity.stride(a);
-#pragma omp simd
-            for (int i = 0; i < count; ++i) to[i] = factor * face_conductivity(below[i], above[i]);
-        });
-    }
-    weaken_exchanges();
-    find_rows_alike();
-    most_conductance_ = max_of_rows(n, [&](const Index<D>& I) {
-        std::array<const real*, D> g;
-        std::array<std::ptrdiff_t, D> up;
-        for (std::size_t b = 0; b < D; ++b) g[b] = &conductance_[b](I), up[b] = conductance_[b].stride(static_cast<int>(b));
-        real most = 0;
-        for (int i = 0; i < n[0]; ++i) {
-            real sum = 0;
-            for (std::size_t b = 0; b < D; ++b) sum += g[b][i] + g[b][i + up[b]];
-            most = std::max(most, sum);
-        }
+bool Conduction<D>::is_liquid(const Grid<real, D>& H, const Given& given) const {
+    const int n = H.extent()[0];
+    const real lacks = max_of_rows(H.extent(), [&](const Index<D>& I) {
+        const real *at = &H(I), *before = given.before ? given.before->at(I) : at;
+        const Cell* cell = &given.cells(I);
+        real most = -infinity;
+#pragma omp simd reduction(max : most)
+        for (int i = 0; i < n; ++i)
+            most = std::max(most, cell[i] == Cell::fluid ? melting_.h_liquid - std::min(at[i], before[i]) : -infinity);
         return most;
+    });
+    return lacks <= 0;
+}
+
+/// Of cells, into T_[1], which nothing needs before the first stage; negative on the plateau.
+template <int D>
+void Conduction<D>::set_conductivities(const Grid<real, D>& H, const Given& given) {
+    const matter::Melting m = melting_;
+    const real per_heat = 1 / std::max(m.h_liquid - m.h_solid, std::numeric_limits<real>::min());
+    fill_rows(T_[1], no_flux_, [&](const Index<D>& first, int count, real* k) {
+        const real* at = &H(first);
+        const Cell* cell = &given.cells(first);
+        real least = infinity, most = -infinity;
+#pragma omp simd reduction(min : least) reduction(max : most)
+        for (int i = 0; i < count; ++i) {
+            const real mixed = m.k_solid + (at[i] - m.h_solid) * per_heat * (m.k_liquid - m.k_solid);
+            const real whole = at[i] >= m.h_liquid ? m.k_liquid : m.k_solid;
+            const bool on_plateau = at[i] > m.h_solid && at[i] < m.h_liquid;
+            k[i] = cell[i] != Cell::fluid ? 0 : on_plateau ? -mixed : whole;
+            least = std::min(least, k[i]), most = std::max(most, k[i]);
+        }
+        even_cells_(first) = least == most ? least : -1;
     });
 }
 
-/// Away from fronts and solids all faces of a row's cells conduct alike: a stage then reads them as D numbers.
+/// Away from fronts and solids a row of faces conducts as one number, and mostly what it did: then there is nothing to write.
+template <int D>
+void Conduction<D>::set_conductances(int a) {
+    const Padded<D>& conductivity = T_[1];
+    auto &g = conductance_[static_cast<std::size_t>(a)], &even = even_faces_[static_cast<std::size_t>(a)];
+    const int n = conductivity.extent()[a], count = g.extent()[0];
+    const bool joins = boundary_.end[static_cast<std::size_t>(a)][0].kind == EndRule::Kind::periodic;
+    const real factor = 1 / (h_[a] * h_[a]);
+    for_each_cell(even.extent(), [&](const Index<D>& first) {
+        Index<D> lower = first, upper = first;
+        if (a > 0) {
+            if (--lower[a] < 0) lower[a] = joins ? n - 1 : 0;
+            if (upper[a] == n) upper[a] = joins ? 0 : n - 1;
+        }
+        const real k = even_cells_(lower), all = factor * face_conductivity(k, k);
+        real* to = &g(first);
+        if (k >= 0 && k == even_cells_(upper)) {
+            if (even(first) != all) std::fill_n(to, count, all);
+            even(first) = all;
+            return;
+        }
+        even(first) = -1;
+        const real *above = conductivity.at(first), *below = above - conductivity.stride(a);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) to[i] = factor * face_conductivity(below[i], above[i]);
+    });
+}
+
+/// Where all faces of a row's cells conduct alike, a stage reads them as D numbers.
 template <int D>
 void Conduction<D>::find_rows_alike() {
-    Index<D> rows = T_[0].extent();
-    const int n = rows[0];
-    rows[0] = 1;
-    for_each_cell(rows, [&](const Index<D>& first) {
-        real apart = 0;
+    for_each_cell(alike_.extent(), [&](const Index<D>& row) {
         Vec<D> all;
+        bool differ = false;
         for (int a = 0; a < D; ++a) {
-            const auto& faces = conductance_[static_cast<std::size_t>(a)];
-            const real *below = &faces(first), *above = below + faces.stride(a), g = all[a] = *below;
-#pragma omp simd reduction(max : apart)
-            for (int i = 0; i < n; ++i) apart = std::max({apart, std::abs(below[i] - g), std::abs(above[i] - g)});
+            const auto& even = even_faces_[static_cast<std::size_t>(a)];
+            all[a] = even(row);
+            differ = differ || all[a] < 0 || even(a == 0 ? row : row + e<D>(a)) != all[a];
         }
-        if (apart > 0) all[0] = -1;
-        alike_(first) = all;
+        if (differ) all[0] = -1;
+        alike_(row) = all;
     });
+}
+
+/// Of all faces of a cell of that row [W/(m³ K)].
+template <int D>
+real Conduction<D>::conducts_most(const Index<D>& row) const {
+    real most = 0;
+    if (const Vec<D>& all = alike_(row); all[0] >= 0) {
+        for (int a = 0; a < D; ++a) most += 2 * all[a];
+        return most;
+    }
+    std::array<const real*, D> g;
+    std::array<std::ptrdiff_t, D> up;
+    for (std::size_t b = 0; b < D; ++b) g[b] = &conductance_[b](row), up[b] = conductance_[b].stride(static_cast<int>(b));
+#pragma omp simd reduction(max : most)
+    for (int i = 0; i < T_[0].extent()[0]; ++i) {
+        real sum = 0;
+        for (std::size_t b = 0; b < D; ++b) sum += g[b][i] + g[b][i + up[b]];
+        most = std::max(most, sum);
+    }
+    return most;
 }
 
 template <int D>
@@ -179,6 +209,7 @@ void Conduction<D>::weaken_exchanges() {
             for_each_cell(side, [&](Index<D> I) {
                 if (end == 1) I[a] = g.extent()[a] - 1;
                 g(I) /= 1 + 2 * g(I) * h_[a] / alpha;
+                if (a == 0 || I[0] == 0) even_faces_[static_cast<std::size_t>(a)](row_of(I)) = -1;
             });
         }
 }
@@ -235,6 +266,8 @@ std::size_t Conduction<D>::bytes() const {
     for (const auto& grid : change_) count += grid.size() * sizeof(real);
     for (const auto& padded : T_) count += padded.bytes();
     for (const auto& g : conductance_) count += g.size() * sizeof(real);
+    for (const auto& even : even_faces_) count += even.size() * sizeof(real);
+    count += even_cells_.size() * sizeof(real);
     return count;
 }
 

@@ -57,8 +57,11 @@ private:
     EndRule& rule(int axis, int end) { return boundary_.end[static_cast<std::size_t>(axis)][static_cast<std::size_t>(end)]; }
     void weaken_exchanges();
     void prepare(const Grid<real, D>& H, const Given& given);
+    bool is_liquid(const Grid<real, D>& H, const Given& given) const;
+    void set_conductivities(const Grid<real, D>& H, const Given& given);
+    void set_conductances(int a);
     void find_rows_alike();
-    void set_conductances(const Grid<real, D>& H, const Grid<poisson::Cell, D>& cells);
+    real conducts_most(const Index<D>& row) const;
     real stages(Grid<real, D>& H, const Given& given, real dt, int count);
     bool may_freeze(const Grid<real, D>& source) const;
     int stages_for(real dt, const Grid<real, D>& source) const;
@@ -77,8 +80,7 @@ private:
     void take_temperature(const Stage& stage, int plane);
     void add_stage(const Stage& stage, int plane);
     void add_linear_stage(const Stage& stage, int plane);
-    void flow(const Padded<D>& T, const Index<D>& first, int count, real* out) const;
-    void flow_alike(const Vec<D>& conductance, const Padded<D>& T, const Index<D>& first, int count, real* out) const;
+    static void other_rates(const Stage& stage, const Index<D>& first, int count, real* rate);
     void continue_row(Padded<D>& T, const Index<D>& first, bool values) const;
     void continue_plane(Padded<D>& T, int plane, bool values) const;
     void continue_around(Padded<D>& T) const;
@@ -90,6 +92,8 @@ private:
     Boundary<D> boundary_, no_flux_;
     std::array<real, 2 * D> exchange_{};        // of the ends of the axes; 0: none
     std::array<Grid<real, D>, D> conductance_;  // k/h² of faces [W/(m³ K)]
+    Grid<real, D> even_cells_;                  // what all cells of a row conduct [W/(m K)]; negative where they differ
+    std::array<Grid<real, D>, D> even_faces_;   // what all faces of a row do, as they stand in conductance_; negative where they differ
     real most_conductance_ = 0;                 // of all faces of a cell
     bool all_liquid_ = false, known_ = false;   // when they were set; whether they were
     bool uniform_ = false;                      // the same of all inner faces: all cells are of liquid

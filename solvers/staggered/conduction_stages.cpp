@@ -25,13 +25,70 @@ void for_each_row_of(const Index<D>& extent, int plane, F&& f) {
 }
 
 /// Beyond a side there is one layer, as far behind the side as the cell before it is in front.
+inline real beyond(const EndRule& rule, bool values, real inside) {
+    return rule.kind == EndRule::Kind::dirichlet ? (values ? 2 * rule.value : 0) - inside : inside;
+}
 inline void mirror(const EndRule& rule, bool values, const real* inside, real* outside, int count) {
-    if (rule.kind == EndRule::Kind::dirichlet) {
-        const real twice = values ? 2 * rule.value : 0;
+    for (int i = 0; i < count; ++i) outside[i] = beyond(rule, values, inside[i]);
+}
+
+/// ∇·(k ∇T) [W/m³] of cell i of a row.
+template <int D>
+struct Flow {
+    const real* t;
+    std::array<const real*, D> g;            // faces below
+    std::array<std::ptrdiff_t, D> up, next;  // to the face above and to the cell above
+    Flow(const std::array<Grid<real, D>, D>& conductance, const Padded<D>& T, const Index<D>& first) : t(T.at(first)) {
+        for (int b = 0; b < D; ++b) {
+            const auto at = static_cast<std::size_t>(b);
+            g[at] = &conductance[at](first), up[at] = conductance[at].stride(b), next[at] = T.stride(b);
+        }
+    }
+    real operator()(int i) const {
+        real sum = 0;
+        for (std::size_t b = 0; b < D; ++b) sum += g[b][i + up[b]] * (t[i + next[b]] - t[i]) - g[b][i] * (t[i] - t[i - next[b]]);
+        return sum;
+    }
+};
+
+/// The same where all faces along an axis conduct alike.
+template <int D>
+struct EvenFlow {
+    const real* t;
+    Vec<D> g;
+    std::array<std::ptrdiff_t, D> next;
+    EvenFlow(const Vec<D>& conductance, const Padded<D>& T, const Index<D>& first) : t(T.at(first)), g(conductance) {
+        for (int b = 0; b < D; ++b) next[static_cast<std::size_t>(b)] = T.stride(b);
+    }
+    real operator()(int i) const {
+        real sum = 0;
+        for (int b = 0; b < D; ++b) {
+            const std::ptrdiff_t by = next[static_cast<std::size_t>(b)];
+            sum += g[b] * ((t[i + by] - t[i]) - (t[i] - t[i - by]));
+        }
+        return sum;
+    }
+};
+
+/// Where a stage of a row reads and writes.
+struct StageRow {
+    real mu, nu, push;
+    const real* before;  // D_{j−1}
+    real* d;             // D_{j−2}, and then D_j
+};
+
+/// D_j from the rates R(H + D_{j−1}), each given on to then(i, D_j). D_0 is nothing, and what stands in its place is not read.
+template <class Rate, class Then>
+inline void recur(int number, const StageRow& at, int count, const Rate& rate, const Then& then) {
+    if (number == 1) {
 #pragma omp simd
-        for (int i = 0; i < count; ++i) outside[i] = twice - inside[i];
+        for (int i = 0; i < count; ++i) then(i, at.d[i] = at.push * rate(i));
+    } else if (number == 2) {
+#pragma omp simd
+        for (int i = 0; i < count; ++i) then(i, at.d[i] = at.mu * at.before[i] + at.push * rate(i));
     } else {
-        std::copy_n(inside, count, outside);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) then(i, at.d[i] = at.mu * at.before[i] + at.nu * at.d[i] + at.push * rate(i));
     }
 }
 
@@ -42,12 +99,9 @@ void Conduction<D>::continue_row(Padded<D>& T, const Index<D>& first, bool value
     const int n = T.extent()[0];
     real* row = T.at(first);
     const auto& ends = boundary_.end[0];
-    if (ends[0].kind == EndRule::Kind::periodic) {
-        row[-1] = row[n - 1], row[n] = row[0];
-        return;
-    }
-    mirror(ends[0], values, row, row - 1, 1);
-    mirror(ends[1], values, row + n - 1, row + n, 1);
+    const bool joins = ends[0].kind == EndRule::Kind::periodic;
+    row[-1] = joins ? row[n - 1] : beyond(ends[0], values, row[0]);
+    row[n] = joins ? row[0] : beyond(ends[1], values, row[n - 1]);
 }
 
 /// What a stage reads beyond a plane that has just been written; around the last axis, where it is periodic, comes later. `values`: of
@@ -85,41 +139,6 @@ void Conduction<D>::continue_around(Padded<D>& T) const {
     const std::ptrdiff_t all = planes * T.stride(D - 1);
     for_each_row_of(T.extent(), 0, [&](const Index<D>& I) { std::copy_n(T.at(I), T.extent()[0], T.at(I) + all); });
     for_each_row_of(T.extent(), planes - 1, [&](const Index<D>& I) { std::copy_n(T.at(I), T.extent()[0], T.at(I) - all); });
-}
-
-/// out = ∇·(k ∇T) [W/m³] of a row of cells.
-template <int D>
-void Conduction<D>::flow(const Padded<D>& T, const Index<D>& first, int count, real* out) const {
-    const real* t = T.at(first);
-    for (int b = 0; b < D; ++b) {
-        const auto& faces = conductance_[static_cast<std::size_t>(b)];
-        const real* g = &faces(first);
-        const std::ptrdiff_t up = faces.stride(b), next = T.stride(b);
-        if (b == 0) {
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] = g[i + up] * (t[i + next] - t[i]) - g[i] * (t[i] - t[i - next]);
-        } else {
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] += g[i + up] * (t[i + next] - t[i]) - g[i] * (t[i] - t[i - next]);
-        }
-    }
-}
-
-/// The same where all faces along an axis conduct alike.
-template <int D>
-void Conduction<D>::flow_alike(const Vec<D>& conductance, const Padded<D>& T, const Index<D>& first, int count, real* out) const {
-    const real* t = T.at(first);
-    for (int b = 0; b < D; ++b) {
-        const real g = conductance[b];
-        const std::ptrdiff_t next = T.stride(b);
-        if (b == 0) {
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] = g * ((t[i + next] - t[i]) - (t[i] - t[i - next]));
-        } else {
-#pragma omp simd
-            for (int i = 0; i < count; ++i) out[i] += g * ((t[i + next] - t[i]) - (t[i] - t[i - next]));
-        }
-    }
 }
 
 /// What comes through the sides of the domain into the cells of a plane.
@@ -160,55 +179,47 @@ void Conduction<D>::take_temperature(const Stage& stage, int plane) {
     continue_plane(T_[0], plane, true);
 }
 
+/// What comes to a row of cells beside conduction [W/m³].
+template <int D>
+void Conduction<D>::other_rates(const Stage& stage, const Index<D>& first, int count, real* rate) {
+    if (stage.given.source.empty())
+        std::fill_n(rate, count, 0.0);
+    else
+        std::copy_n(&stage.given.source(first), count, rate);
+    if (!stage.given.before) return;
+    const real *H = &stage.H(first), *from = stage.from(first);
+#pragma omp simd
+    for (int i = 0; i < count; ++i) rate[i] += stage.elsewhere * (H[i] - from[i]);
+}
+
 /// D_j, and T of H + D_j; of the last stage H itself.
 template <int D>
 void Conduction<D>::add_stage(const Stage& stage, int plane) {
     const matter::Melting m = melting_;
     const real per_solid = 1 / m.c_solid, per_liquid = 1 / m.c_liquid;
-    const real mu = stage.mu, nu = stage.nu, push = stage.push, elsewhere = stage.elsewhere;
     const auto now = static_cast<std::size_t>(stage.number % 2);
-    const bool none_before = stage.number == 1, none_older = stage.number <= 2;
+    const Padded<D>& T = T_[1 - now];
     Padded<D>& to = T_[now];
+    const bool alone = stage.given.source.empty() && !stage.given.before;  // conduction, with nothing beside it
     for_each_row_of(stage.H.extent(), plane, [&](const Index<D>& row) {
         const Vec<D>& alike = alike_(row);
         for_each_block(row, stage.H.extent()[0], [&](const Index<D>& first, int width) {
-            alignas(64) real rate[row_block];
-            if (alike[0] >= 0)
-                flow_alike(alike, T_[1 - now], first, width, rate);
-            else
-                flow(T_[1 - now], first, width, rate);
-            real* H = &stage.H(first);
+            const StageRow at{stage.mu, stage.nu, stage.push, &change_[1 - now](first), &change_[now](first)};
             const real* from = stage.from(first);
-            if (!stage.given.source.empty()) {
-                const real* source = &stage.given.source(first);
-                for (int i = 0; i < width; ++i) rate[i] += source[i];
-            }
-            if (stage.given.before) {
-#pragma omp simd
-                for (int i = 0; i < width; ++i) rate[i] += elsewhere * (H[i] - from[i]);
-            }
-            real *d = &change_[now](first), *T = to.at(first);
-            const real* before = &change_[1 - now](first);
-            if (none_before) {
-#pragma omp simd
-                for (int i = 0; i < width; ++i) d[i] = push * rate[i];
-            } else if (none_older) {
-#pragma omp simd
-                for (int i = 0; i < width; ++i) d[i] = mu * before[i] + push * rate[i];
-            } else {
-#pragma omp simd
-                for (int i = 0; i < width; ++i) d[i] = mu * before[i] + nu * d[i] + push * rate[i];
-            }
-            if (stage.last) {
-#pragma omp simd
-                for (int i = 0; i < width; ++i) H[i] = from[i] + d[i];
-                return;
-            }
-#pragma omp simd
-            for (int i = 0; i < width; ++i) {
-                const real h = from[i] + d[i];
-                T[i] = m.T + ((std::min(h, m.h_solid) - m.h_solid) * per_solid + (std::max(h, m.h_liquid) - m.h_liquid) * per_liquid);
-            }
+            real *H = &stage.H(first), *out = to.at(first);
+            const auto advance = [&](const auto& rate) {
+                if (stage.last) return recur(stage.number, at, width, rate, [&](int i, real d) { H[i] = from[i] + d; });
+                recur(stage.number, at, width, rate, [&](int i, real d) {
+                    const real h = from[i] + d;
+                    out[i] = m.T + ((std::min(h, m.h_solid) - m.h_solid) * per_solid + (std::max(h, m.h_liquid) - m.h_liquid) * per_liquid);
+                });
+            };
+            const Flow<D> flow(conductance_, T, first);
+            const EvenFlow<D> even(alike, T, first);
+            if (alone) return alike[0] >= 0 ? advance(even) : advance(flow);
+            alignas(64) real rate[row_block];
+            other_rates(stage, first, width, rate);
+            alike[0] >= 0 ? advance([&](int i) { return even(i) + rate[i]; }) : advance([&](int i) { return flow(i) + rate[i]; });
         });
         if (!stage.last) continue_row(to, row, true);
     });
@@ -218,34 +229,24 @@ void Conduction<D>::add_stage(const Stage& stage, int plane) {
 /// D_j/c in the place of temperatures; R(H) of the first stage stays where D_j is otherwise.
 template <int D>
 void Conduction<D>::add_linear_stage(const Stage& stage, int plane) {
-    const real c = melting_.c_liquid, push = stage.push / c, mu = stage.mu, nu = stage.nu;
+    const real c = melting_.c_liquid;
     const auto now = static_cast<std::size_t>(stage.number % 2);
     const Padded<D>& from = T_[1 - now];
     Padded<D>& to = T_[now];
     const Vec<D> alike = alike_[0];
     for_each_row_of(stage.H.extent(), plane, [&](const Index<D>& row) {
         for_each_block(row, stage.H.extent()[0], [&](const Index<D>& first, int width) {
-            real *start = &change_[0](first), *d = to.at(first);
-            if (stage.number == 1) {
-                flow_alike(alike, from, first, width, start);
-#pragma omp simd
-                for (int i = 0; i < width; ++i) d[i] = push * start[i];
-            } else {
-                alignas(64) real rate[row_block];
-                flow_alike(alike, from, first, width, rate);
-                const real* before = from.at(first);
-                if (stage.number == 2) {  // D_0 is nothing, and there stand temperatures
-#pragma omp simd
-                    for (int i = 0; i < width; ++i) d[i] = mu * before[i] + push * (start[i] + rate[i]);
-                } else {
-#pragma omp simd
-                    for (int i = 0; i < width; ++i) d[i] = mu * before[i] + nu * d[i] + push * (start[i] + rate[i]);
-                }
-            }
-            if (!stage.last) return;
-            real* H = &stage.H(first);
-#pragma omp simd
-            for (int i = 0; i < width; ++i) H[i] += c * d[i];
+            const StageRow at{stage.mu, stage.nu, stage.push / c, from.at(first), to.at(first)};
+            const EvenFlow<D> flow(alike, from, first);
+            real *start = &change_[0](first), *H = &stage.H(first);
+            const auto advance = [&](const auto& rate) {
+                if (stage.last) return recur(stage.number, at, width, rate, [&](int i, real d) { H[i] += c * d; });
+                recur(stage.number, at, width, rate, [](int, real) {});
+            };
+            if (stage.number == 1)
+                advance([&](int i) { return start[i] = flow(i); });
+            else
+                advance([&](int i) { return start[i] + flow(i); });
         });
         if (!stage.last) continue_row(to, row, false);
     });
@@ -302,17 +303,16 @@ real Conduction<D>::stages(Grid<real, D>& H, const Given& given, real dt, int co
     return rho_ * cell_volume_ * arrived;
 }
 
-#define WEIR_INSTANTIATE(D)                                                                                      \
-    template real Conduction<D>::stages(Grid<real, D>&, const Given&, real, int);                                \
-    template int Conduction<D>::most_stages_at_once() const;                                                     \
-    template void Conduction<D>::take_temperature(const Stage&, int);                                            \
-    template void Conduction<D>::add_stage(const Stage&, int);                                                   \
-    template void Conduction<D>::add_linear_stage(const Stage&, int);                                            \
-    template void Conduction<D>::flow(const Padded<D>&, const Index<D>&, int, real*) const;                      \
-    template void Conduction<D>::flow_alike(const Vec<D>&, const Padded<D>&, const Index<D>&, int, real*) const; \
-    template void Conduction<D>::continue_row(Padded<D>&, const Index<D>&, bool) const;                          \
-    template void Conduction<D>::continue_plane(Padded<D>&, int, bool) const;                                    \
-    template void Conduction<D>::continue_around(Padded<D>&) const;                                              \
+#define WEIR_INSTANTIATE(D)                                                              \
+    template real Conduction<D>::stages(Grid<real, D>&, const Given&, real, int);        \
+    template int Conduction<D>::most_stages_at_once() const;                             \
+    template void Conduction<D>::take_temperature(const Stage&, int);                    \
+    template void Conduction<D>::add_stage(const Stage&, int);                           \
+    template void Conduction<D>::add_linear_stage(const Stage&, int);                    \
+    template void Conduction<D>::continue_row(Padded<D>&, const Index<D>&, bool) const;  \
+    template void Conduction<D>::continue_plane(Padded<D>&, int, bool) const;            \
+    template void Conduction<D>::continue_around(Padded<D>&) const;                      \
+    template void Conduction<D>::other_rates(const Stage&, const Index<D>&, int, real*); \
     template real Conduction<D>::through_sides(const Padded<D>&, int) const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

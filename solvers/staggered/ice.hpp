@@ -6,8 +6,21 @@
 
 namespace weir::staggered {
 
-/// s.mobility is β and s.u becomes β u; k is dt C/ρ. A face takes the lesser f of its two cells.
 template <int D>
-void hold_back(MacState<D>& s, const Grid<real, D>& liquid, real k);
+class Ice {
+public:
+    /// s.mobility is β and s.u becomes β u; k is dt C/ρ. A face takes the lesser f of its two cells.
+    void hold_back(MacState<D>& s, const Grid<real, D>& liquid, real k);
+    std::size_t bytes() const;
+
+private:
+    /// The least and the most of the cells of a row.
+    struct Range {
+        real least, most;
+    };
+    void find_ranges(const Grid<real, D>& liquid);
+    Grid<Range, D> ranges_;
+    std::array<Grid<real, D>, D> even_;  // β of all faces of a row, as it stands in the state; negative where they differ
+};
 
 }  // namespace weir::staggered

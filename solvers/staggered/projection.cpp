@@ -200,11 +200,29 @@ static void set_rhs(const MacState<D>& s, real scale, Grid<real, D>& rhs) {
     });
 }
 
+/// u −= β (dt/ρ) ∇p
+template <int D>
+static void push_by_pressure(MacState<D>& s, real dt) {
+    if (s.mobility[0].empty()) return add_gradient(s.u, s, -dt / s.rho);
+    const PressurePush<D> push(s, -dt / s.rho);
+    for (int a = 0; a < D; ++a)
+        for_each_row(Index<D>{}, s.u[a].extent(), [&](const Index<D>& first, int count) {
+            alignas(64) real whole[row_block];
+            std::fill_n(whole, count, 0.0);
+            push.add(a, first, count, whole);
+            const real* beta = &s.mobility[static_cast<std::size_t>(a)](first);
+            real* u = &s.u[a](first);
+#pragma omp simd
+            for (int i = 0; i < count; ++i) u[i] += beta[i] * whole[i];
+        });
+    sync_periodic(s.u, s.sides);
+}
+
 template <int D>
 const poisson::Report& Projection<D>::project(MacState<D>& s, real dt, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
     set_rhs(s, -s.u.h[0] * s.u.h[0] * s.rho / dt, rhs_);
     const poisson::Report& report = bodies ? bodies->solve(s, *solids, dt, solver_.get(), tolerance_, &rhs_) : solver_->solve(s.p, rhs_);
-    add_gradient(s.u, s, -dt / s.rho);
+    push_by_pressure(s, dt);
     return report;
 }
 

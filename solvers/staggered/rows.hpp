@@ -9,6 +9,18 @@ namespace weir::staggered {
 
 inline constexpr int row_block = 128;  // points handled at once: a few kB of scratch that stays in the first-level cache
 
+/// The extent of what has one entry a row, and the entry of the row of I.
+template <int D>
+Index<D> rows_of(Index<D> extent) {
+    extent[0] = 1;
+    return extent;
+}
+template <int D>
+Index<D> row_of(Index<D> I) {
+    I[0] = 0;
+    return I;
+}
+
 /// f(first, count) on the blocks of one row, from I to the end of its axis.
 template <int D, class F>
 void for_each_block(Index<D> I, int end, F&& f) {

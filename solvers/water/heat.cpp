@@ -5,7 +5,6 @@
 #include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
-#include "staggered/ice.hpp"
 #include "staggered/initial.hpp"
 
 #include <algorithm>
@@ -264,8 +263,8 @@ void LiquidHeat<D>::conduct(const MacState<D>& s, real volume, real area, real d
 template <int D>
 bool LiquidHeat<D>::slow(MacState<D>& s, real dt) {
     const bool ice = max_over(s.extent(), [&](const Index<D>& I) { return -liquid_(I); }) > -1;
-    if (!std::exchange(ice_, ice) && !ice) return false;
-    hold_back(s, liquid_, dt * drag_ / s.rho);
+    if (!std::exchange(any_ice_, ice) && !ice) return false;
+    ice_.hold_back(s, liquid_, dt * drag_ / s.rho);
     return true;
 }
 
@@ -327,7 +326,8 @@ void LiquidHeat<D>::restore(const Checkpoint& from, const MacState<D>& s) {
 
 template <int D>
 std::size_t LiquidHeat<D>::bytes() const {
-    std::size_t count = conduction_.bytes() + supply_.bytes() + known_.size() + surface_cells_.capacity() * sizeof(std::size_t);
+    std::size_t count =
+        conduction_.bytes() + supply_.bytes() + ice_.bytes() + known_.size() + surface_cells_.capacity() * sizeof(std::size_t);
     for (const auto* grid : {&enthalpy_, &temperature_, &liquid_, &moved_, &source_}) count += grid->size() * sizeof(real);
     return count;
 }

@@ -11,6 +11,7 @@
 #include "matter/closed_gas.hpp"
 #include "staggered/conduction.hpp"
 #include "staggered/heat_supply.hpp"
+#include "staggered/ice.hpp"
 #include "surface/level_set.hpp"
 
 #include <optional>
@@ -75,7 +76,8 @@ private:
     real added_ = 0, evaporated_ = 0, vapour_heat_ = 0;  // since the start [J], [m^D], [J]
     real coldest_ = 0, hottest_ = 0;                     // of the liquid's cells [K]
     std::optional<matter::ClosedGas> gas_;               // none where the scene names none
-    bool ice_ = false;
+    Ice<D> ice_;
+    bool any_ice_ = false;
 };
 
 }  // namespace weir::water
