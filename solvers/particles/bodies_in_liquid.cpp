@@ -33,8 +33,8 @@ BodiesInLiquid<D>::BodiesInLiquid(const Fluid<D>& fluid)
     mobility_.resize(n * count), own_.resize(n);
     rigid::Surroundings<D> around = bodies_->surroundings(fluid.domain.solids);
     around.reach = 1e-3 * spacing_;
-    found_.find(bodies_->all(), around);
-    found_.mark(bodies_->all());  // what stands on something does not fall to begin with
+    contacts_.find(bodies_->all(), around);
+    contacts_.mark(bodies_->all());  // what stands on something does not fall to begin with
 }
 
 template <int D>
@@ -45,13 +45,14 @@ void BodiesInLiquid<D>::begin(const Domain<D>& domain, real dt) {
         dry_[b] = body.wet == 0 && !body.touches;
         wet_[b] = 0, body.touches = false;
         start_[b].at = body.at, start_[b].orientation = body.orientation, start_[b].velocity = body.velocity;
+        start_[b].touches = false;
         std::copy(body.velocity.begin(), body.velocity.end(), velocity_.begin() + static_cast<std::ptrdiff_t>(n * b));
         force_[b] = gained_[b] = Twist{};
     }
     fastest = speed();
     rigid::Surroundings<D> around = bodies_->surroundings(domain.solids);
     around.reach = 2 * dt * (fastest + dt * norm(gravity_)) + spacing_;  // a particle may push it as far as that
-    found_.find(bodies_->all(), around);
+    contacts_.find(start_, around);
     meetings_.clear();
 }
 
@@ -126,8 +127,11 @@ void BodiesInLiquid<D>::solve_for_velocities(real dt, bool heavy) {
                 velocity_[n * b + k] += inverse_(k, l) * impulse_[b][l];
             }
     }
-    contacts_ = found_;
-    if (!contacts_.empty()) contacts_.resolve(bodies_->all(), mobility_, velocity_, dt, norm(gravity_));
+    if (!contacts_.empty()) {
+        contacts_.resolve(start_, mobility_, velocity_, dt, norm(gravity_));
+        contacts_.carry_on();
+        for (std::size_t b = 0; b < count; ++b) (*bodies_)[b].touches = start_[b].touches;
+    }
     for (std::size_t i = 0; i < velocity_.size(); ++i) change_[i] = velocity_[i] - before_[i];
 }
 

@@ -84,9 +84,9 @@ private:
     Vec<D> gravity_{};
     real mass_ = 0, spacing_ = 0;  // of a particle [kg], and between particles [m]
     std::vector<Meeting<D>> meetings_;
-    std::vector<rigid::Body<D>> start_;  // bodies where the step began, none lighter than can be carried
-    std::vector<char> dry_, wet_;        // no fluid and nothing else touched it in the step before; fluid does now
-    rigid::Contacts<D> found_, contacts_;
+    std::vector<rigid::Body<D>> start_;            // bodies where the step began, none lighter than can be carried
+    std::vector<char> dry_, wet_;                  // no fluid and nothing else touched it in the step before; fluid does now
+    rigid::Contacts<D> contacts_;                  // of the step: each exchange goes on with the impulses of those before
     std::vector<Twist> impulse_, force_, gained_;  // of one exchange; of the step, from the fluid; velocity, from the fluid
     std::vector<Matrix> matrix_;
     real last_dt_ = 0;

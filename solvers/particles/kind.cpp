@@ -2,6 +2,7 @@
 
 #include "particles/heat.hpp"
 #include "rigid/bodies.hpp"
+#include "rigid/joints.hpp"
 #include "scene/surface_keys.hpp"
 
 namespace weir::particles {
@@ -13,6 +14,7 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
     own.keys.push_back(std::move(initial));
     own.keys.push_back(sinks_key());
     own.keys.push_back(rigid::bodies_key());
+    own.keys.push_back(rigid::joints_key());
     own.keys.push_back(rigid::probe_key());
     for (scene::Key& key : heat_keys()) own.keys.push_back(std::move(key));
     own.keys.push_back(scene::surface_key_of_particles());

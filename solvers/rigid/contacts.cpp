@@ -104,7 +104,7 @@ void Contacts<D>::touch_solid(const std::vector<Body<D>>& bodies, std::size_t b,
 
 template <int D>
 void Contacts<D>::find(const std::vector<Body<D>>& bodies, const Surroundings<D>& around) {
-    list_.clear(), rows_.clear();
+    list_.clear(), rows_.clear(), carried_ = false;
     joints_ = around.joints && !around.joints->empty() ? around.joints : nullptr;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         touch_walls(bodies, b, around);
@@ -148,9 +148,11 @@ void Contacts<D>::resolve(std::vector<Body<D>>& bodies, const Mobility& mobility
         Row<D>& row = rows_.list()[i * D];
         const real approach = rows_.relative(row, velocities);
         // What falls from less than a step's fall is at rest, not bouncing.
+        const bool known = c.bounces && carried_;
         c.bounces = c.bounces || (c.restitution > 0 && approach * dt < -std::max(c.gap, 0.0) && approach < -2 * gravity * dt);
+        if (!known) c.rebound = -c.restitution * approach;
         const real over = -c.gap - slop * bodies[c.body].radius;
-        row.target = c.bounces ? -c.restitution * approach : c.gap > 0 ? -c.gap / dt : over > 0 ? push_apart * over / dt : 0;
+        row.target = c.bounces ? c.rebound : c.gap > 0 ? -c.gap / dt : over > 0 ? push_apart * over / dt : 0;
     }
     rows_.solve(velocities);
     for (std::size_t i = 0; i < rows_.list().size(); ++i) {

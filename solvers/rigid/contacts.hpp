@@ -36,6 +36,8 @@ public:
     /// sides, and no joint comes apart. Marks the bodies that are touched. Of the same contacts again, it begins with the impulses that
     /// were found.
     void resolve(std::vector<Body<D>>& bodies, const Mobility& mobility, std::vector<real>& velocities, real dt, real gravity);
+    /// The velocities of the next call have the impulses found so far.
+    void carry_on() { carried_ = true, rows_.carry_on(); }
 
 private:
     struct Contact {
@@ -45,6 +47,7 @@ private:
         Vec<D> moves{};        // velocity of the other side where that is prescribed
         real gap = 0, friction = 0, restitution = 0;
         bool bounces = false;
+        real rebound = 0;  // as fast as that [m/s]
     };
     void against(std::size_t body, std::ptrdiff_t other, const Vec<D>& at, const Vec<D>& normal, const Vec<D>& moves, real gap,
                  const std::vector<Body<D>>& bodies);
@@ -55,6 +58,7 @@ private:
 
     std::vector<Contact> list_;
     const Joints<D>* joints_ = nullptr;
+    bool carried_ = false;
     std::vector<Row<D>> made_;
     Rows<D> rows_;  // D a contact: along the normal, then across it; then those of joints
 };

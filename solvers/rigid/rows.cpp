@@ -97,6 +97,7 @@ void Rows<D>::set(std::vector<Row<D>>& rows, const Mobility& mobility) {
     constexpr std::size_t n = freedoms<D>;
     list_.swap(rows);
     if (impulse_.size() != list_.size()) impulse_.assign(list_.size(), 0.0);
+    if (given_.size() != list_.size()) given_.assign(list_.size(), 0.0);
     size_ = mobility.size;
     responses_.assign(list_.size() * size_, 0.0);
     for (std::size_t i = 0; i < list_.size(); ++i) {
@@ -166,7 +167,7 @@ void Rows<D>::go_on(real beta, std::vector<real>& velocities) {
     velocities = free_;
     for (std::size_t i = 0; i < list_.size(); ++i) {
         impulse_[i] = limited(list_[i], impulse_[i] + beta * direction_[i]);
-        if (impulse_[i] != 0) push(i, impulse_[i], velocities);
+        if (impulse_[i] != given_[i]) push(i, impulse_[i] - given_[i], velocities);
     }
 }
 
@@ -174,7 +175,7 @@ template <int D>
 void Rows<D>::solve(std::vector<real>& velocities) {
     free_ = velocities;
     for (std::size_t i = 0; i < list_.size(); ++i)
-        if (impulse_[i] != 0) push(i, impulse_[i], velocities);
+        if (impulse_[i] != given_[i]) push(i, impulse_[i] - given_[i], velocities);
     real fastest = 0, slope = 0;
     for (const real v : velocities) fastest = std::max(fastest, std::abs(v));
     direction_.assign(list_.size(), 0.0), gained_.assign(list_.size(), 0.0);

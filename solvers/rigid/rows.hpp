@@ -60,11 +60,13 @@ Row<D> row_at(const std::vector<Body<D>>& bodies, std::size_t body, std::ptrdiff
 template <int D>
 class Rows {
 public:
-    void clear() { list_.clear(), impulse_.clear(); }
+    void clear() { list_.clear(), impulse_.clear(), given_.clear(); }
     /// Of the same number of rows again, the impulses that were found are where it begins.
     void set(std::vector<Row<D>>& rows, const Mobility& mobility);
     std::vector<Row<D>>& list() { return list_; }
     const std::vector<real>& impulses() const { return impulse_; }
+    /// The velocities have the impulses found so far: what is found next comes on top of them, and limits hold for the whole.
+    void carry_on() { given_ = impulse_; }
     /// Of the body's point past the other side.
     real relative(const Row<D>& row, const std::vector<real>& velocities) const;
     void solve(std::vector<real>& velocities);
@@ -77,6 +79,7 @@ private:
 
     std::vector<Row<D>> list_;
     std::vector<real> impulse_, direction_, gained_;  // of each row
+    std::vector<real> given_;                         // that part of each impulse which the velocities have already
     std::vector<real> responses_;                     // of each row, the change of all velocities
     std::vector<real> free_;                          // velocities without any impulse
     std::size_t size_ = 0;

@@ -87,6 +87,7 @@ const std::string mesh_in_space =
     "bodies = [ { mass = 2, shape = \"mesh\", file = \"" + std::string(WEIR_SOURCE_DIR) +
     "/tests/input/bad/meshes/box.obj\", scale = 0.5, at = [0.4, 0.4, 0.4], axis = [0, 0, 1], angle = 1, resolution = 16 } ]\n"
     "joints = [ { kind = \"hinge\", body = \"0\", at = [0.5, 0.5, 0.5], axis = [1, 0, 0] } ]";
+const std::string wet_mesh = "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [1, 0.2, 1] } ]\n" + mesh_in_space;
 const std::vector<std::string> endless_bodies{body + "shape = \"plane\", point = [0.8, 0.8], normal = [-1, -1] } ]",
                                               body + "shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"};
 const std::vector<std::string> poisson{"scheme.poisson = { method = \"cg\", tolerance = 1e-6, max_iterations = 100, fixed = false }"};
@@ -174,8 +175,7 @@ std::map<std::string, Said> everything() {
                   "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
                   "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
                   "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"}),
-        endless_bodies,
-        all(of_surfaces, Lines{of_level_set, "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [1, 0.2, 1] } ]\n" + mesh_in_space})};
+        endless_bodies, all(of_surfaces, Lines{of_level_set, wet_mesh})};
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
                             Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",
@@ -265,7 +265,7 @@ std::map<std::string, Said> everything() {
                   fluids[0], fluids[1]})};
     said["pbf"] = {
         liquid,
-        all(of_the_run, particles, solids, bodies, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
+        all(of_the_run, particles, solids, bodies, joints, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
             Lines{"time.cfl = 0.4", "fluid.density = 2", wax + "heat.vapour = { name = \"own\", density = 600 }",
                   "scheme = { kernel = \"cubic\", support = 2, iterations = 3, cfm = 1, relaxation = 1, warm_start = 0, settle = 1 "
                   "}",
@@ -275,10 +275,11 @@ std::map<std::string, Said> everything() {
             Lines{walls[1], at_the_wall, wax + "heat.vapour = \"substance\"",
                   wax + "sides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
             refused_by_particles, no_heat, endless_bodies),
-        of_surfaces};
+        all(of_surfaces, Lines{wet_mesh})};
     said["sph"] = {
         liquid,
-        all(of_the_run, particles, solids, bodies, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall}, open_sides,
+        all(of_the_run, particles, solids, bodies, joints, particle_velocities, of_the_surface, of_heat, Lines{walls[0], at_the_wall},
+            open_sides,
             Lines{"substance = \"water\"\nfluid = { density = 1000, viscosity = 0.01 }\neffects.viscosity = {}\ninitial.temperature = { "
                   "name = \"constant\", value = 280 "
                   "}\nsides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
@@ -289,7 +290,7 @@ std::map<std::string, Said> everything() {
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",
                   "effects.viscosity = {}\nfluid.viscosity = 0.01", "effects.density_diffusion.delta = 0.1",
                   "effects.artificial_viscosity.alpha = 0.1", "effects.rest_density = { times = [0], values = [1] }"}),
-        all(probes("density"), refused_by_particles, no_heat, endless_bodies), of_surfaces};
+        all(probes("density"), refused_by_particles, no_heat, endless_bodies), all(of_surfaces, Lines{wet_mesh})};
     const std::string of_input = std::string(WEIR_SOURCE_DIR) + "/tests/input/terrain/", asc = of_input + "hill.asc",
                       pgm = of_input + "hill.pgm";
     const std::string hill = "terrain = { kind = ";

@@ -33,6 +33,35 @@ inline real shown(const Solver& solver, const char* field, std::size_t component
     return set.find(rigid::body_set_name, field)->data[component][body];
 }
 
+/// A box on a box in the water, and a ball that spins near the floor.
+inline std::string bodies_that_touch(real ball) {
+    return fmt::format(
+        "{{ shape = \"box\", min = [0.1, 0.41], max = [0.3, 0.55], density = 300.0, friction = 0.3 }}, {{ shape = \"box\", min = "
+        "[0.12, 0.56], max = [0.28, 0.66], density = 2000.0 }}, {{ shape = \"sphere\", centre = [0.7, {}], radius = 0.1, "
+        "density = 5000.0, spin = [1.0] }}",
+        ball);
+}
+
+/// Of everything that bodies show, to the bit.
+inline void expect_same_bodies(const Solver& one, const Solver& two, std::size_t bodies, int dim) {
+    const std::size_t axes = dim == 2 ? 2 : 3, turns = dim == 2 ? 1 : 3;
+    for (std::size_t body = 0; body < bodies; ++body) {
+        for (const char* field : {"position", "velocity", "force"})
+            for (std::size_t a = 0; a < axes; ++a) EXPECT_EQ(shown(one, field, a, body), shown(two, field, a, body)) << field << body;
+        for (const char* field : {dim == 2 ? "angle" : "rotation", "spin", "torque"})
+            for (std::size_t a = 0; a < turns; ++a) EXPECT_EQ(shown(one, field, a, body), shown(two, field, a, body)) << field << body;
+    }
+}
+
+/// Of a list of numbers in their checkpoints.
+inline void expect_same_numbers(const Solver& one, const Solver& two, const char* name) {
+    Checkpoint a, b;
+    one.save(a), two.save(b);
+    std::vector<real> p, q;
+    a.get(name, p), b.get(name, q);
+    EXPECT_EQ(p, q) << name;
+}
+
 inline void run(Solver& solver, real end, real most = infinity) {
     while (solver.time() < end * (1 - 1e-12)) solver.step(std::min({solver.advised_dt(), most, end - solver.time()}));
 }
