@@ -115,7 +115,8 @@ std::string surface_text(const Simulation& simulation) {
     const auto& mesh = surface->make(simulation.fields(), simulation.time());
     std::string text = fmt::format("a surface by {}, each frame\n", simulation.scene().text("output.surface.method"));
     for (const Pass& pass : surface->passes().list()) text += fmt::format("  {:22} {:9.3f} ms\n", pass.name, 1e3 * pass.seconds);
-    return text + fmt::format("  {:22} {:9} {:>12} triangles {:>8}\n", "all", "", mesh.corners.size(), megabytes(surface->bytes()));
+    return text + fmt::format("  {:22} {:9} {:>12} {} {:>8}\n", "all", "", mesh.corners.size() + mesh.lines.size(),
+                              mesh.lines.empty() ? "triangles" : "lines", megabytes(surface->bytes()));
 }
 
 std::string left_out(const scene::Scene& scene, const scene::SolverSchema& schema) {

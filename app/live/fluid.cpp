@@ -2,6 +2,7 @@
 #include "app/live/scenery.hpp"
 
 #include <vtkActor.h>
+#include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkFloatArray.h>
@@ -21,10 +22,13 @@
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace weir::live {
 
 namespace {
+
+constexpr int slices = 512;  // of a view, by which particles are drawn: under a spacing where fewer than 512 stand behind each other
 
 /// An image whose points are the middles of the grid's cells.
 void set_lattice(vtkImageData* image, const view::Domain& domain, const std::array<int, 3>& n) {
@@ -53,18 +57,46 @@ void Scenery::add_particles() {
     renderer_->AddActor(particle_actor_);
 }
 
+/// In 3D the nearest first: what lies behind them then fails the test of depth before it is shaded. The picture is the same in any order,
+/// so that slices of the view are near enough, and those of the last time where the camera alone has moved. Flat ones as they are: all
+/// are as near, and the last one drawn is seen.
+void Scenery::order_particles(const Snapshot& s) {
+    const std::size_t count = s.points.size() / 3;
+    order_.resize(count);
+    std::iota(order_.begin(), order_.end(), 0);
+    if (domain_.flat() || count == 0) return;
+    double to[3];
+    renderer_->GetActiveCamera()->GetDirectionOfProjection(to);
+    const auto along = [&](std::size_t i) { return s.points[3 * i] * to[0] + s.points[3 * i + 1] * to[1] + s.points[3 * i + 2] * to[2]; };
+    double least = infinity, most = -infinity;
+    for (std::size_t i = 0; i < count; ++i) least = std::min(least, along(i)), most = std::max(most, along(i));
+    const double per_metre = (slices - 1) / std::max(most - least, 1e-30);
+    depth_.resize(count);
+    std::array<int, slices + 1> start{};
+    for (std::size_t i = 0; i < count; ++i) {
+        depth_[i] = std::clamp(static_cast<int>((along(i) - least) * per_metre), 0, slices - 1);
+        ++start[static_cast<std::size_t>(depth_[i]) + 1];
+    }
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    for (std::size_t i = 0; i < count; ++i)
+        order_[static_cast<std::size_t>(start[static_cast<std::size_t>(depth_[i])]++)] = static_cast<int>(i);
+}
+
 void Scenery::set_particles(const Snapshot& s) {
     const bool shown = !s.points.empty() && s.sheet[0] == 0;
     particle_actor_->SetVisibility(shown);
     if (!shown) return;
     const auto count = static_cast<vtkIdType>(s.points.size() / 3);
+    order_particles(s);
     particle_places_->SetNumberOfTuples(count);
-    std::copy(s.points.begin(), s.points.end(), particle_places_->GetPointer(0));
+    float* place = particle_places_->GetPointer(0);
+    for (const int i : order_) place = std::copy_n(s.points.begin() + 3 * static_cast<std::ptrdiff_t>(i), 3, place);
     particle_places_->Modified();
     const bool valued = !s.of_points.empty();
     if (valued) {
         particle_values_->SetNumberOfTuples(count);
-        std::copy(s.of_points.begin(), s.of_points.end(), particle_values_->GetPointer(0));
+        float* value = particle_values_->GetPointer(0);
+        for (const int i : order_) *value++ = s.of_points[static_cast<std::size_t>(i)];
         particle_values_->Modified();
     }
     particles_->GetPointData()->SetScalars(valued ? particle_values_.Get() : nullptr);

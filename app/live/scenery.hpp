@@ -57,6 +57,7 @@ private:
     void add_texts();
     void set_solids(const Snapshot& s);
     void set_particles(const Snapshot& s);
+    void order_particles(const Snapshot& s);
     void set_sheet(const Snapshot& s);
     void set_cloud(const Snapshot& s);
     void set_water(const Snapshot& s);
@@ -75,6 +76,7 @@ private:
     vtkNew<vtkImageActor> sheet_actor_;
     vtkNew<vtkVolume> volume_;
     Mesh solids_, ground_, water_, lines_, rows_, boxes_;
+    std::vector<int> order_, depth_;  // particles as they are drawn; how far each is from the eye
     bool solids_move_ = false, solids_are_missing_ = false;
     std::string field_;
 };

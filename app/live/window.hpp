@@ -2,6 +2,7 @@
 // waits for a step.
 #pragma once
 #include "app/live/knobs.hpp"
+#include "app/live/quick_window.hpp"
 #include "app/live/runner.hpp"
 #include "app/live/scenery.hpp"
 
@@ -94,7 +95,7 @@ private:
     Scenery scenery_;
     Knobs knobs_;
     std::unique_ptr<Snapshot> shown_ = std::make_unique<Snapshot>();
-    vtkNew<vtkRenderWindow> window_;
+    vtkSmartPointer<vtkRenderWindow> window_ = quick_window();
     vtkNew<vtkRenderWindowInteractor> interactor_;
     HandKind tool_ = HandKind::push;
     bool acts_ = false, turns_camera_ = false, help_ = false, paused_ = false, stale_ = true;

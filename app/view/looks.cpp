@@ -159,7 +159,7 @@ vtkSmartPointer<vtkPointGaussianMapper> splats(const Domain& domain, bool marker
         "float shade = 0.55 + 0.45 * sqrt(1.0 - dist2);\n"
         "ambientColor *= shade;\n"
         "diffuseColor *= shade;\n");
-    mapper->SetTriangleScale(1.8F);
+    mapper->SetTriangleScale(1.02F);  // the triangle around the disc, and a hair: what lies beyond the disc is shaded for nothing
     return mapper;
 }
 

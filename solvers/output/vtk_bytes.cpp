@@ -207,6 +207,10 @@ std::string surface_bytes(const SurfaceMesh& mesh, real t, const FrameOptions& o
     triangles->AllocateExact(static_cast<vtkIdType>(mesh.corners.size()), static_cast<vtkIdType>(3 * mesh.corners.size()));
     for (const auto& corners : mesh.corners) triangles->InsertNextCell({corners[0], corners[1], corners[2]});
     data->SetPolys(triangles);
+    vtkNew<vtkCellArray> lines;
+    lines->AllocateExact(static_cast<vtkIdType>(mesh.lines.size()), static_cast<vtkIdType>(2 * mesh.lines.size()));
+    for (const auto& ends : mesh.lines) lines->InsertNextCell({ends[0], ends[1]});
+    if (!mesh.lines.empty()) data->SetLines(lines);
     data->GetPointData()->SetNormals(vectors("Normals", mesh.normals));
     if (!mesh.velocity.empty()) data->GetPointData()->AddArray(vectors("velocity", mesh.velocity));
     data->GetPointData()->AddArray(

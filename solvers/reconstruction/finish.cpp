@@ -13,16 +13,20 @@ namespace {
 /// Taubin 1995: 1/lambda + 1/mu = 0.1 is the pass band; shapes smoother than that keep their size.
 constexpr real forward = 0.5, back = -1 / (1 / forward - 0.1);
 
-/// Points around each point: in a closed mesh the end of each directed side.
+/// Points around each point: in a closed mesh the end of each directed side; of lines both ends.
 struct Neighbours {
     std::vector<int> start, list;
-    explicit Neighbours(const SurfaceMesh& mesh) : start(mesh.points.size() + 1, 0), list(3 * mesh.corners.size()) {
+    explicit Neighbours(const SurfaceMesh& mesh) : start(mesh.points.size() + 1, 0), list(3 * mesh.corners.size() + 2 * mesh.lines.size()) {
         for (const auto& t : mesh.corners)
             for (const int c : t) ++start[static_cast<std::size_t>(c) + 1];
+        for (const auto& line : mesh.lines)
+            for (const int c : line) ++start[static_cast<std::size_t>(c) + 1];
         for (std::size_t i = 0; i + 1 < start.size(); ++i) start[i + 1] += start[i];
         std::vector<int> next(start.begin(), start.end() - 1);
         for (const auto& t : mesh.corners)
             for (std::size_t c = 0; c < 3; ++c) list[static_cast<std::size_t>(next[static_cast<std::size_t>(t[c])]++)] = t[(c + 1) % 3];
+        for (const auto& line : mesh.lines)
+            for (std::size_t c = 0; c < 2; ++c) list[static_cast<std::size_t>(next[static_cast<std::size_t>(line[c])]++)] = line[1 - c];
     }
 };
 
@@ -51,6 +55,10 @@ void add_normals(SurfaceMesh& mesh) {
     for (const auto& t : mesh.corners) {
         const Vec<3> n = area_vector(mesh, t);
         for (const int c : t) mesh.normals[static_cast<std::size_t>(c)] += n;
+    }
+    for (const auto& line : mesh.lines) {
+        const Vec<3> along = end(mesh, line, 1) - end(mesh, line, 0);
+        for (const int c : line) mesh.normals[static_cast<std::size_t>(c)] += Vec<3>{{along[1], -along[0], 0}};
     }
     parallel_for(0, static_cast<int>(mesh.points.size()), [&](int p) {
         Vec<3>& n = mesh.normals[static_cast<std::size_t>(p)];

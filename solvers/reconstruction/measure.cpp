@@ -11,11 +11,17 @@ real volume(const SurfaceMesh& mesh) {
     const Vec<3> from = mesh.points.front();  // near the surface: less is lost to rounding than from the origin
     real six = 0;
     for (const auto& t : mesh.corners) six += dot(corner(mesh, t, 0) - from, cross(corner(mesh, t, 1) - from, corner(mesh, t, 2) - from));
+    if (!mesh.lines.empty()) {
+        real two = 0;
+        for (const auto& line : mesh.lines) two += cross(end(mesh, line, 0) - from, end(mesh, line, 1) - from)[2];
+        return two / 2;
+    }
     return six / 6;
 }
 
 real area(const SurfaceMesh& mesh) {
     real sum = 0;
+    for (const auto& line : mesh.lines) sum += norm(end(mesh, line, 1) - end(mesh, line, 0));
     for (const auto& t : mesh.corners) sum += 0.5 * norm(area_vector(mesh, t));
     return sum;
 }
@@ -26,7 +32,26 @@ real smallest_triangle(const SurfaceMesh& mesh) {
     return least;
 }
 
+namespace {
+
+Topology topology_of_lines(const SurfaceMesh& mesh) {
+    std::vector<std::array<int, 2>> met(mesh.points.size(), {0, 0});  // lines that begin and end at each point
+    for (const auto& line : mesh.lines)
+        for (std::size_t c = 0; c < 2; ++c) ++met[static_cast<std::size_t>(line[c])][c];
+    Topology found;
+    found.edges = static_cast<std::int64_t>(mesh.lines.size());
+    for (const auto& [begin, last] : met) {
+        found.unused_points += begin + last == 0;
+        found.open_edges += begin + last > 0 && (begin != 1 || last != 1);
+    }
+    found.euler = static_cast<std::int64_t>(mesh.points.size()) - found.unused_points - found.edges;
+    return found;
+}
+
+}  // namespace
+
 Topology topology(const SurfaceMesh& mesh) {
+    if (!mesh.lines.empty()) return topology_of_lines(mesh);
     // each directed side once; a closed, oriented surface has each of them once, and its reverse once
     std::vector<std::pair<int, int>> sides;
     sides.reserve(3 * mesh.corners.size());

@@ -13,7 +13,7 @@ Method method_named(std::string_view name) {
 }
 
 std::optional<Options> options_of(const scene::Scene& scene) {
-    if (scene.dim() != 3 || !scene.has("output.surface")) return std::nullopt;
+    if (!scene.has("output.surface")) return std::nullopt;
     Options options;
     const scene::Table& said = scene.root().table("output.surface");
     options.method = method_named(said.text("method"));

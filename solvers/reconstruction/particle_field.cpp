@@ -153,7 +153,7 @@ void ParticleField::find_blocks(const Samples& samples) {
         return true;
     };
     const float far = outermost();
-    const float dry = method_ == Method::zhu_bridson ? -1.0F : std::max(-1.0F, profile_of(method_).depth(0.0F));
+    const float dry = method_ == Method::zhu_bridson ? -1.0F : std::max(-1.0F, profile_of(method_, flat_).depth(0.0F));
     Block block{};
     for (int k = 0; k < blocks_along(samples.n[2], block_z); ++k)
         for (int j = 0; j < blocks_along(samples.n[1], block_y); ++j)
@@ -264,7 +264,8 @@ void ParticleField::scatter_means(const Block& block, Rows& rows) const {
             const auto at = static_cast<std::size_t>(p);
             const float x = x_[0][at], y = x_[1][at], z = x_[2][at];
             if (x < lo[0] || x > hi[0]) continue;
-            const Span ys = span_of(y, half, per_step, block.begin[1], block_y), zs = span_of(z, half, per_step, block.begin[2], block_z);
+            const Span ys = span_of(y, half, per_step, block.begin[1], block_y),
+                       zs = span_of(z, half, per_step, block.begin[2], block.end[2] - block.begin[2]);
             const int i0 = std::max(-lanes, static_cast<int>(std::ceil((x - half) * per_step)) - block.begin[0]);
             const int i1 = std::min(block_x, static_cast<int>(std::floor((x + half) * per_step)) + 1 - block.begin[0]);
             for (int kz = zs.begin; kz < zs.end; ++kz)
@@ -308,7 +309,7 @@ void ParticleField::scatter_kernels(const Block& block, Rows& rows) const {
             const auto& [x, y, z] = blob.centre;
             const auto& g = blob.stretch;
             const Span ys = span_of(y, blob.half[1], per_step, block.begin[1], block_y),
-                       zs = span_of(z, blob.half[2], per_step, block.begin[2], block_z);
+                       zs = span_of(z, blob.half[2], per_step, block.begin[2], block.end[2] - block.begin[2]);
             const int i0 = std::max(-lanes, static_cast<int>(std::ceil((x - blob.half[0]) * per_step)) - block.begin[0]);
             const int i1 = std::min(block_x, static_cast<int>(std::floor((x + blob.half[0]) * per_step)) + 1 - block.begin[0]);
             if (i0 >= i1) continue;
@@ -342,7 +343,7 @@ void ParticleField::fill(const Block& block, Samples& samples) const {
             }
     };
     if (!block.computed) return put([&](int, int) { return block.value; });
-    const Profile& profile = profile_of(method_);
+    const Profile& profile = profile_of(method_, flat_);
     if (method_ == Method::zhu_bridson) {
         static thread_local BlockSums<4> scratch;
         scratch = BlockSums<4>();

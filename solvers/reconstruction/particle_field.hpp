@@ -26,7 +26,8 @@ struct Cloud {
 
 class ParticleField {
 public:
-    explicit ParticleField(Method method) : method_(method) {}
+    /// `flat`: the lattice is one plane, and the cloud has layers on both sides of it.
+    explicit ParticleField(Method method, bool flat = false) : method_(method), flat_(flat) {}
     /// Fills samples.depth of a lattice that is laid already. The cloud must live as long as means are asked for.
     void compute(const Cloud& cloud, Samples& samples);
     /// The mean over the particles in reach of a point, weighted by their kernels, of their velocity [m/s]; 0 where there is none.
@@ -76,6 +77,7 @@ private:
     std::array<float, 3> high(const Block& block) const;
 
     Method method_;
+    bool flat_;
     const Cloud* cloud_ = nullptr;
     particles::CellSort cells_;
     Vec<3> origin_{};                         // the first sample [m]

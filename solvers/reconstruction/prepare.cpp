@@ -73,17 +73,24 @@ void keep_inside(Samples& samples, const Vec<3>& lo, const Vec<3>& hi) {
     }
 }
 
-void keep_out_of(Samples& samples, const geometry::Solids<3>& solids) {
+template <int D>
+void keep_out_of(Samples& samples, const geometry::Solids<D>& solids) {
     if (solids.empty()) return;
     for_samples(samples, [&](int i, int j, int k, float& f) {
-        if (f > -1) f = std::min(f, static_cast<float>(std::clamp(solids.distance(samples.position(i, j, k)) / samples.unit, -1.0, 1.0)));
+        if (f <= -1) return;
+        const Vec<3> at = samples.position(i, j, k);
+        Vec<D> x;
+        for (int a = 0; a < D; ++a) x[a] = at[a];
+        f = std::min(f, static_cast<float>(std::clamp(solids.distance(x) / samples.unit, -1.0, 1.0)));
     });
 }
+template void keep_out_of(Samples& samples, const geometry::Solids<2>& solids);
+template void keep_out_of(Samples& samples, const geometry::Solids<3>& solids);
 
 void avoid_zero(Samples& samples) {
     const auto& n = samples.n;
     for_samples(samples, [&](int i, int j, int k, float& f) {
-        const bool end = i == 0 || j == 0 || k == 0 || i == n[0] - 1 || j == n[1] - 1 || k == n[2] - 1;
+        const bool end = i == 0 || j == 0 || i == n[0] - 1 || j == n[1] - 1 || (n[2] > 1 && (k == 0 || k == n[2] - 1));
         if (std::abs(f) < nearest_to_zero) f = f > 0 ? nearest_to_zero : -nearest_to_zero;
         if (end) f = std::min(f, -nearest_to_zero);
     });

@@ -8,9 +8,11 @@ namespace weir::reconstruction {
 /// No liquid beyond the sides of a box, of which a lattice has at most its outermost samples: where there is liquid at a side, the surface
 /// is the side. Nor in solids.
 void keep_inside(Samples& samples, const Vec<3>& lo, const Vec<3>& hi);
-void keep_out_of(Samples& samples, const geometry::Solids<3>& solids);
+template <int D>
+void keep_out_of(Samples& samples, const geometry::Solids<D>& solids);
 /// Moves values that are nearly zero away from it: the surface then passes no sample closer than 2e-3 of the way to the next one, so that
-/// its smallest triangle, across a corner, has at least 0.866 (2e-3)^2 of a cell's face. The ends of the lattice are outside.
+/// its smallest triangle, across a corner, has at least 0.866 (2e-3)^2 of a cell's face. The ends of the lattice are outside; those of a
+/// plane of samples are its edges.
 void avoid_zero(Samples& samples);
 
 }  // namespace weir::reconstruction

@@ -4,6 +4,7 @@
 #include "core/parallel.hpp"
 #include "geometry/sides.hpp"
 #include "reconstruction/contour.hpp"
+#include "reconstruction/contour_flat.hpp"
 #include "reconstruction/finish.hpp"
 #include "reconstruction/prepare.hpp"
 
@@ -19,6 +20,11 @@ constexpr real crowd = 13;
 /// Markers of a grid along an edge of a cell.
 constexpr real markers_a_cell = 2;
 
+/// Of a flat liquid: a stretched kernel reaches 3.75 spacings, and one that was pulled inwards for want of neighbours a spacing more. Those
+/// up to 4 layers away must have all of theirs within three; those from 5 on then do not reach the slice.
+constexpr int layers_beside = 6;
+static_assert(layers_beside >= 4 + far_reach - 1 && 5 - farthest_move >= longest * far_reach);
+
 /// 0 at 0, 1 at 1, with two derivatives of zero at both (Loeschner et al. 2023, section 3.2).
 real smoother_step(real s) { return s * s * s * (s * (6 * s - 15) + 10); }
 
@@ -29,9 +35,10 @@ const FieldView* particles_of(const FieldSet& fields) {
 
 /// A component of a velocity on faces or in cells, trilinear.
 real velocity_at(const FieldView& field, const GridView& grid, std::size_t component, const Vec<3>& x) {
-    std::array<std::size_t, 3> low{}, n{};
+    const auto dim = static_cast<std::size_t>(grid.dim);
+    std::array<std::size_t, 3> low{}, n{1, 1, 1};
     std::array<real, 3> part{};
-    for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t a = 0; a < dim; ++a) {
         const bool face = field.where == Where::face && a == component;
         n[a] = static_cast<std::size_t>(grid.cells[a]) + face;
         const real index = std::clamp((x[a] - grid.origin[a]) / grid.spacing[a] - (face ? 0 : 0.5), 0.0, real(n[a] - 1));
@@ -39,10 +46,10 @@ real velocity_at(const FieldView& field, const GridView& grid, std::size_t compo
         part[a] = index - real(low[a]);
     }
     real sum = 0;
-    for (std::size_t corner = 0; corner < 8; ++corner) {
+    for (std::size_t corner = 0; corner < std::size_t{1} << dim; ++corner) {
         std::array<std::size_t, 3> I{};
         real weight = 1;
-        for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t a = 0; a < dim; ++a) {
             const std::size_t up = corner >> a & 1;
             I[a] = std::min(low[a] + up, n[a] - 1);
             weight *= up ? part[a] : 1 - part[a];
@@ -56,13 +63,21 @@ real velocity_at(const FieldView& field, const GridView& grid, std::size_t compo
 
 Reconstruction::Reconstruction(const Options& options, const scene::Scene& scene)
     : options_(options),
-      lo_(scene.vec<3>("grid.origin")),
-      hi_(lo_ + scene.vec<3>("grid.size")),
-      solids_(scene.root().tables("solids")),
-      field_(options.method) {
+      flat_(scene.dim() == 2),
+      flat_solids_(flat_ ? geometry::Solids<2>(scene.root().tables("solids")) : geometry::Solids<2>()),
+      solids_(flat_ ? geometry::Solids<3>() : geometry::Solids<3>(scene.root().tables("solids"))),
+      field_(options.method, flat_) {
+    const auto lower = scene.root().numbers("grid.origin"), size = scene.root().numbers("grid.size");
+    for (int a = 0; a < 3; ++a) {
+        const bool endless = a == 2 && flat_;
+        lo_[a] = endless ? -infinity : lower[static_cast<std::size_t>(a)];
+        hi_[a] = endless ? infinity : lo_[a] + size[static_cast<std::size_t>(a)];
+    }
     if (!scene.has("grid.periodic")) return;  // a study of walls alone
-    const geometry::Sides<3> sides(scene);
-    for (int a = 0; a < 3; ++a) periodic_[static_cast<std::size_t>(a)] = sides.periodic(a);
+    const auto repeat = [&]<int D>(const geometry::Sides<D>& sides) {
+        for (int a = 0; a < D; ++a) periodic_[static_cast<std::size_t>(a)] = sides.periodic(a);
+    };
+    flat_ ? repeat(geometry::Sides<2>(scene)) : repeat(geometry::Sides<3>(scene));
 }
 
 std::unique_ptr<Reconstruction> reconstruction_of(const scene::Scene& scene) {
@@ -72,8 +87,8 @@ std::unique_ptr<Reconstruction> reconstruction_of(const scene::Scene& scene) {
 }
 
 const SurfaceMesh& Reconstruction::make(const FieldSet& fields, real t) {
-    mesh_.points.clear(), mesh_.corners.clear(), mesh_.velocity.clear();
-    solids_.set_time(t);
+    mesh_.points.clear(), mesh_.corners.clear(), mesh_.lines.clear(), mesh_.velocity.clear();
+    flat_solids_.set_time(t), solids_.set_time(t);
     if (options_.method == Method::level_set)
         from_level_set(fields);
     else
@@ -92,7 +107,8 @@ void Reconstruction::from_level_set(const FieldSet& fields) {
             samples_.spacing[a] = grid.spacing[a];
             samples_.first[a] = grid.origin[a] - 0.5 * grid.spacing[a];
         }
-        samples_.unit = std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
+        if (flat_) lay_plane();
+        samples_.unit = std::min({samples_.spacing[0], samples_.spacing[1], samples_.spacing[2]});
         samples_.depth.resize(samples_.linear(0, 0, samples_.n[2]));
         const auto inside = [](int i, int n) { return static_cast<std::size_t>(std::clamp(i - 1, 0, n - 1)); };
         parallel_for(0, samples_.n[2], [&](int k) {
@@ -107,7 +123,7 @@ void Reconstruction::from_level_set(const FieldSet& fields) {
                 }
         });
     }
-    make_contour(0);
+    make_contour();
     add_velocity(fields);
 }
 
@@ -128,7 +144,7 @@ void Reconstruction::from_particles(const FieldSet& fields) {
         lay_samples();
         field_.compute(cloud_, samples_);
     }
-    make_contour(0);
+    make_contour();
     add_velocity(fields);
 }
 
@@ -137,9 +153,11 @@ void Reconstruction::from_particles(const FieldSet& fields) {
 void Reconstruction::gather(const FieldView& position, real spacing) {
     cloud_.spacing = spacing;
     cloud_.own = static_cast<int>(position.data[0].size());
-    for (std::size_t a = 0; a < 3; ++a) cloud_.x[a].assign(position.data[a].begin(), position.data[a].end());
+    for (std::size_t a = 0; a < position.data.size(); ++a) cloud_.x[a].assign(position.data[a].begin(), position.data[a].end());
+    if (flat_) cloud_.x[2].assign(cloud_.x[0].size(), 0);
     cloud_.source.clear();
-    for (std::size_t a = 0; a < 3; ++a) add_images(a);
+    for (std::size_t a = 0; a < position.data.size(); ++a) add_images(a);
+    if (flat_) add_layers();
 }
 
 void Reconstruction::add_images(std::size_t axis) {
@@ -156,11 +174,31 @@ void Reconstruction::add_images(std::size_t axis) {
     }
 }
 
+/// A flat liquid is a slice of one that goes on for ever: its particles again, a spacing in front and behind, as far as they count.
+void Reconstruction::add_layers() {
+    const int count = cloud_.count();
+    for (auto& x : cloud_.x) x.reserve(static_cast<std::size_t>((2 * layers_beside + 1) * count));
+    cloud_.source.reserve(cloud_.x[0].capacity());
+    for (int layer = -layers_beside; layer <= layers_beside; ++layer)
+        for (int i = 0; i < count && layer != 0; ++i) {
+            for (std::size_t a = 0; a < 2; ++a) cloud_.x[a].push_back(cloud_.x[a][static_cast<std::size_t>(i)]);
+            cloud_.x[2].push_back(layer * cloud_.spacing);
+            cloud_.source.push_back(cloud_.particle(i));
+        }
+}
+
+void Reconstruction::lay_plane() {
+    samples_.n[2] = 1;
+    samples_.first[2] = 0;
+    samples_.spacing[2] = samples_.spacing[0];
+}
+
 /// Sides lie midway between samples where the domain is a whole number of cells wide. The ends of the lattice are outside.
 void Reconstruction::lay_samples() {
     samples_.unit = cloud_.spacing;
     const real step = options_.cell * cloud_.spacing;
-    for (std::size_t a = 0; a < 3; ++a) {
+    if (flat_) samples_.spacing[0] = step, lay_plane();
+    for (std::size_t a = 0; a < (flat_ ? 2U : 3U); ++a) {
         const auto [least, most] = std::minmax_element(cloud_.x[a].begin(), cloud_.x[a].begin() + cloud_.own);
         const real beyond = 1.5 * cloud_.spacing;  // no surface is farther from all particles: a plane's is half a spacing away
         const auto number = [&](real x) { return std::floor((x - lo_[a]) / step - 0.5); };
@@ -172,16 +210,17 @@ void Reconstruction::lay_samples() {
     }
 }
 
-void Reconstruction::make_contour(real) {
+void Reconstruction::make_contour() {
     {
         const auto timed = passes_.time("prepare");
+        keep_out_of(samples_, flat_solids_);
         keep_out_of(samples_, solids_);
         keep_inside(samples_, lo_, hi_);
         avoid_zero(samples_);
     }
     {
         const auto timed = passes_.time("contour");
-        contour(samples_, mesh_);
+        flat_ ? contour_flat(samples_, mesh_) : contour(samples_, mesh_);
     }
     if (options_.method == Method::density && options_.smoothing > 0) smooth_by_crowding();
     const auto timed = passes_.time("normals and thickness");
@@ -209,21 +248,24 @@ void Reconstruction::add_velocity(const FieldSet& fields) {
     const FieldView* v = position ? fields.find(position->set, "velocity") : fields.find("", "velocity");
     const bool on_grid = v && v->where != Where::particle;
     if (!v && position && fields.find("", "velocity")) v = fields.find("", "velocity");
-    if (!v || v->data.size() < 3) return;
+    const std::size_t dim = flat_ ? 2 : 3;
+    if (!v || v->data.size() < dim) return;
+    if (flat_) across_.assign(v->data[0].size(), 0);
     mesh_.velocity.resize(mesh_.points.size());
     parallel_for(0, static_cast<int>(mesh_.points.size()), [&](int p) {
         const auto at = static_cast<std::size_t>(p);
         if (on_grid)
-            for (std::size_t a = 0; a < 3; ++a) mesh_.velocity[at][a] = velocity_at(*v, fields.grid, a, mesh_.points[at]);
+            for (std::size_t a = 0; a < dim; ++a) mesh_.velocity[at][a] = velocity_at(*v, fields.grid, a, mesh_.points[at]);
         else
-            mesh_.velocity[at] = field_.velocity_at(mesh_.points[at], {v->data[0], v->data[1], v->data[2]});
+            mesh_.velocity[at] = field_.velocity_at(mesh_.points[at], {v->data[0], v->data[1], flat_ ? across_ : v->data[2]});
     });
 }
 
 std::size_t Reconstruction::bytes() const {
     return 3 * cloud_.x[0].capacity() * sizeof(real) + cloud_.source.capacity() * sizeof(int) + field_.bytes() +
            samples_.depth.capacity() * sizeof(float) + 3 * mesh_.points.capacity() * sizeof(Vec<3>) +
-           mesh_.corners.capacity() * sizeof(mesh_.corners[0]) + mesh_.thickness.capacity() * sizeof(real);
+           mesh_.corners.capacity() * sizeof(mesh_.corners[0]) + mesh_.lines.capacity() * sizeof(mesh_.lines[0]) +
+           across_.capacity() * sizeof(real) + mesh_.thickness.capacity() * sizeof(real);
 }
 
 }  // namespace weir::reconstruction

@@ -1,4 +1,4 @@
-// The liquid's surface as a closed mesh of triangles, from a level set or from particles, at any moment of a run.
+// The liquid's surface as a closed mesh of triangles, or in 2D as closed lines, from a level set or from particles, at any moment of a run.
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
@@ -16,9 +16,9 @@ namespace weir::reconstruction {
 
 class Reconstruction {
 public:
-    /// Of liquid in the domain, among the solids of a scene in 3D.
+    /// Of liquid in the domain, among the solids of a scene.
     Reconstruction(const Options& options, const scene::Scene& scene);
-    /// The surface of what these fields show at time t [s]; without a triangle where there is no liquid.
+    /// The surface of what these fields show at time t [s]; without a triangle or a line where there is no liquid.
     const SurfaceMesh& make(const FieldSet& fields, real t);
 
     const SurfaceMesh& mesh() const { return mesh_; }
@@ -32,18 +32,23 @@ private:
     void from_particles(const FieldSet& fields);
     void gather(const FieldView& position, real spacing);
     void add_images(std::size_t axis);
+    void add_layers();
     void lay_samples();
-    void make_contour(real t);
+    void lay_plane();
+    void make_contour();
     void smooth_by_crowding();
     void add_velocity(const FieldSet& fields);
 
     Options options_;
     Vec<3> lo_, hi_;  // of the domain [m]
     std::array<bool, 3> periodic_{};
+    bool flat_;
+    geometry::Solids<2> flat_solids_;
     geometry::Solids<3> solids_;
     Cloud cloud_;
     ParticleField field_;
     Samples samples_;
+    std::vector<real> across_;  // velocity through a flat liquid: none
     SurfaceMesh mesh_;
     Passes passes_;
 };

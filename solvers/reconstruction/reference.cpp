@@ -49,26 +49,26 @@ constexpr int half_width = 8, layers = 8;
 /// Depths of a profile: those between which a sample's is cut, and some more for those where all values are equal.
 constexpr real highest = -1.5, lowest = 1.5, step = 1.0 / 32;
 
-Profile find_profile(Method method) {
+Profile find_profile(Method method, bool flat) {
     std::vector<Vec<3>> lattice;
     for (int k = -half_width; k <= half_width; ++k)
         for (int j = 0; j < layers; ++j)
             for (int i = -half_width; i <= half_width; ++i) lattice.push_back({{real(i), -0.5 - j, real(k)}});
-    const ReferenceField field(method, std::move(lattice));
+    const ReferenceField field(method, std::move(lattice), flat);
     std::vector<real> values;
     for (real depth = highest; depth <= lowest; depth += step) {
         real sum = 0;
         for (int k = 0; k < phases; ++k)
-            for (int i = 0; i < phases; ++i) sum += field.value({{(i + 0.5) / phases, -depth, (k + 0.5) / phases}});
+            for (int i = 0; i < phases; ++i) sum += field.value({{(i + 0.5) / phases, -depth, flat ? 0 : (k + 0.5) / phases}});
         values.push_back(sum / (phases * phases));
     }
     return {highest, step, values};
 }
 
 template <Method M>
-const Profile& profile_once() {
-    static const Profile profile = find_profile(M);
-    return profile;
+const Profile& profile_once(bool flat) {
+    static const Profile profile = find_profile(M, false), of_flat = find_profile(M, true);
+    return flat ? of_flat : profile;
 }
 
 }  // namespace
@@ -92,7 +92,8 @@ Profile::Profile(real first_depth, real step_of_depth, const std::vector<real>& 
     for (int i = 0; i <= steps; ++i) depths_[static_cast<std::size_t>(i)] = depth_of(least_ + i / per_step_);
 }
 
-ReferenceField::ReferenceField(Method method, std::vector<Vec<3>> positions) : method_(method), x_(std::move(positions)) {
+ReferenceField::ReferenceField(Method method, std::vector<Vec<3>> positions, bool flat)
+    : method_(method), flat_(flat), x_(std::move(positions)) {
     if (method == Method::level_set) throw std::logic_error("a level set needs no particles");
     if (method == Method::zhu_bridson) return;
     for (const Vec<3>& x : x_)
@@ -113,12 +114,12 @@ real ReferenceField::value(const Vec<3>& x) const {
     return sum;
 }
 
-real ReferenceField::depth(const Vec<3>& x) const { return profile_of(method_).depth(value(x)); }
+real ReferenceField::depth(const Vec<3>& x) const { return profile_of(method_, flat_).depth(value(x)); }
 
-const Profile& profile_of(Method method) {
-    return method == Method::zhu_bridson   ? profile_once<Method::zhu_bridson>()
-           : method == Method::anisotropic ? profile_once<Method::anisotropic>()
-                                           : profile_once<Method::density>();
+const Profile& profile_of(Method method, bool flat) {
+    return method == Method::zhu_bridson   ? profile_once<Method::zhu_bridson>(flat)
+           : method == Method::anisotropic ? profile_once<Method::anisotropic>(flat)
+                                           : profile_once<Method::density>(flat);
 }
 
 }  // namespace weir::reconstruction

@@ -35,8 +35,8 @@ private:
 
 class ReferenceField {
 public:
-    /// Positions in particle spacings.
-    ReferenceField(Method method, std::vector<Vec<3>> positions);
+    /// Positions in particle spacings; of a flat liquid in all layers.
+    ReferenceField(Method method, std::vector<Vec<3>> positions, bool flat = false);
     /// zhu_bridson: the distance to the weighted mean (infinite where no particle is in reach); otherwise the sum of kernels.
     real value(const Vec<3>& x) const;
     /// How far x lies inside, as Samples::depth: where a plane surface would have the value of x.
@@ -44,11 +44,13 @@ public:
 
 private:
     Method method_;
+    bool flat_;
     std::vector<Vec<3>> x_;
     std::vector<Blob> blobs_;
 };
 
-/// Found by sums, once.
-const Profile& profile_of(Method method);
+/// Found by sums, once. A flat liquid is a slice, through its particles, of one that goes on for ever: the same layer again at each
+/// spacing.
+const Profile& profile_of(Method method, bool flat);
 
 }  // namespace weir::reconstruction

@@ -1,4 +1,4 @@
-// Corners and areas of the triangles of a mesh.
+// Corners and areas of the triangles of a mesh, and ends of its lines.
 #pragma once
 #include "core/surface_mesh.hpp"
 
@@ -10,6 +10,10 @@ inline Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
 
 inline const Vec<3>& corner(const SurfaceMesh& mesh, const std::array<int, 3>& triangle, std::size_t c) {
     return mesh.points[static_cast<std::size_t>(triangle[c])];
+}
+
+inline const Vec<3>& end(const SurfaceMesh& mesh, const std::array<int, 2>& line, std::size_t c) {
+    return mesh.points[static_cast<std::size_t>(line[c])];
 }
 
 /// Twice the area, along the outward normal [m^2].

@@ -31,15 +31,15 @@ std::vector<Variant> surfaces_of_particles() {
 }
 
 Key output_with(std::vector<Variant> methods) {
-    return {.name = "output",
-            .type = Type::table,
-            .keys = {{.name = "surface",
-                      .type = Type::table,
-                      .doc = "Write the liquid's surface as triangles beside the frames (liquid_surface.pvd), with normals, velocity and "
-                             "thickness of the liquid below. It is closed: at walls, solids and open sides too.",
-                      .selector = "method",
-                      .variants = std::move(methods),
-                      .only_dim = 3}}};
+    return {
+        .name = "output",
+        .type = Type::table,
+        .keys = {{.name = "surface",
+                  .type = Type::table,
+                  .doc = "Write the liquid's surface as triangles, in 2D as lines, beside the frames (liquid_surface.pvd), with normals, "
+                         "velocity and thickness of the liquid below. It is closed: at walls, solids and open sides too.",
+                  .selector = "method",
+                  .variants = std::move(methods)}}};
 }
 
 }  // namespace

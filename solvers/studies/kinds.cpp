@@ -54,7 +54,7 @@ scene::SolverKind reconstruction_kind() {
     scene::SolverSchema schema;
     schema.name = "reconstruction";
     schema.doc = "Particles on a lattice that nothing moves, and the surface around them: to measure reconstructions.";
-    schema.dims = {3};
+    schema.dims = {2, 3};
     schema.keys = {output, ReconstructionStudy::jitter_key()};
     schema.without = {
         "time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial", "probes", "changes"};

@@ -8,6 +8,6 @@ scene::SolverKind transport_kind();       // "transport": advection through a pr
 scene::SolverKind poisson_kind();         // "poisson": one pressure problem
 scene::SolverKind phase_diagram_kind();   // "phase_diagram": what a substance is, by temperature and pressure
 scene::SolverKind reconstruction_kind();  // "reconstruction": the surface around particles
-scene::SolverKind closed_vessel_kind();  // "closed_vessel": water and its vapour come to their balance
+scene::SolverKind closed_vessel_kind();   // "closed_vessel": water and its vapour come to their balance
 
 }  // namespace weir::studies

@@ -30,25 +30,39 @@ scene::Key ReconstructionStudy::jitter_key() {
 }
 
 ReconstructionStudy::ReconstructionStudy(const scene::Scene& scene) : maker_(reconstruction::reconstruction_of(scene)) {
-    const Index<3> cells = scene.index<3>("grid.cells");
-    const Vec<3> origin = scene.vec<3>("grid.origin"), size = scene.vec<3>("grid.size");
-    grid_.dim = 3;
-    for (std::size_t a = 0; a < 3; ++a) grid_.cells[a] = cells[a], grid_.origin[a] = origin[a], grid_.spacing[a] = size[a] / cells[a];
-    if (const auto [least, most] = std::minmax_element(grid_.spacing.begin(), grid_.spacing.end()); *most > *least * (1 + 1e-9))
-        scene.refuse("grid.cells", "the cells are not cubes, and their width is the particles' spacing");
-    const auto shapes = geometry::make_shapes<3>(scene.root().tables("liquid"));
+    scene.dim() == 2 ? fill<2>(scene) : fill<3>(scene);
+    maker_->make(fields(), 0);
+}
+
+template <int D>
+void ReconstructionStudy::fill(const scene::Scene& scene) {
+    const Index<D> cells = scene.index<D>("grid.cells");
+    const Vec<D> origin = scene.vec<D>("grid.origin"), size = scene.vec<D>("grid.size");
+    grid_.dim = D;
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        grid_.cells[at] = cells[a], grid_.origin[at] = origin[a], grid_.spacing[at] = size[a] / cells[a];
+    }
+    const auto [least, most] = std::minmax_element(grid_.spacing.begin(), grid_.spacing.begin() + D);
+    if (*most > *least * (1 + 1e-9)) scene.refuse("grid.cells", "the cells are not cubes, and their width is the particles' spacing");
+    const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     const real jitter = scene.number("jitter");
     std::uint64_t drawn = 0;
-    for (int k = 0; k < cells[2]; ++k)
+    for (int k = 0; k < grid_.cells[2]; ++k)
         for (int j = 0; j < cells[1]; ++j)
             for (int i = 0; i < cells[0]; ++i) {
                 const std::array<int, 3> I{i, j, k};
-                Vec<3> x;
-                for (std::size_t a = 0; a < 3; ++a) x[a] = origin[a] + grid_.spacing[a] * (I[a] + 0.5);
+                Vec<D> x;
+                for (int a = 0; a < D; ++a) {
+                    const auto at = static_cast<std::size_t>(a);
+                    x[a] = origin[a] + grid_.spacing[at] * (I[at] + 0.5);
+                }
                 if (std::none_of(shapes.begin(), shapes.end(), [&](const auto& shape) { return shape->contains(x); })) continue;
-                for (std::size_t a = 0; a < 3; ++a) x_[a].push_back(x[a] + jitter * grid_.spacing[a] * noise(drawn++));
+                for (int a = 0; a < D; ++a) {
+                    const auto at = static_cast<std::size_t>(a);
+                    x_[at].push_back(x[a] + jitter * grid_.spacing[at] * noise(drawn++));
+                }
             }
-    maker_->make(fields(), 0);
 }
 
 StepReport ReconstructionStudy::step(real dt) {
@@ -60,18 +74,23 @@ StepReport ReconstructionStudy::step(real dt) {
 FieldSet ReconstructionStudy::fields() const {
     FieldSet set;
     set.grid = grid_;
-    set.fields.push_back({"position", "m", Where::particle, particle_set_name, {x_[0], x_[1], x_[2]}});
+    FieldView position{"position", "m", Where::particle, particle_set_name, {}};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(grid_.dim); ++a) position.data.push_back(x_[a]);
+    set.fields.push_back(std::move(position));
     return set;
 }
 
 std::vector<Integral> ReconstructionStudy::integrals() const {
     const SurfaceMesh& mesh = maker_->mesh();
+    const bool flat = grid_.dim == 2;  // an area and a length, of lines
     return {{"particles", "1", static_cast<real>(x_[0].size())},
-            {"surface_volume", "m^3", reconstruction::volume(mesh)},
-            {"surface_area", "m^2", reconstruction::area(mesh)},
-            {"triangles", "1", static_cast<real>(mesh.corners.size())}};
+            {"surface_volume", flat ? "m^2" : "m^3", reconstruction::volume(mesh)},
+            {"surface_area", flat ? "m" : "m^2", reconstruction::area(mesh)},
+            {flat ? "lines" : "triangles", "1", static_cast<real>(mesh.corners.size() + mesh.lines.size())}};
 }
 
-std::size_t ReconstructionStudy::bytes() const { return 3 * x_[0].size() * sizeof(real) + maker_->bytes(); }
+std::size_t ReconstructionStudy::bytes() const {
+    return static_cast<std::size_t>(grid_.dim) * x_[0].size() * sizeof(real) + maker_->bytes();
+}
 
 }  // namespace weir::studies

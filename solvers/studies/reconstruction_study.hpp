@@ -1,5 +1,5 @@
-// Solver "reconstruction": particles on a lattice, or near one, that nothing moves. A step makes the surface around them, so that studies
-// can measure it, and price it.
+// Solver "reconstruction": particles on a lattice, or near one, that nothing moves, in space or on a plane. A step makes the surface around
+// them, so that studies can measure it, and price it.
 #pragma once
 #include "core/solver.hpp"
 #include "reconstruction/reconstruction.hpp"
@@ -29,7 +29,10 @@ public:
 
 private:
     GridView grid_;
-    std::array<std::vector<real>, 3> x_;
+    template <int D>
+    void fill(const scene::Scene& scene);
+
+    std::array<std::vector<real>, 3> x_;  // on a plane two of them are used
     std::unique_ptr<reconstruction::Reconstruction> maker_;
     real time_ = 0;
 };

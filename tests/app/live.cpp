@@ -13,6 +13,7 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <chrono>
@@ -25,6 +26,7 @@
 #include <fmt/core.h>
 
 #include <X11/Xlib.h>
+#include <X11/Xutil.h>
 #include <X11/keysym.h>
 
 namespace {
@@ -279,7 +281,7 @@ TEST(
     };
     const auto a = pixel(0.1, 0.15), b = pixel(0.35, 0.2), high = pixel(0.6, 0.6), beside = pixel(0.65, 0.6);
     auto* shown = play.window.interactor()->GetRenderWindow();
-    std::thread someone([&, id = reinterpret_cast< ::Window>(shown->GetGenericWindowId())] {
+    std::thread someone([&, id = reinterpret_cast<::Window>(shown->GetGenericWindowId())] {
         Fingers fingers(id, 360);
         fingers.wait(300);
         fingers.drag(a, b);
@@ -436,6 +438,33 @@ TEST("in 3D the hand acts in the plane of the camera's focus, and the session re
     const auto file = play.finish();
     EXPECT_GT(integral(play.session.simulation(), "hand_impulse_x"), 1);
     play.expect_replay(file);
+}
+
+TEST("what is seen in the window is what was drawn") {
+    Play play("solver = \"pbf\"\n" + pool);
+    play.run_for(0.05);
+    play.window.stop();
+    vtkRenderWindow* window = play.window.interactor()->GetRenderWindow();
+    window->Render();
+    const int *size = window->GetSize(), width = size[0], height = size[1];
+    vtkNew<vtkUnsignedCharArray> drawn;
+    window->GetPixelData(0, 0, width - 1, height - 1, 0, drawn);
+    XImage* seen = XGetImage(static_cast<Display*>(window->GetGenericDisplayId()), reinterpret_cast<::Window>(window->GetGenericWindowId()),
+                             0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), AllPlanes, ZPixmap);
+    ASSERT_NE(seen, nullptr);
+    const auto byte = [](unsigned long pixel, unsigned long mask) { return static_cast<int>((pixel & mask) / (mask & ~(mask - 1))); };
+    int different = 0, blue = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const unsigned long pixel = XGetPixel(seen, x, height - 1 - y);
+            const unsigned char* rgb = drawn->GetPointer(3 * (static_cast<vtkIdType>(y) * width + x));
+            different +=
+                byte(pixel, seen->red_mask) != rgb[0] || byte(pixel, seen->green_mask) != rgb[1] || byte(pixel, seen->blue_mask) != rgb[2];
+            blue += rgb[2] > rgb[0] + 30;
+        }
+    XDestroyImage(seen);
+    EXPECT_EQ(different, 0);
+    EXPECT_GT(blue, width * height / 20);  // and that is not a sheet of paper: water is over a tenth of the window
 }
 
 TEST("solvers without a hand have sessions too") {

@@ -39,7 +39,12 @@ real distance_to_triangle(const Vec<3>& p, const Vec<3>& a, const Vec<3>& b, con
     return norm(ap - (vb / whole) * ab - (vc / whole) * ac);
 }
 
-/// The nearest point of a mesh, among the triangles in cells around: farther than a cell is as far as a cell.
+real distance_to_line(const Vec<3>& p, const Vec<3>& a, const Vec<3>& b) {
+    const Vec<3> ab = b - a;
+    return norm(p - a - std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0) * ab);
+}
+
+/// The nearest point of a mesh, among the triangles or lines in cells around: farther than a cell is as far as a cell.
 class Nearest {
 public:
     Nearest(const SurfaceMesh& mesh, const GridView& grid) : mesh_(mesh), grid_(grid) {
@@ -49,6 +54,8 @@ public:
             cells_[number(cell((corner(mesh, mesh.corners[t], 0) + corner(mesh, mesh.corners[t], 1) + corner(mesh, mesh.corners[t], 2)) /
                                3.0))]
                 .push_back(t);
+        for (std::size_t l = 0; l < mesh.lines.size(); ++l)
+            cells_[number(cell(0.5 * (end(mesh, mesh.lines[l], 0) + end(mesh, mesh.lines[l], 1))))].push_back(l);
     }
     real distance(const Vec<3>& x) const {
         const std::array<int, 3> at = cell(x);
@@ -59,6 +66,10 @@ public:
                 for (I[0] = at[0] - 2; I[0] <= at[0] + 2; ++I[0]) {
                     if (!inside(I)) continue;
                     for (const std::size_t t : cells_[number(I)]) {
+                        if (!mesh_.lines.empty()) {
+                            nearest = std::min(nearest, distance_to_line(x, end(mesh_, mesh_.lines[t], 0), end(mesh_, mesh_.lines[t], 1)));
+                            continue;
+                        }
                         const auto& c = mesh_.corners[t];
                         nearest = std::min(nearest, distance_to_triangle(x, corner(mesh_, c, 0), corner(mesh_, c, 1), corner(mesh_, c, 2)));
                     }
@@ -68,8 +79,8 @@ public:
 
 private:
     std::array<int, 3> cell(const Vec<3>& x) const {
-        std::array<int, 3> I;
-        for (std::size_t a = 0; a < 3; ++a)
+        std::array<int, 3> I{};
+        for (std::size_t a = 0; a < static_cast<std::size_t>(grid_.dim); ++a)
             I[a] = std::clamp(static_cast<int>(std::floor((x[a] - grid_.origin[a]) / grid_.spacing[a])), 0, grid_.cells[a] - 1);
         return I;
     }
@@ -98,9 +109,11 @@ std::vector<Vec<3>> exact_points(const RunRecord& run, const Reference& ref) {
         for (int j = 0; j < grid.cells[1]; ++j)
             for (int i = 0; i < grid.cells[0]; ++i) {
                 Vec<3> x{{grid.origin[0] + h * (i + 0.5), grid.origin[1] + h * (j + 0.5), grid.origin[2] + h * (k + 0.5)}};
+                if (grid.dim == 2) x[2] = 0;
                 if (std::abs(depth(x, 0)) > h) continue;
-                Vec<3> g;
-                for (int a = 0; a < 3; ++a) g[a] = (depth(x + eps * Vec<3>::unit(a), 0) - depth(x - eps * Vec<3>::unit(a), 0)) / (2 * eps);
+                Vec<3> g{};
+                for (int a = 0; a < grid.dim; ++a)
+                    g[a] = (depth(x + eps * Vec<3>::unit(a), 0) - depth(x - eps * Vec<3>::unit(a), 0)) / (2 * eps);
                 points.push_back(x - (depth(x, 0) / std::max(dot(g, g), 1e-6)) * g);
             }
     return points;
@@ -152,7 +165,7 @@ std::vector<Metric> surface_metrics() {
     return {
         {.name = "surface.volume_error",
          .unit = "",
-         .doc = "|volume inside the surface / volume of the liquid - 1|.",
+         .doc = "|volume inside the surface / volume of the liquid - 1|, in 2D of areas.",
          .measure = [](const RunRecord& run, const Reference& ref) { return std::abs(volume(mesh_of(run)) / ref.number("volume") - 1); }},
         {.name = "surface.hausdorff",
          .unit = "",
@@ -161,11 +174,11 @@ std::vector<Metric> surface_metrics() {
          .measure = hausdorff},
         {.name = "surface.open_edges",
          .unit = "",
-         .doc = "Edges that are not the side of exactly two triangles.",
+         .doc = "Edges that are not the side of exactly two triangles; of lines, points that do not end one and begin another.",
          .measure = [](const RunRecord& run, const Reference&) { return static_cast<real>(topology(mesh_of(run)).open_edges); }},
         {.name = "surface.euler",
          .unit = "",
-         .doc = "Points - edges + triangles: 2 for a surface without holes.",
+         .doc = "Points - edges + triangles: 2 for a surface without holes, 0 for lines.",
          .quantity = Quantity::value,
          .measure = [](const RunRecord& run, const Reference&) { return static_cast<real>(topology(mesh_of(run)).euler); }},
         {.name = "surface.smallest_triangle",

@@ -1,5 +1,5 @@
-// A ball or a block of liquid: its volume, and how far a point lies inside it. Written out here, not taken from the shapes that scenes are
-// filled with.
+// A ball, a disc or a block of liquid: its volume, and how far a point lies inside it. Written out here, not taken from the shapes that
+// scenes are filled with.
 #include "validation/harness/reference.hpp"
 
 #include <algorithm>
@@ -17,6 +17,13 @@ Reference ball(const Vec<3>& centre, real radius) {
     ref.numbers["volume"] = 4 * std::numbers::pi / 3 * radius * radius * radius;
     ref.scalars["depth"] = [=](const Vec<3>& x, real) { return radius - norm(x - centre); };
     ref.scalars["from_edges"] = [](const Vec<3>&, real) { return infinity; };
+    return ref;
+}
+
+Reference disc(const Vec<2>& centre, real radius) {
+    Reference ref = ball({{centre[0], centre[1], 0}}, radius);
+    ref.source = "a disc (exact)";
+    ref.numbers["volume"] = std::numbers::pi * radius * radius;
     return ref;
 }
 
@@ -47,6 +54,9 @@ Reference block(const Vec<3>& lo, const Vec<3>& hi) {
 
 REFERENCE(liquid_body) {
     const auto& list = scene.root().tables("liquid");
+    if (scene.dim() == 2 && list.size() == 1 && list[0].text("shape") == "sphere")
+        return disc(list[0].vec<2>("centre"), list[0].number("radius"));
+    if (scene.dim() == 2) throw BadInput("the reference \"liquid_body\" in 2D is one disc of liquid");
     if (list.size() == 1 && list[0].text("shape") == "sphere") return ball(list[0].vec<3>("centre"), list[0].number("radius"));
     if (list.size() == 1 && list[0].text("shape") == "box") return block(list[0].vec<3>("min"), list[0].vec<3>("max"));
     throw BadInput("the reference \"liquid_body\" is one sphere or one box of liquid");

@@ -15,6 +15,7 @@
 #include <fstream>
 
 #include <sys/resource.h>
+#include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -161,6 +162,27 @@ TEST("a surface is written as triangles with normals, velocity and thickness, a 
             EXPECT_EQ(data->GetPointData()->GetArray("velocity")->GetComponent(i, a), mesh.velocity[at][a]);
             EXPECT_EQ(data->GetPointData()->GetArray("thickness")->GetTuple1(i), mesh.thickness[at]);
         }
+}
+
+TEST("the surface of a flat liquid is written as lines with normals, velocity and thickness") {
+    weir::Simulation simulation(
+        weir::scene::parse("solver = \"pbf\"\ndim = 2\ngrid = { cells = [12, 12], size = [1, 1] }\ntime = { end = 1, dt = 0.001 }\n"
+                           "liquid = [ { shape = \"box\", min = [0, 0], max = [0.5, 0.5] } ]\noutput.surface = \"anisotropic\"\n",
+                           "test.toml", weir::sim::schemas()));
+    const std::shared_ptr<weir::reconstruction::Reconstruction> maker = weir::reconstruction::reconstruction_of(simulation.scene());
+    weir::output::FrameOptions options;
+    options.surface = [maker](const weir::FieldSet& fields, real t) -> const weir::SurfaceMesh& { return maker->make(fields, t); };
+    TemporaryFolder folder;
+    Frames(folder, options).write(simulation.fields(), 0);
+    const auto data = weir::test::read_particles(folder.path() / "frames/liquid_surface_000000.vtp");
+    const auto& mesh = maker->mesh();
+    ASSERT_GT(mesh.lines.size(), 10U);
+    ASSERT_EQ(static_cast<std::size_t>(data->GetNumberOfLines()), mesh.lines.size());
+    for (vtkIdType i = 0; i < data->GetNumberOfLines(); ++i)
+        for (int end = 0; end < 2; ++end)
+            EXPECT_EQ(data->GetCell(i)->GetPointId(end), mesh.lines[static_cast<std::size_t>(i)][static_cast<std::size_t>(end)]);
+    for (const char* name : {"Normals", "velocity", "thickness"})
+        EXPECT_EQ(data->GetPointData()->GetArray(name)->GetNumberOfTuples(), data->GetNumberOfPoints());
 }
 
 TEST("every compression reads back the same numbers; single precision halves them") {

@@ -1,0 +1,65 @@
+#include "reconstruction/contour_flat.hpp"
+
+#include <cstddef>
+
+namespace weir::reconstruction {
+
+namespace {
+
+/// The point at which each side between two samples is crossed: made when it is first asked for.
+class Crossings {
+public:
+    Crossings(const Samples& samples, SurfaceMesh& mesh) : samples_(samples), mesh_(mesh), along_{points(), points()} {}
+
+    /// Of the side from sample (i, j) to the next along axis a.
+    int point(int i, int j, std::size_t a) {
+        int& number = along_[a][samples_.linear(i, j, 0)];
+        if (number >= 0) return number;
+        number = static_cast<int>(mesh_.points.size());
+        const real here = real(samples_.depth[samples_.linear(i, j, 0)]),
+                   next = real(samples_.depth[samples_.linear(i + (a == 0), j + (a == 1), 0)]);
+        Vec<3> x = samples_.position(i, j, 0);
+        x[static_cast<int>(a)] += samples_.spacing[a] * here / (here - next);
+        mesh_.points.push_back(x);
+        return number;
+    }
+
+private:
+    std::vector<int> points() const { return std::vector<int>(samples_.depth.size(), -1); }
+
+    const Samples& samples_;
+    SurfaceMesh& mesh_;
+    std::array<std::vector<int>, 2> along_;
+};
+
+}  // namespace
+
+void contour_flat(const Samples& samples, SurfaceMesh& mesh) {
+    Crossings crossings(samples, mesh);
+    const auto cell = [&](int i, int j) {
+        // corners and sides against the clock from the lower left
+        const std::array<float, 4> f{samples.depth[samples.linear(i, j, 0)], samples.depth[samples.linear(i + 1, j, 0)],
+                                     samples.depth[samples.linear(i + 1, j + 1, 0)], samples.depth[samples.linear(i, j + 1, 0)]};
+        const auto side = [&](std::size_t s) {
+            return s == 0   ? crossings.point(i, j, 0)
+                   : s == 1 ? crossings.point(i + 1, j, 1)
+                   : s == 2 ? crossings.point(i, j + 1, 0)
+                            : crossings.point(i, j, 1);
+        };
+        const auto leaves = [&](std::size_t s) { return f[s] > 0 && f[(s + 1) % 4] <= 0; };
+        const auto enters = [&](std::size_t s) { return f[s] <= 0 && f[(s + 1) % 4] > 0; };
+        // across a corner of air the liquid goes on where the middle is liquid (the mean of the corners), else it ends in two corners
+        const bool joined = f[0] + f[1] + f[2] + f[3] > 0;
+        for (std::size_t s = 0; s < 4; ++s) {
+            if (!leaves(s)) continue;
+            std::size_t to = s;
+            do to = (to + (joined ? 1 : 3)) % 4;
+            while (!enters(to));
+            mesh.lines.push_back({side(s), side(to)});
+        }
+    };
+    for (int j = 0; j + 1 < samples.n[1]; ++j)
+        for (int i = 0; i + 1 < samples.n[0]; ++i) cell(i, j);
+}
+
+}  // namespace weir::reconstruction
