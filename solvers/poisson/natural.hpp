@@ -75,6 +75,13 @@ private:
     void find_runs();
     void find_closed();
     void mark_open();
+    void gather_sums() const;
+    /// f(row), threaded over all of them; over ranks, of this one's planes.
+    template <class F>
+    void for_each_row_of_own(F&& f) const {
+        const int rows = rows_in_plane(), begin = detail::own_share.lower(0), end = detail::own_share.upper(planes());
+        parallel_for(begin * rows, end * rows, f);
+    }
     bool is_wet(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)]; }
 
     Index<D> n_{};
