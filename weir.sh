@@ -30,7 +30,7 @@ python_needs=(python3-dev pybind11-dev python3-numpy)
 docs_need=(mkdocs libjs-katex)
 package_needs=(dpkg-dev gzip lintian)
 films_need=(ffmpeg)
-tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libpetsc-real-dev pkgconf libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
+tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libpetsc-real-dev libopenmpi-dev openmpi-bin pkgconf libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
             python3-pytest python3-matplotlib jupyter-nbconvert python3-ipykernel doxygen dpkg-dev)
 
 install_missing() { # PACKAGE...
@@ -83,7 +83,7 @@ build_python() {
 build_packages() {
     install_missing "${weir_needs[@]}" "${python_needs[@]}" "${package_needs[@]}"
     local build="$here/build/package"
-    (cd "$here" && cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DWEIR_NATIVE=OFF -DWEIR_PETSC=OFF -DWEIR_TESTS=OFF -DWEIR_BENCHMARKS=OFF -DWEIR_PYTHON=ON)
+    (cd "$here" && cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DWEIR_NATIVE=OFF -DWEIR_PETSC=OFF -DWEIR_MPI=OFF -DWEIR_TESTS=OFF -DWEIR_BENCHMARKS=OFF -DWEIR_PYTHON=ON)
     cmake --build "$build"
     rm -rf "$build/packages"
     (cd "$build" && cpack -G DEB)

@@ -7,12 +7,13 @@
 namespace weir::app {
 
 namespace {
-volatile std::sig_atomic_t count = 0, first = SIGINT;
+volatile std::sig_atomic_t count = 0, first = SIGINT, hurries = 0;
 
 extern "C" void count_signal(int signal) {
     static constexpr char once[] = "\nfinishing the frame; once more: stop after this step; twice more: stop at once\n";
     count = count + 1;
-    if (count == 1) first = signal;
+    if (count == 1) first = signal == SIGTERM ? SIGTERM : SIGINT;
+    if (count == 1 && hurries && signal != SIGUSR1) count = 2;
     if (count == 1) [[maybe_unused]]
         const auto ignored = write(STDERR_FILENO, once, sizeof once - 1);
     if (count == 3) _exit(128 + first);
@@ -20,11 +21,13 @@ extern "C" void count_signal(int signal) {
 
 }  // namespace
 
-void catch_interrupts() {
+void catch_interrupts(bool over_ranks) {
+    hurries = over_ranks;
     struct sigaction action {};
     action.sa_handler = count_signal;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    if (over_ranks) sigaction(SIGUSR1, &action, nullptr);
     std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -2,6 +2,7 @@
 // interrupted, 143 terminated.
 #include "app/commands.hpp"
 #include "core/error.hpp"
+#include "distributed/ranks.hpp"
 #include "output/machine.hpp"
 
 #include <cerrno>
@@ -48,9 +49,20 @@ int run(int argc, char** argv) {
     return exit_code;
 }
 
+std::string complaint;  // the last
+
 int complain(const char* text, int exit_code) {
     std::fprintf(stderr, "%s\n", text);
+    complaint = text;
     return exit_code;
+}
+
+/// What mpirun starts several times is one run; everything else would do its work as many times.
+void join_ranks(int argc, char** argv) {
+    if (weir::distributed::started_ranks() <= 1) return;
+    if (argc > 1 && std::strcmp(argv[1], "run") == 0) return weir::distributed::join();
+    if (weir::distributed::started_rank() > 0) std::exit(weir::exit_bad_input);
+    throw weir::BadInput("only weir run goes over ranks: start anything else once");
 }
 
 /// What was printed has arrived, or the run has failed: a full disk is no success.
@@ -60,18 +72,21 @@ int flushed(int exit_code) {
 }
 
 /// Threads that wait spin for a while, which is quicker than sleeping and starves whoever they wait for where the machine is busy: at most
-/// so long as a pass between two waits takes. libgomp reads its environment before main; what a user has set stays.
+/// so long as a pass between two waits takes. Ranks of one machine share its processors. libgomp reads its environment before main; what a user
+/// has set stays.
 void bound_spinning(char** argv) {
-    if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-    setenv("GOMP_SPINCOUNT", "20000", 1);
+    const int threads = std::getenv("OMP_NUM_THREADS") ? 0 : weir::distributed::threads_of_rank();
+    const bool bounded = std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT");
+    if (bounded && threads == 0) return;
+    if (!bounded) setenv("GOMP_SPINCOUNT", "20000", 1);
+    if (threads > 0) setenv("OMP_NUM_THREADS", std::to_string(threads).c_str(), 1);
     execv("/proc/self/exe", argv);  // where that fails the run goes on as it is
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    bound_spinning(argv);
+/// Runs, and tells what went wrong.
+int guarded_run(int argc, char** argv) {
     try {
+        join_ranks(argc, argv);
         return flushed(run(argc, argv));
     } catch (const weir::NumericalFailure& failure) {
         return complain(failure.what(), weir::exit_numerical_failure);
@@ -86,4 +101,12 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         return complain((std::string("a mistake in weir itself: ") + error.what()).c_str(), 70);  // EX_SOFTWARE of sysexits.h
     }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    bound_spinning(argv);
+    const int exit_code = guarded_run(argc, argv);
+    return weir::distributed::leave(exit_code, complaint);
 }

@@ -6,6 +6,7 @@
 #include "app/progress.hpp"
 #include "app/space.hpp"
 #include "core/parallel.hpp"
+#include "core/slabs.hpp"
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
@@ -20,6 +21,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -61,48 +63,72 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
 }
 
-/// Writes everything that a run leaves behind, and shows how it goes.
+Cut cut_of_run(const scene::Scene& scene) {
+    return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks());
+}
+
+std::string explain_ranks(const scene::Scene& scene) {
+    if (!slabs().several()) return {};
+    const Cut cut = cut_of_run(scene);
+    std::string text = "over " + std::to_string(cut.ranks()) + " ranks, cut along " + (scene.dim() == 2 ? "y" : "z") + " before planes";
+    for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
+    return text + "; every rank holds the whole grids and computes its own planes of them\n";
+}
+
+/// What each rank has sent.
+std::vector<Traffic> traffic_of_all() {
+    std::vector<Traffic> list(static_cast<std::size_t>(slabs().ranks()));
+    std::vector<std::size_t> begins(list.size() + 1);
+    std::iota(begins.begin(), begins.end(), std::size_t{0});
+    list[static_cast<std::size_t>(slabs().rank())] = slabs().traffic();
+    slabs().gather_parts(list.data(), sizeof(Traffic), begins);
+    return list;
+}
+
+/// Writes everything that a run leaves behind, and shows how it goes. Over ranks the first writes; what is looked at all look at.
 class Recorder final : public sim::Watcher {
 public:
     Recorder(const Simulation& simulation, const std::filesystem::path& folder, bool restarted, bool quiet)
-        : frames_(open_frames(simulation, folder, restarted)),
-          probes_(folder / "probes"),
+        : probes_(folder / "probes"),
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
+        by_first_rank([&] { frames_ = open_frames(simulation, folder, restarted); });
+        if (slabs().several()) log_.set_ranks(cut_of_run(simulation.scene()), {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
         if (restarted) log_.resume(simulation.steps());
-        write_log("running");  // where the disk fills later, there is a file that can still say so
+        by_first_rank([&] { write_log("running"); });  // where the disk fills later, there is a file that can still say so
     }
     /// What is to be measured of the run: told in run.json at its end.
     void measure(Measured& measured) { measured_ = &measured; }
     void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
         if (measured_) measured_->on_step(report, seconds);
-        log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
-        probes_.update(simulation.probes());  // as they come: a run that is killed leaves all that it measured
-        progress_.show(simulation.time(), simulation.steps());
-        for (; told_ < simulation.warnings().size(); ++told_) {
-            progress_.end();
-            std::fprintf(stderr, "%s\n", simulation.warnings()[told_].c_str());
-        }
+        by_first_rank([&] { tell_step(simulation, report, seconds); });
     }
     void on_frame(const Simulation& simulation) override {
-        if (frames_) frames_->write(simulation.fields(), simulation.time());
-        probes_.update(simulation.probes());  // those of the start too
-        // the log of a long run is long: not more than a few per cent of the time goes into replacing it
-        const auto now = clock::now();
-        if (now - written_ > 20 * write_time_) write_log("running");
+        const FieldSet fields = output::can_write_frames() ? simulation.fields() : FieldSet{};
+        by_first_rank([&] {
+            if (frames_) frames_->write(fields, simulation.time());
+            probes_.update(simulation.probes());  // those of the start too
+            // the log of a long run is long: not more than a few per cent of the time goes into replacing it
+            const auto now = clock::now();
+            if (now - written_ > 20 * write_time_) write_log("running");
+        });
     }
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
-        probes_.update(simulation.probes());
-        log_.set_solver_bytes(simulation.solver().bytes());
+        if (slabs().several()) log_.set_ranks(cut_of_run(simulation.scene()), traffic_of_all());
         if (measured_) log_.set_measured(measured_->values());
-        write_log(status);
+        by_first_rank([&] {
+            probes_.update(simulation.probes());
+            log_.set_solver_bytes(simulation.solver().bytes());
+            write_log(status);
+        });
     }
     /// The run broke off: that is said if nothing else can be written any more.
     void fail(const std::string& why) noexcept {
         progress_.end();
+        if (slabs().rank() > 0) return;
         try {
             write_log("failed: " + why);
         } catch (const std::exception&) {
@@ -113,6 +139,15 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
+    void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
+        log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
+        probes_.update(simulation.probes());  // as they come: a run that is killed leaves all that it measured
+        progress_.show(simulation.time(), simulation.steps());
+        for (; told_ < simulation.warnings().size(); ++told_) {
+            progress_.end();
+            std::fprintf(stderr, "%s\n", simulation.warnings()[told_].c_str());
+        }
+    }
     void write_log(const std::string& status) {
         const auto start = clock::now();
         std::vector<std::string> names;
@@ -192,8 +227,10 @@ int simulate(const RunArguments& arguments) {
 
     scene::Scene scene = arguments.scene.empty() ? scene_of(*checkpoint, overrides)
                                                  : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
-    if (!arguments.explain)
-        sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run);
+    sim::require_ranks(scene, slabs().ranks());
+    if (!arguments.explain)  // ranks hold the whole grids each, and share a machine for all that is known here
+        sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run,
+                            sim::available_memory() / slabs().ranks());
     Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
     for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
@@ -201,25 +238,25 @@ int simulate(const RunArguments& arguments) {
                      effect.c_str());
     if (arguments.explain) {
         const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
-        std::fputs((explain(simulation) + "a run writes " + space).c_str(), stdout);
+        std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation.scene())).c_str(), stdout);
         return exit_success;
     }
     if (checkpoint && simulation.finished()) return tell_finished(simulation);
     output::check(frame_options(simulation.scene()), simulation.fields());
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
-    output::require_writable(folder);
+    by_first_rank([&] { output::require_writable(folder); });
     const std::string space = check_space(simulation, folder, arguments.any_size);
     if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
     Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
     if (measured) recorder.measure(*measured);
-    catch_interrupts();
+    catch_interrupts(slabs().several());
     sim::LoopOptions options;
     options.folder = folder;
     options.checkpoint_every = arguments.checkpoint_every;
     options.restarted = checkpoint.has_value();
-    options.stop_requests = interruptions;
+    options.stop_requests = [] { return slabs().largest(interruptions()); };
     sim::Ending ending;
     try {
         ending = sim::run(simulation, recorder, options);
@@ -237,7 +274,7 @@ int simulate(const RunArguments& arguments) {
     if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
                  folder.c_str());
-    return exit_interrupted();
+    return slabs().largest(exit_interrupted());
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ explained() { # REASON
         *"no nbconvert"*) ! /usr/bin/python3 -c 'import ipykernel, nbconvert' 2>/dev/null ;;
         *"no Xvfb"*) ! has_display ;;
         *"no chromium"*) ! has_browser ;;
+        *"no mpirun"*) ! has mpirun ;;
+        *"built without MPI"*) ! has mpicc ;;
         *"no valgrind"*) ! has valgrind ;;
         *"valgrind does not know this build's instructions"*) grep -q avx512f /proc/cpuinfo ;;
         *"no ffmpeg"*) ! has ffmpeg ;;

@@ -1,7 +1,8 @@
 // A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis;
-// sums are taken plane by plane and then in order, so no result depends on the number of threads.
+// sums are taken plane by plane and then in order, so no result depends on the number of threads, nor of ranks (core/slabs.hpp).
 #pragma once
 #include "core/parallel.hpp"
+#include "core/slabs.hpp"
 #include "core/types.hpp"
 
 #include <algorithm>
@@ -55,12 +56,56 @@ private:
     std::vector<T> data_;
 };
 
+/// f(plane) for the planes [lo, hi) that are this rank's, in contiguous blocks, one a thread.
+template <class F>
+void for_each_plane(int lo, int hi, F&& f) {
+    parallel_for(detail::own_share.lower(lo), detail::own_share.upper(hi), f);
+}
+
+namespace detail {
+/// f of all planes: this rank's own from here, the others' from whoever owns them.
+template <class F>
+const std::vector<real>& parts_of_planes(int planes, F&& f) {
+    auto& part = reduction_scratch(static_cast<std::size_t>(planes));
+    for_each_plane(0, planes, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+    if (over_ranks()) slabs().gather(*own_share.cut, {part.data(), sizeof(real), planes});
+    return part;
+}
+}  // namespace detail
+
+/// f(0) + f(1) + ... over planes, added in that order.
+template <class F>
+real plane_sum(int planes, F&& f) {
+    return detail::sum_in_order(detail::parts_of_planes(planes, f), planes);
+}
+
+/// The largest of f over planes; NaN if any is NaN.
+template <class F>
+real plane_max(int planes, F&& f) {
+    return detail::largest_of(detail::parts_of_planes(planes, f), planes);
+}
+
+template <class T, int D>
+Planes planes_of(Grid<T, D>& q) {
+    return {q.data(), sizeof(T) * static_cast<std::size_t>(q.stride(D - 1)), q.extent()[D - 1]};
+}
+/// The `deep` planes beyond this rank's cuts, from whoever owns them.
+template <class T, int D>
+void refresh(Grid<T, D>& q, bool ring, int deep = 1) {
+    if (over_ranks()) slabs().refresh(*detail::own_share.cut, planes_of(q), deep, ring);
+}
+/// All planes, on all ranks.
+template <class T, int D>
+void gather(Grid<T, D>& q) {
+    if (over_ranks()) slabs().gather(*detail::own_share.cut, planes_of(q));
+}
+
 /// f(I) for every I in [lo, hi), threaded over the slowest axis; x runs innermost.
 template <int D, class F>
 void for_each_in(const Index<D>& lo, const Index<D>& hi, F&& f) {
     for (int d = 0; d < D; ++d)
         if (hi[d] <= lo[d]) return;
-    parallel_for(lo[D - 1], hi[D - 1], [&](int outer) {
+    for_each_plane(lo[D - 1], hi[D - 1], [&](int outer) {
         Index<D> I = lo;
         I[D - 1] = outer;
         if constexpr (D == 2) {
@@ -81,7 +126,7 @@ void for_each_cell(const Index<D>& extent, F&& f) {
 /// Sum of f(I) over a box, plane by plane along the slowest axis and then in order: bitwise equal for any thread count.
 template <int D, class F>
 real sum_over(const Index<D>& extent, F&& f) {
-    return ordered_sum(extent[D - 1], [&](int outer) {
+    return plane_sum(extent[D - 1], [&](int outer) {
         Index<D> I{};
         I[D - 1] = outer;
         real sum = 0;
@@ -98,7 +143,7 @@ real sum_over(const Index<D>& extent, F&& f) {
 /// Largest f(I) over a box; NaN if any is NaN (so that a maximum never hides one). -infinity for an empty box.
 template <int D, class F>
 real max_over(const Index<D>& extent, F&& f) {
-    return ordered_max(extent[D - 1], [&](int outer) {
+    return plane_max(extent[D - 1], [&](int outer) {
         Index<D> I{};
         I[D - 1] = outer;
         real m = -infinity;

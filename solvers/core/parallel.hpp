@@ -40,23 +40,15 @@ void parallel_for(int begin, int end, F&& f) {
 namespace detail {
 /// Scratch of the calling thread for ordered reductions: grows, never shrinks, so that later steps allocate nothing.
 std::vector<real>& reduction_scratch(std::size_t count);
-}  // namespace detail
 
-/// f(0) + f(1) + ... + f(count - 1), added in that order.
-template <class F>
-real ordered_sum(int count, F&& f) {
-    auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
-    parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+inline real sum_in_order(const std::vector<real>& part, int count) {
     real sum = 0;
     for (int i = 0; i < count; ++i) sum += part[static_cast<std::size_t>(i)];
     return sum;
 }
 
-/// The largest of f(0) .. f(count - 1); NaN if any is NaN.
-template <class F>
-real ordered_max(int count, F&& f) {
-    auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
-    parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+/// NaN if any is NaN.
+inline real largest_of(const std::vector<real>& part, int count) {
     real largest = -infinity;
     for (int i = 0; i < count; ++i) {
         const real value = part[static_cast<std::size_t>(i)];
@@ -64,6 +56,23 @@ real ordered_max(int count, F&& f) {
         if (std::isnan(largest)) break;
     }
     return largest;
+}
+}  // namespace detail
+
+/// f(0) + f(1) + ... + f(count - 1), added in that order.
+template <class F>
+real ordered_sum(int count, F&& f) {
+    auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
+    parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+    return detail::sum_in_order(part, count);
+}
+
+/// The largest of f(0) .. f(count - 1); NaN if any is NaN.
+template <class F>
+real ordered_max(int count, F&& f) {
+    auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
+    parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+    return detail::largest_of(part, count);
 }
 
 }  // namespace weir

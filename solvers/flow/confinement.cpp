@@ -45,6 +45,7 @@ private:
             vorticity(s, first, count, f);
             find_magnitude(f, first, count, &magnitude(first));
         });
+        refresh(magnitude, false);
         const real strength = epsilon * *std::min_element(s.u.h.begin(), s.u.h.end());
         for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
             Row n[D];
@@ -52,6 +53,7 @@ private:
             normalise(n, count);
             cross(n, &s.cells(first), strength, first, count, f);
         });
+        refresh(*f[D - 1], false);
     }
     void push(MacState<D>& s, real dt) const {
         const auto f = force_fields(s);

@@ -73,7 +73,7 @@ int Helmholtz<D>::solve(Grid<real, D>& r, real a, const Mask<D>& mask, std::span
         rr = dot(r, r);
         const real beta = rr / last;
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) { direction_(I) = r(I) + beta * direction_(I); });
-        fill_ghosts(direction_, boundary_);
+        fill_ghosts(direction_, boundary_, 1);
     }
     r.swap(solution_);
     return iteration;

@@ -16,11 +16,13 @@ namespace weir::flow {
 /// scheme. Enters and leaves with ∇·u = 0 to the projection's tolerance.
 template <int D>
 StepReport FlowSolver<D>::step(real dt) {
+    const OwnPlanes mine(cut_, ghost_layers);
+    whole_ = cut_.empty();
     real t = state_.time;
     apply(Stage::source, dt);  // emitters
     for (const Substep& stage : substeps(options_.scheme)) {
         const real part = stage.fraction() * dt;
-        remember();                    // uⁿ, qⁿ with their ghosts
+        remember(dt);                  // uⁿ, qⁿ with their ghosts
         depart(dt);                    // u += dt f(uⁿ, qⁿ): all of it with fluxes, half where paths are followed to second order
         advect_fields(dt);             // Dq/Dt = 0    only fields that an effect asked for
         advect_velocity(dt);           // Du/Dt = 0
@@ -49,6 +51,12 @@ FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& sc
     Emitters<D>::needs(scene, plan);
     for (const auto& name : initial_fields(scene)) plan.advected(name);
     return plan;
+}
+
+/// Planes beyond a cut that a path of so many cells reads, with the stencil at its end.
+int planes_reached(real cells, int planes) {
+    if (!(cells < planes)) return planes;
+    return std::min(planes, static_cast<int>(std::ceil(cells)) + ghost_layers);
 }
 
 /// Fastest crossing of a cell along a moving wall or through an inflow [1/s].
@@ -119,7 +127,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       side_rate_(fastest_side(state_)),
       wants_vorticity_(lists(scene, "vorticity")),
       wants_divergence_(lists(scene, "divergence")),
-      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
+      hand_(geometry::make_hand(scene, kinds_of_hand(scene))),
+      cut_(cut_of(state_.extent()[D - 1], slabs().ranks())) {
     if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::implicit));
     const auto& cells = state_.cells.values();
     if (std::none_of(cells.begin(), cells.end(), [](poisson::Cell c) { return c == poisson::Cell::fluid; }))
@@ -165,15 +174,27 @@ void FlowSolver<D>::apply(Stage stage, real dt) {
 }
 
 template <int D>
-void FlowSolver<D>::remember() {
+void FlowSolver<D>::remember(real dt) {
     const auto timed = passes_.time("ghosts");
     real fluid = 0;  // max |u|/h
     for (int a = 0; a < D; ++a)
         fluid = larger_or_nan(
-            fluid, fill_and_measure(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]) / state_.u.h[a]);
-    solids_.extend_velocity(state_);
+            fluid, fill_planes_and_measure(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]) / state_.u.h[a]);
+    const real fastest = rate(fluid);
+    trace_.set_max_rate(fastest);
+    set_reach(planes_reached(dt * fastest, state_.extent()[D - 1]));
+    for (int a = 0; a < D; ++a) fill_end_planes(state_.before[a], state_.boundary[static_cast<std::size_t>(a)]);
+    extend_velocity();
     remember_fields();
-    trace_.set_max_rate(rate(fluid));
+}
+
+/// What is continued into solids is of the neighbours' values, which other ranks may own, and is wanted beyond the cuts too.
+template <int D>
+void FlowSolver<D>::extend_velocity() {
+    if (!solids_.any()) return;
+    for (int a = 0; a < D; ++a) refresh(state_.u[a], state_.sides.periodic(D - 1), ghost_layers);
+    solids_.extend_velocity(state_);
+    for (int a = 0; a < D; ++a) refresh(state_.before[a], state_.boundary[static_cast<std::size_t>(a)]);
 }
 
 template <int D>
@@ -181,14 +202,23 @@ void FlowSolver<D>::remember_fields() {
     for (auto& field : state_.fields) {
         if (field.derived) continue;
         fill(field.before, field.values, field.boundary);
+        if (!solids_.any()) continue;
         solids_.extend_field(state_, field.before);
+        refresh(field.before, field.boundary);
     }
+}
+
+/// A force on a face is of the cells on both its sides.
+template <int D>
+void FlowSolver<D>::refresh_fields() {
+    for (auto& field : state_.fields) refresh(field.values, state_.sides.periodic(D - 1));
 }
 
 /// With fluxes all explicit rates are of the fields of before. The trapezoidal rule along paths takes half of every term where they begin:
 /// what is carried has it in.
 template <int D>
 void FlowSolver<D>::depart(real dt) {
+    refresh_fields();
     if (options_.scheme == Scheme::conservative) {
         lift(dt);
         return apply(Stage::force, dt);
@@ -211,6 +241,7 @@ template <int D>
 void FlowSolver<D>::arrive(real dt) {
     if (options_.scheme == Scheme::conservative) return;
     const real part = options_.scheme == Scheme::maccormack ? 0.5 * dt : dt;
+    refresh_fields();
     lift(part);
     apply(Stage::force, part);
     sync_periodic(state_.u, state_.sides);
@@ -360,6 +391,7 @@ template <int D>
 StepReport FlowSolver<D>::report(real dt) {
     const real fastest = fastest_ = max_rate(state_.u);
     if (!std::isfinite(fastest)) throw NumericalFailure("velocity", "the velocity is not finite");
+    if (!cut_.empty()) check_own_planes();
     return {.dt = dt,
             .cfl = dt * fastest,
             .max_divergence = max_divergence(state_),
@@ -369,8 +401,31 @@ StepReport FlowSolver<D>::report(real dt) {
             .residual_max = report_->residual_max / (state_.u.h[0] * state_.u.h[0])};
 }
 
+/// What is looked at in whole after each step of one process.
+template <int D>
+void FlowSolver<D>::check_own_planes() const {
+    const auto check = [](const Grid<real, D>& q, const std::string& name) {
+        if (!std::isfinite(max_magnitude(q))) throw NumericalFailure(name, name + " is no longer finite");
+    };
+    check(state_.p, "pressure");
+    for (const auto& field : state_.fields) check(field.values, field.name);
+}
+
+/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
+template <int D>
+void FlowSolver<D>::make_whole() const {
+    if (whole_) return;
+    const OwnPlanes mine(cut_);
+    auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
+    for (int a = 0; a < D; ++a) gather(state.u[a]);
+    gather(state.p);
+    for (auto& field : state.fields) gather(field.values);
+    whole_ = true;
+}
+
 template <int D>
 real FlowSolver<D>::advised_dt() const {
+    const OwnPlanes mine(cut_);
     const real fastest = last_rate();
     return std::min({fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_), heat_ ? heat_->max_dt(state_) : infinity});
 }
@@ -381,12 +436,14 @@ StepLimit FlowSolver<D>::stable_dt() const {
     if (const real most = heat_ ? heat_->stable_dt(state_) : infinity; most < infinity)
         return {most, "explicit conduction of heat is stable up to it"};
     if (options_.scheme != Scheme::conservative) return {};
+    const OwnPlanes mine(cut_);
     const real fastest = last_rate();
     return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
 }
 
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
+    make_whole();
     FieldSet set = field_set(state_);
     if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
@@ -408,6 +465,7 @@ FieldSet FlowSolver<D>::fields() const {
 
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
+    make_whole();
     auto list = flow::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
@@ -430,6 +488,7 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
 
 template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
+    make_whole();
     state_.save(to);
     if (bodies_) bodies_->save(to);
     to.put_value("impulse", impulse_);
@@ -444,6 +503,7 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
     if (hand_ && from.has("hand")) hand_->restore(from);
+    whole_ = true;
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (from.has("smoke_in_solids")) {

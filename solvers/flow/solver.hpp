@@ -37,6 +37,8 @@ public:
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
+    /// Over ranks, of the planes that each has computed.
+    bool checks_itself() const override { return !cut_.empty(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
@@ -51,7 +53,8 @@ public:
 
 private:
     void apply(Stage stage, real dt);
-    void remember();
+    void remember(real dt);
+    void extend_velocity();
     void remember_fields();
     void depart(real dt);
     void arrive(real dt);
@@ -69,6 +72,9 @@ private:
     real rate(real fluid) const;
     real last_rate() const;
     StepReport report(real dt);
+    void refresh_fields();
+    void check_own_planes() const;
+    void make_whole() const;
 
     Effects<MacState<D>> effects_;
     MacState<D> state_;
@@ -95,6 +101,8 @@ private:
     mutable Grid<real, D> divergence_;
     std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
+    Cut cut_;                    // none in one process
+    mutable bool whole_ = true;  // all planes stand here, not this rank's alone
 };
 
 }  // namespace weir::flow

@@ -87,7 +87,7 @@ template <int D, class Weight>
 void set_mask(Mask<D>& mask, const Index<D>& extent, Weight weight) {
     if (mask.empty()) mask = Mask<D>(extent);
     for_each_cell(extent, [&](const Index<D>& I) { mask(I) = weight(I) ? 1 : 0; });
-    fill_ghosts(mask, Boundary<D>{});
+    fill_ghosts(mask, Boundary<D>{}, 1);
 }
 
 /// du/dt = ν ∇²u

@@ -78,6 +78,15 @@ void RunLog::add_step(std::int64_t step, real t, const StepReport& report, const
     steps_.push_back(j.dump());
 }
 
+void RunLog::set_ranks(const Cut& cut, const std::vector<Traffic>& sent) {
+    json ranks = {{"count", cut.ranks()}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
+    for (const Traffic& rank : sent) {
+        ranks["messages"].push_back(rank.messages);
+        ranks["bytes"].push_back(rank.bytes);
+    }
+    ranks_ = ranks.dump();
+}
+
 void RunLog::resume(std::int64_t last) {
     std::ifstream old(file_);
     const json j = json::parse(old, nullptr, false);
@@ -104,6 +113,7 @@ void RunLog::write() const {
     json measured = json::object();
     for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);
     if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();
+    if (!ranks_.empty()) text += ",\n \"ranks\": " + ranks_;
     text += ",\n \"steps\": [";
     for (std::size_t i = 0; i < steps_.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + steps_[i];
     write_file(file_, text + "\n ]\n}\n");

@@ -1,6 +1,7 @@
 // run.json: the scene as understood, the machine, and what every step answered.
 #pragma once
 #include "core/passes.hpp"
+#include "core/slabs.hpp"
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
 
@@ -27,6 +28,8 @@ public:
     void set_solver_bytes(std::size_t bytes) { solver_bytes_ = bytes; }
     /// What was measured of the finished run, by name. Numbers that are not finite are left out.
     void set_measured(std::map<std::string, double> values) { measured_ = std::move(values); }
+    /// Where the ranks of the run are cut, and what each has sent; it is told of several ranks only.
+    void set_ranks(const Cut& cut, const std::vector<Traffic>& sent);
     /// Takes over the steps up to `last` of an earlier run's file, where it can be read.
     void resume(std::int64_t last);
     /// Replaces the file. Throws OutputError.
@@ -45,6 +48,7 @@ private:
     std::vector<std::string> warnings_;
     std::size_t solver_bytes_ = 0;
     std::map<std::string, double> measured_;
+    std::string ranks_;  // one JSON object, or nothing
 };
 
 }  // namespace weir::output

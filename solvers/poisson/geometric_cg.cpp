@@ -40,6 +40,13 @@ bool GeometricCg<D>::setup(const Natural<D>& problem) {
     return true;
 }
 
+/// Over ranks, of the planes of others.
+template <int D>
+void GeometricCg<D>::gather_sums() {
+    const Level<D>& finest = hierarchy_.finest();
+    if (!finest.cut.empty()) slabs().gather(finest.cut, {sums_.data(), sizeof(PlaneSums), finest.at.planes()});
+}
+
 template <int D>
 template <class F>
 real GeometricCg<D>::total(F&& of) const {
@@ -52,7 +59,7 @@ real GeometricCg<D>::total(F&& of) const {
 template <int D>
 void GeometricCg<D>::gather(const Natural<D>& problem, const Grid<real, D>& p) {
     const Layout<D>& at = hierarchy_.finest().at;
-    parallel_for(0, at.planes(), [&](int q) {
+    for_each_plane(0, at.planes(), [&](int q) {
         for (int j = 0; j < at.rows_in_plane(); ++j) {
             const int row = problem.row(q, j);
             if (problem.is_dry(row)) continue;
@@ -71,6 +78,7 @@ real GeometricCg<D>::begin_at_zero(const Natural<D>& problem, const Grid<real, D
         residual_plane(problem, nullptr, b, q);
         start_plane(hierarchy_.finest(), q);
     });
+    gather_sums();
     return total([](const PlaneSums& s) { return s.rr; });
 }
 
@@ -79,7 +87,8 @@ template <int D>
 real GeometricCg<D>::begin_at(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b) {
     at_zero_ = false;
     gather(problem, p);
-    parallel_for(0, problem.planes(), [&](int q) { residual_plane(problem, p.data(), b, q); });
+    for_each_plane(0, problem.planes(), [&](int q) { residual_plane(problem, p.data(), b, q); });
+    gather_sums();
     return total([](const PlaneSums& s) { return s.rr; });
 }
 
@@ -96,11 +105,13 @@ real GeometricCg<D>::replace_residual(const Natural<D>& problem, Grid<real, D>& 
         residual_plane(problem, p.data(), b, q);
         if (begin_cycle) start_plane(finest, q);
     };
+    const auto exchange = [&](int) { refresh(p, finest.at.periodic[D - 1]); };
     if (begin_cycle)
-        VCycle<D>(hierarchy_).down(0, 2, stages);
+        VCycle<D>(hierarchy_).down(0, 2, stages, exchange);
     else
-        VCycle<D>::wavefront(finest, 2, false).run(VCycle<D>::threads_for(finest), stages);
+        VCycle<D>::run(finest, VCycle<D>::wavefront(finest, 2, false), stages, exchange);
     at_zero_ = false;
+    gather_sums();
     return total([](const PlaneSums& s) { return s.rr; });
 }
 
@@ -116,14 +127,21 @@ void GeometricCg<D>::finish_cycle() {
     VCycle<D> cycle(hierarchy_);
     cycle.below(0);
     cycle.up(0, 2, [&](int stage, int q) { stage == 0 ? last_half_sweep(q) : black_products(q); });
+    gather_sums();
     gamma_ = total([](const PlaneSums& s) { return s.ru; });
     delta_ = total([](const PlaneSums& s) { return s.uAu; });
 }
 
 template <int D>
 real GeometricCg<D>::iterate_down(real alpha, real beta) {
-    VCycle<D>(hierarchy_).down(0, 2, [&](int stage, int q) { stage == 0 ? turn_plane(q, beta) : advance_plane(q, alpha); });
+    const Level<D>& finest = hierarchy_.finest();
+    VCycle<D>(hierarchy_).down(
+        0, 2, [&](int stage, int q) { stage == 0 ? turn_plane(q, beta) : advance_plane(q, alpha); },
+        [&](int) {
+            for (float* p : p_) finest.refresh(p);
+        });
     at_zero_ = false;
+    gather_sums();
     return total([](const PlaneSums& s) { return s.rr; });
 }
 
@@ -133,6 +151,7 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
     report.iterations = 0;
     report.history.clear();
     bool begun = problem.clean(p);  // has the cycle for r begun?
+    refresh(p, hierarchy_.finest().at.periodic[D - 1]);
     real norm = std::sqrt(begun ? begin_at_zero(problem, b) : begin_at(problem, p, b));
     const real b_norm = begun ? norm : problem.norm(b);
     if (norm > b_norm || b_norm == 0) {

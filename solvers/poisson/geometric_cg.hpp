@@ -17,6 +17,8 @@ class GeometricCg {
 public:
     /// False if the shape of the problem does not suit: nothing else may be called then.
     bool setup(const Natural<D>& problem);
+    /// Over ranks: are iterations shared by them now? Else each must do all.
+    bool share() { return hierarchy_.share(detail::own_share.cut); }
     /// Iterates on A p = b; fills the report but for times, bytes and components. Answers false if it stopped because convergence is slow:
     /// p then holds what has been reached.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);
@@ -50,6 +52,7 @@ private:
     void advance_plane(int q, real alpha);
     void black_products(int q);
     void last_half_sweep(int q);
+    void gather_sums();
     template <class F>
     real total(F&& of) const;
 

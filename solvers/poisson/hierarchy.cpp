@@ -2,7 +2,7 @@
 
 #include "poisson/face_rows.hpp"
 #include "poisson/packing.hpp"
-#include "poisson/transfer.hpp"
+#include "poisson/v_cycle.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -120,6 +120,7 @@ bool Hierarchy<D>::plan(const Natural<D>& problem) {
     };
     if (!levels_.empty() && same(levels_.front())) return true;
     levels_.clear();
+    shared_as_ = {};
     for (int a = 0; a < D; ++a)
         if (finest.at.periodic[static_cast<std::size_t>(a)] && finest.at.n[a] % 2 == 1) return false;
     levels_.push_back(std::move(finest));
@@ -185,6 +186,29 @@ bool Hierarchy<D>::build(const Natural<D>& problem) {
     for (std::size_t l = 0; l < levels_.size(); ++l) fill(problem, l);
     build_coarsest();
     return true;
+}
+
+/// A level is cut where it is worth the messages and where no coarse plane is made of planes of two ranks. The coarsest is everybody's.
+template <int D>
+bool Hierarchy<D>::share(const Cut* cut) {
+    const bool known = cut == nullptr ? shared_as_.empty() : shared_as_ == *cut;
+    if (known) return !levels_.empty() && !levels_[0].cut.empty();
+    shared_as_ = cut == nullptr ? Cut{} : *cut;
+    for (auto& level : levels_) level.cut = {};
+    if (shared_as_.empty() || levels_.empty()) return false;
+    levels_[0].cut = shared_as_;
+    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
+        Level<D>& level = levels_[l];
+        const auto straddled = [&](int plane) { return plane % 2 == 1 && plane != level.cut.planes(); };
+        const auto& at = level.cut.at;
+        if (level.cells() < small_level || (level.coarsened[D - 1] && std::any_of(at.begin(), at.end(), straddled))) {
+            level.cut = {};
+            break;
+        }
+        levels_[l + 1].cut = VCycle<D>::halved_cut(level);
+    }
+    levels_.back().cut = {};
+    return !levels_[0].cut.empty();
 }
 
 template <int D>

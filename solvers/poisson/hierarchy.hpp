@@ -15,6 +15,8 @@ public:
     bool build(const Natural<D>& problem);
     std::vector<Level<D>>& levels() { return levels_; }
     Level<D>& finest() { return levels_.front(); }
+    /// Cuts the large levels as the finest is cut, or none; answers whether the finest is.
+    bool share(const Cut* cut);
     /// u = A⁻¹ r on the coarsest level.
     void solve_coarsest();
     std::size_t bytes() const;
@@ -26,6 +28,7 @@ private:
     void build_coarsest();
 
     std::vector<Level<D>> levels_;
+    Cut shared_as_{};  // what the levels' cuts follow from
     Arena arena_;
     SparseCholesky coarsest_;
     Matrix coarsest_matrix_;

@@ -2,6 +2,7 @@
 // parity s holds cell i = 2m + s in the red array and i = 2m + 1 − s in the black one. The x-neighbours of entry m are then entries m and
 // m ± 1 of the other colour's row, all other neighbours are entry m, and every loop is contiguous. Entries outside fluid are zero.
 #pragma once
+#include "core/slabs.hpp"
 #include "poisson/arena.hpp"
 #include "poisson/poisson.hpp"
 #include "poisson/simd.hpp"
@@ -99,7 +100,20 @@ struct Level {
     float* zero = nullptr;
     std::uint8_t* fluid = nullptr;
 
+    Cut cut{};  // over ranks: who owns which planes; empty where every rank does all
+
     std::size_t cells() const { return product(at.n); }
+    /// The planes of a packed vector. An entry earlier than their rows, as a periodic row keeps what its first entry reads before itself.
+    template <class T>
+    Planes planes_of(T* vector) const {
+        const int rows = at.rows_in_plane();
+        return {vector - 1, sizeof(T) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(at.stride), at.planes()};
+    }
+    /// Over ranks: the planes beside the cuts, after each of a sweep's stages has written them.
+    template <class T>
+    void refresh(T* vector) const {
+        if (!cut.empty()) slabs().refresh(cut, planes_of(vector), 1, at.periodic[D - 1]);
+    }
     /// Whether no cell of the row is fluid; known once the spans are.
     bool is_dry(int row) const { return span_start[static_cast<std::size_t>(row)] == span_start[static_cast<std::size_t>(row) + 1]; }
 };

@@ -30,14 +30,14 @@ public:
     /// takes over where it stopped. It is built when a solve first needs it, and whether one does depends on that solve alone.
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) override {
         const Stopwatch watch;
+        geometric_.share();
         check_extents(p.extent() == extent_, "p");
         check_extents(b.extent() == extent_, "b");
         report_.iterations = 0;
         bool gave_up = !geometric_fits_;
         if (geometric_fits_) gave_up = !geometric_.solve(problem_, p, b, options_, report_);
         if (gave_up) {
-            if (algebraic_ == nullptr) set_up_algebraic();
-            const Report& rest = algebraic_->continue_solve(report_, p, b);
+            const Report& rest = continue_alone(p, b);
             report_.iterations = rest.iterations;
             report_.history = rest.history;
             report_.residual_before = rest.residual_before;
@@ -57,7 +57,19 @@ public:
 
     std::size_t bytes() const override { return problem_.bytes() + geometric_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0); }
 
+    bool shares_planes() const override { return geometric_fits_ && const_cast<GeometricCg<D>&>(geometric_).share(); }
+
 private:
+    /// Over ranks, by each of them.
+    const Report& continue_alone(Grid<real, D>& p, const Grid<real, D>& b) {
+        whole_b_ = over_ranks() ? b : Grid<real, D>();
+        gather(p);
+        gather(whole_b_);
+        const bool several = over_ranks();
+        const AllPlanes all;
+        if (algebraic_ == nullptr) set_up_algebraic();
+        return algebraic_->continue_solve(report_, p, several ? whole_b_ : b);
+    }
     void set_up_algebraic() {
         algebraic_ = std::make_unique<ConjugateGradient<D, AlgebraicMultigrid>>(options_);
         algebraic_->setup(problem_.as_operator());
@@ -68,6 +80,7 @@ private:
     Natural<D> problem_;
     GeometricCg<D> geometric_;
     bool geometric_fits_ = false;
+    Grid<real, D> whole_b_;  // over ranks, where the geometric cycle has given up
     std::unique_ptr<ConjugateGradient<D, AlgebraicMultigrid>> algebraic_;
     Report report_;
 };

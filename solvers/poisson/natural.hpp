@@ -82,6 +82,13 @@ private:
     void find_runs();
     void find_closed();
     void mark_open();
+    void gather_sums() const;
+    /// f(row), threaded over all of them; over ranks, of this one's planes.
+    template <class F>
+    void for_each_row_of_own(F&& f) const {
+        const int rows = rows_in_plane(), begin = detail::own_share.lower(0), end = detail::own_share.upper(planes());
+        parallel_for(begin * rows, end * rows, f);
+    }
     bool is_wet(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)] != dry; }
     bool is_full(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)] == full; }
     static constexpr std::uint8_t dry = 0, some = 1, full = 2;

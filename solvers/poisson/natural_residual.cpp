@@ -84,8 +84,21 @@ void Natural<D>::sum_row(int row, const real* values) const {
     }
 }
 
+/// Over ranks, of the runs of others.
+template <int D>
+void Natural<D>::gather_sums() const {
+    if (!over_ranks() || closed_ == 0) return;
+    const Cut& cut = *detail::own_share.cut;
+    thread_local std::vector<std::size_t> begins;
+    begins.clear();
+    for (const int plane : cut.at)
+        begins.push_back(static_cast<std::size_t>(run_start_[static_cast<std::size_t>(plane) * static_cast<std::size_t>(rows_in_plane())]));
+    slabs().gather_parts(sum_.data(), sizeof(real), begins);
+}
+
 template <int D>
 void Natural<D>::means_from_sums() const {
+    gather_sums();
     clear_means();
     for (std::size_t k = 0; k < runs_.size(); ++k)
         if (runs_[k].component >= 0) mean_[static_cast<std::size_t>(runs_[k].component)] += sum_[k];
@@ -95,14 +108,14 @@ void Natural<D>::means_from_sums() const {
 template <int D>
 void Natural<D>::find_means(const Grid<real, D>& values) const {
     if (closed_ == 0) return;
-    parallel_for(0, planes() * rows_in_plane(), [&](int row) { sum_row(row, values.data() + static_cast<std::ptrdiff_t>(row) * n_[0]); });
+    for_each_row_of_own([&](int row) { sum_row(row, values.data() + static_cast<std::ptrdiff_t>(row) * n_[0]); });
     means_from_sums();
 }
 
 template <int D>
 void Natural<D>::subtract_means(Grid<real, D>& p) const {
     if (closed_ == 0) return;
-    parallel_for(0, planes() * rows_in_plane(), [&](int row) {
+    for_each_row_of_own([&](int row) {
         real* v = p.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
         for (const Run* run = runs_begin(row); run != runs_end(row); ++run) {
             const real m = mean(*run);
@@ -113,7 +126,7 @@ void Natural<D>::subtract_means(Grid<real, D>& p) const {
 
 template <int D>
 real Natural<D>::norm(const Grid<real, D>& b) const {
-    return std::sqrt(ordered_sum(planes(), [&](int q) {
+    return std::sqrt(plane_sum(planes(), [&](int q) {
         real sum = 0;
         for (int row = q * rows_in_plane(); row < (q + 1) * rows_in_plane(); ++row) {
             const real* v = b.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
@@ -141,7 +154,7 @@ void Natural<D>::clear_outside(int row, real* values) const {
 
 template <int D>
 bool Natural<D>::clean(Grid<real, D>& p) const {
-    const real nonzero = ordered_sum(planes(), [&](int q) {
+    const real nonzero = plane_sum(planes(), [&](int q) {
         int found = 0;
         for (int row = q * rows_in_plane(); row < (q + 1) * rows_in_plane(); ++row) {
             real* v = p.data() + static_cast<std::ptrdiff_t>(row) * n_[0];

@@ -2,34 +2,16 @@
 #include "poisson/petsc_engine.hpp"
 
 #include "core/error.hpp"
+#include "core/library.hpp"
 #include "poisson/factories.hpp"
 #include "poisson/list_solver.hpp"
-
-#include <filesystem>
-
-#include <dlfcn.h>
 
 namespace weir::poisson {
 
 namespace {
 
-/// Beside the running program as a build has it, in its prefix as an installation has it, where this library was built, or wherever the
-/// loader finds it.
-PetscEntry load() {
-    std::error_code unknown;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
-    for (const std::string& file : {(program / "libweir_petsc.so").string(), (program / "../lib/weir/libweir_petsc.so").string(),
-                                    std::string(WEIR_PETSC_LIBRARY), std::string("libweir_petsc.so")}) {
-        if (file.empty()) continue;
-        // Open MPI's parts look for its symbols among all.
-        if (void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL))
-            if (void* entry = dlsym(library, petsc_entry)) return reinterpret_cast<PetscEntry>(entry);
-    }
-    return nullptr;
-}
-
 PetscEntry entry() {
-    static const PetscEntry loaded = load();
+    static const auto loaded = reinterpret_cast<PetscEntry>(entry_of_library("libweir_petsc.so", WEIR_PETSC_LIBRARY, petsc_entry));
     return loaded;
 }
 

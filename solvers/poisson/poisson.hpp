@@ -69,6 +69,8 @@ public:
     /// Solves from now on may stop at this residual over the right-hand side. Methods that take no tolerance go on as before.
     virtual void aim(real) {}
     virtual std::size_t bytes() const = 0;
+    /// Over ranks (core/slabs.hpp): does solve() take and give each rank's own planes of b and p? Else it wants them whole, on all ranks.
+    virtual bool shares_planes() const { return false; }
 };
 
 /// A method of the registry. `iterative`: its error can be studied against its iteration count.

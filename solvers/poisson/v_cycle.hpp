@@ -1,5 +1,6 @@
 // The V-cycle on a geometric hierarchy: red, black, red, black from zero on the way down, black, red, black, red on the way up. The two
-// halves mirror each other, so the cycle is a symmetric positive definite preconditioner. Each half is one wavefront over its level.
+// halves mirror each other, so the cycle is a symmetric positive definite preconditioner. Each half is one wavefront over its level. Over
+// ranks the large levels are cut into slabs; the right-hand side of the first that is not goes to all of them.
 #pragma once
 #include "poisson/hierarchy.hpp"
 #include "poisson/transfer.hpp"
@@ -13,20 +14,31 @@ public:
     explicit VCycle(Hierarchy<D>& hierarchy) : hierarchy_(hierarchy) {}
 
     /// Level l: smooths u from zero for its r, and hands the residual to level l + 1. `before` stages of the caller's come first, as
-    /// f(stage, plane); the last of them must leave the red start r / diagonal in u.
+    /// f(stage, plane); the last of them must leave the red start r / diagonal in u. Over ranks, exchange(stage) brings what the others of
+    /// them have written beside the cuts.
     template <class F>
     void down(std::size_t l, int before, F&& f) {
+        down(l, before, f, [](int) {});
+    }
+    template <class F, class Exchange>
+    void down(std::size_t l, int before, F&& f, Exchange&& exchange) {
         Level<D>&fine = level(l), &coarse = level(l + 1);
         const bool pairs = fine.coarsened[D - 1];
         const int last = before + 3, planes = fine.at.planes();
-        wavefront(fine, before + 4, pairs).run(threads_for(fine), [&](int stage, int q) {
+        const auto work = [&](int stage, int q) {
             if (stage < before) return f(stage, q);
             if (stage < last) return relax_plane(fine, q, stage == before + 1 ? 0 : 1);
             if (!pairs)
                 restrict_plane(fine, coarse, q);
             else if (q % 2 == 1 || q == planes - 1)
                 restrict_plane(fine, coarse, q / 2);
+        };
+        run(fine, wavefront(fine, before + 4, pairs), work, [&](int stage) {
+            if (stage + 1 < before) return exchange(stage);
+            fine.refresh(fine.u[static_cast<std::size_t>((stage + 1 - before) % 2)]);
         });
+        if (fine.cut.empty() || !coarse.cut.empty()) return;
+        for (float* r : coarse.r) slabs().gather(halved_cut(fine), coarse.planes_of(r));
     }
 
     /// Everything below level l: leaves u of level l corrected by the coarser ones when up() has run.
@@ -42,11 +54,29 @@ public:
     template <class F>
     void up(std::size_t l, int after, F&& f) {
         Level<D>&fine = level(l), &coarse = level(l + 1);
-        wavefront(fine, std::max(5, 4 + after), false).run(threads_for(fine), [&](int stage, int q) {
+        const auto work = [&](int stage, int q) {
             if (stage == 0) return prolong_plane(fine, coarse, q);
             if (stage < 4 || after == 0) return relax_plane(fine, q, stage % 2 == 1 ? 1 : 0);
             f(stage - 4, q);
-        });
+        };
+        run(fine, wavefront(fine, std::max(5, 4 + after), false), work,
+            [&](int stage) { fine.refresh(fine.u[static_cast<std::size_t>(stage % 2)]); });
+    }
+
+    /// A wavefront over a level, or over this rank's part of it.
+    template <class F, class Exchange>
+    static void run(const Level<D>& at, const Wavefront& front, F&& f, Exchange&& exchange) {
+        if (at.cut.empty()) return front.run(threads_for(at), f);
+        const int rank = slabs().rank(), last = at.cut.ranks() - 1;
+        front.run_slab(threads_for(at), {at.cut.begin(rank), at.cut.end(rank, front.planes)}, rank > 0 || front.ring,
+                       rank < last || front.ring, f, exchange);
+    }
+    /// Of the level below one that is cut.
+    static Cut halved_cut(const Level<D>& at) {
+        Cut half = at.cut;
+        if (at.coarsened[D - 1])
+            for (int& plane : half.at) plane = (plane + 1) / 2;
+        return half;
     }
 
     static Wavefront wavefront(const Level<D>& at, int stages, bool pairs) {

@@ -20,6 +20,8 @@ struct SolverKind {
     SolverSchema schema;
     std::function<std::unique_ptr<Solver>(const Scene&)> make;
     PlainStep plain{};
+    /// Refuses, at its key, what of a scene cannot run over several ranks. None: the solver runs in one process only.
+    std::function<void(const Scene&)> over_ranks{};
 };
 
 /// What each may be told.

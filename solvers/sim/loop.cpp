@@ -1,5 +1,7 @@
 #include "sim/loop.hpp"
 
+#include "core/slabs.hpp"
+
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -35,7 +37,7 @@ struct GoodState {
         "step " + std::to_string(failure.step) + ", t = " + brief(failure.time) + " s: " + failure.quantity + ": " + failure.what();
     try {
         std::filesystem::create_directories(folder);
-        good.state.write(last_good_file(folder));
+        by_first_rank([&] { good.state.write(last_good_file(folder)); });
         message += "\nThe last good state (step " + std::to_string(good.step) + ", t = " + brief(good.time) + " s) is saved in " +
                    last_good_file(folder).string();
     } catch (const std::exception& error) {
@@ -50,7 +52,7 @@ struct GoodState {
 void save(const Simulation& simulation, const std::filesystem::path& folder) {
     Checkpoint checkpoint;
     simulation.save(checkpoint);
-    checkpoint.write(checkpoint_file(folder));
+    by_first_rank([&] { checkpoint.write(checkpoint_file(folder)); });
 }
 
 }  // namespace

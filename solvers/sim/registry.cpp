@@ -3,6 +3,7 @@
 #include "flow/solver.hpp"
 #include "heightfield/solver.hpp"
 #include "pbf/solver.hpp"
+#include "scene/names.hpp"
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
 #include "tallcell/solver.hpp"
@@ -38,6 +39,23 @@ const scene::SolverKind& kind_named(std::string_view name, const std::vector<sce
     for (const auto& kind : kinds)
         if (kind.schema.name == name) return kind;
     throw std::logic_error("no solver is registered as \"" + std::string(name) + "\"");
+}
+
+void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
+    if (ranks == 1) return;
+    const auto& kind = kind_named(scene.solver(), kinds);
+    if (!kind.over_ranks) {
+        std::string able;
+        for (const auto& other : kinds)
+            if (other.over_ranks) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
+        scene.refuse("solver", "solver " + scene::quote(scene.solver()) + " runs in one process, and there are " + std::to_string(ranks),
+                     "over ranks: " + able);
+    }
+    const int planes = static_cast<int>(scene.root().numbers("grid.cells").back());
+    if (planes < ranks)
+        scene.refuse("grid.cells", std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") +
+                                       " cannot be shared by " + std::to_string(ranks) + " ranks");
+    kind.over_ranks(scene);
 }
 
 }  // namespace weir::sim

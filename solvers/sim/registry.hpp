@@ -13,4 +13,7 @@ const std::vector<scene::SolverSchema>& schemas();
 /// The solver of that name, which a checked scene always has; std::logic_error otherwise.
 const scene::SolverKind& kind_named(std::string_view name, const std::vector<scene::SolverKind>& kinds = registry());
 
+/// Refuses, by its key, what cannot run over so many ranks; see SolverKind::over_ranks.
+void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
+
 }  // namespace weir::sim

@@ -142,7 +142,9 @@ typename CharacteristicAdvection<D>::Motion CharacteristicAdvection<D>::Motion::
 /// planes are kept at once: those of the first, and of the last two.
 template <int D>
 void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
-    const int lo = m.nodes.lo[D - 1], hi = m.nodes.hi[D - 1], shares = std::min(threads(), hi - lo);
+    const int planes = m.quantities[0].source->extent()[D - 1];
+    const int lo = detail::own_share.lower(m.nodes.lo[D - 1]), hi = detail::own_share.upper(m.nodes.hi[D - 1]);
+    const int shares = std::min(threads(), std::max(hi - lo, 0));
     prepare(m, 3 * shares);
     const auto begin_of = [&](int share) { return lo + (hi - lo) * share / shares; };
     const auto bounds_from = [&](int k, int share) { return k - (3 * share + (k == begin_of(share) ? 0 : 1 + k % 2)); };
@@ -160,8 +162,8 @@ void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
             if (k - 1 > begin) correct_plane(k - 1, share);
         }
     });
-    for (int k = 0; k < lo; ++k) fill_plane(k);
-    for (int k = hi; k < m.quantities[0].source->extent()[D - 1]; ++k) fill_plane(k);
+    for (int k = detail::own_share.lower(0); k < lo; ++k) fill_plane(k);
+    for (int k = std::max(lo, hi); k < detail::own_share.upper(planes); ++k) fill_plane(k);
     each_predicted([](auto& q, const auto& boundary) { fill_end_planes(q, boundary); });
     parallel_for(0, shares, [&](int share) {
         const int first = begin_of(share), last = begin_of(share + 1) - 1;

@@ -152,7 +152,15 @@ void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane) {
 }
 
 template <int D>
-void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary) {
+void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep) {
+    if (!over_ranks()) return;
+    const auto& share = detail::own_share;
+    slabs().refresh(*share.cut, q.planes(), deep > 0 ? deep : share.reach, boundary.end[D - 1][0].kind == Kind::periodic);
+}
+
+template <int D>
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep) {
+    refresh(q, boundary, deep);
     Index<D> rows = q.extent() + Index<D>::constant(2 * ghost_layers);
     parallel_for(0, D == 2 ? 1 : rows[1], [&](int j) {
         Index<D> I = Index<D>::constant(-ghost_layers);
@@ -169,8 +177,8 @@ void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary)
 }
 
 template <int D>
-real fill_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
-    const real largest = ordered_max(to.extent()[D - 1], [&](int plane) {
+real fill_planes_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
+    return plane_max(to.extent()[D - 1], [&](int plane) {
         real most = 0;
         fill_plane(to, boundary, plane, [&](const Index<D>& first, int count, real* row) {
             std::copy_n(from.data() + from.linear(first), count, row);
@@ -178,14 +186,12 @@ real fill_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D
         });
         return most;
     });
-    fill_end_planes(to, boundary);
-    return largest;
 }
 
 template <int D>
-void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary) {
-    parallel_for(0, q.extent()[D - 1], [&](int plane) { fill_plane_ghosts(q, boundary, plane); });
-    fill_end_planes(q, boundary);
+void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int deep) {
+    for_each_plane(0, q.extent()[D - 1], [&](int plane) { fill_plane_ghosts(q, boundary, plane); });
+    fill_end_planes(q, boundary, deep);
 }
 
 template struct Boundary<2>;
@@ -196,13 +202,15 @@ template Boundary<2> field_boundary(const geometry::Sides<2>&, const std::string
 template Boundary<3> field_boundary(const geometry::Sides<3>&, const std::string&);
 template void fill(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
 template void fill(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
-template real fill_and_measure(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
-template real fill_and_measure(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
+template real fill_planes_and_measure(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
+template real fill_planes_and_measure(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
 template void fill_plane_ghosts(Padded<2>&, const Boundary<2>&, int);
 template void fill_plane_ghosts(Padded<3>&, const Boundary<3>&, int);
-template void fill_end_planes(Padded<2>&, const Boundary<2>&);
-template void fill_end_planes(Padded<3>&, const Boundary<3>&);
-template void fill_ghosts(Padded<2>&, const Boundary<2>&);
-template void fill_ghosts(Padded<3>&, const Boundary<3>&);
+template void refresh(Padded<2>&, const Boundary<2>&, int);
+template void refresh(Padded<3>&, const Boundary<3>&, int);
+template void fill_end_planes(Padded<2>&, const Boundary<2>&, int);
+template void fill_end_planes(Padded<3>&, const Boundary<3>&, int);
+template void fill_ghosts(Padded<2>&, const Boundary<2>&, int);
+template void fill_ghosts(Padded<3>&, const Boundary<3>&, int);
 
 }  // namespace weir::staggered

@@ -30,6 +30,11 @@ public:
     const real& operator()(const Index<D>& I) const { return values_[linear(I)]; }
     real* at(const Index<D>& I) { return values_.data() + linear(I); }
     const real* at(const Index<D>& I) const { return values_.data() + linear(I); }
+    /// The planes of the slowest axis, each with the ghosts within it.
+    Planes planes() {
+        const std::ptrdiff_t plane = stride(D - 1);
+        return {values_.data() + ghost_layers * plane, sizeof(real) * static_cast<std::size_t>(plane), extent_[D - 1], ghost_layers};
+    }
     std::size_t bytes() const { return values_.size() * sizeof(real); }
 
 private:
@@ -77,13 +82,17 @@ template <int D>
 void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
 /// Fills the ghost layers from the inner box that is already there.
 template <int D>
-void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary);
+void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
 
-/// The two halves of fill_ghosts: those of one plane across the last axis, within it, and then the planes beyond both ends of that axis.
+/// The two halves of fill_ghosts: those of one plane across the last axis, within it, and then the planes beyond both ends of that axis;
+/// over ranks, those of other ranks too, as deep as the step wants them or as is said. A cut is a side that another rank continues.
 template <int D>
 void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane);
 template <int D>
-void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary);
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
+/// Over ranks, what other ranks own: where their values have changed and those beyond the sides have not.
+template <int D>
+void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
 
 /// f(first, count, to) on every row of one plane of the inner box, which it writes, and the ghosts around it.
 template <int D, class F>
@@ -100,11 +109,11 @@ void fill_plane(Padded<D>& q, const Boundary<D>& boundary, int plane, F&& f) {
 /// The same for all planes, and then the ghosts beyond them.
 template <int D, class F>
 void fill_rows(Padded<D>& q, const Boundary<D>& boundary, F&& f) {
-    parallel_for(0, q.extent()[D - 1], [&](int plane) { fill_plane(q, boundary, plane, f); });
+    for_each_plane(0, q.extent()[D - 1], [&](int plane) { fill_plane(q, boundary, plane, f); });
     fill_end_planes(q, boundary);
 }
-/// As fill; the largest magnitude of `from`, or NaN, is found on the way.
+/// As fill, without the planes beyond the ends of the last axis; the largest magnitude of `from`, or NaN, is found on the way.
 template <int D>
-real fill_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
+real fill_planes_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
 
 }  // namespace weir::staggered

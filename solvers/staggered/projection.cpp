@@ -218,10 +218,25 @@ static void push_by_pressure(MacState<D>& s, real dt) {
     sync_periodic(s.u, s.sides);
 }
 
+/// Over ranks: by all of them together where the method can, else by each of them.
+template <int D>
+const poisson::Report& Projection<D>::solve(MacState<D>& s) {
+    if (!over_ranks()) return solver_->solve(s.p, rhs_);
+    if (solver_->shares_planes()) {
+        const poisson::Report& report = solver_->solve(s.p, rhs_);
+        refresh(s.p, s.sides.periodic(D - 1));
+        return report;
+    }
+    gather(rhs_);
+    gather(s.p);
+    const AllPlanes all;
+    return solver_->solve(s.p, rhs_);
+}
+
 template <int D>
 const poisson::Report& Projection<D>::project(MacState<D>& s, real dt, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
     set_rhs(s, -s.u.h[0] * s.u.h[0] * s.rho / dt, rhs_);
-    const poisson::Report& report = bodies ? bodies->solve(s, *solids, dt, solver_.get(), tolerance_, &rhs_) : solver_->solve(s.p, rhs_);
+    const poisson::Report& report = bodies ? bodies->solve(s, *solids, dt, solver_.get(), tolerance_, &rhs_) : solve(s);
     push_by_pressure(s, dt);
     return report;
 }

@@ -58,6 +58,7 @@ public:
 
 private:
     void leave_out_ice();
+    const poisson::Report& solve(MacState<D>& s);
 
     std::unique_ptr<poisson::Solver<D>> solver_;
     real tolerance_ = 0;

@@ -54,7 +54,7 @@ template <int D>
 real max_magnitude(const Grid<real, D>& q, real zero = 0) {
     const int planes = q.extent()[D - 1];
     const std::size_t plane = planes > 0 ? q.size() / static_cast<std::size_t>(planes) : 0;
-    return ordered_max(planes, [&](int k) {
+    return plane_max(planes, [&](int k) {
         const real* values = q.data() + static_cast<std::size_t>(k) * plane;
         return largest_magnitude(values, plane, zero);
     });

@@ -101,9 +101,10 @@ void for_each_free_face(const MacVelocity<D>& u, const geometry::Sides<D>& sides
     for_each_in(faces.lo, faces.hi, f);
 }
 
-/// Copies face 0 of every periodic axis to its other end.
+/// Copies face 0 of every periodic axis to its other end; over ranks, brings the faces at both cuts' far sides.
 template <int D>
 void sync_periodic(MacVelocity<D>& u, const geometry::Sides<D>& sides) {
+    refresh(u[D - 1], sides.periodic(D - 1));
     for (int a = 0; a < D; ++a) {
         if (!sides.periodic(a)) continue;
         Index<D> lo{}, hi = u[a].extent();

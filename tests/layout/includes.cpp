@@ -130,6 +130,7 @@ const std::map<std::string, int>& level() {
         {"validation/references", 9}, {"validation/metrics", 9}, {"validation/harness", 10},
         {"validation/page", 11},      {"validation/report", 12}, {"validation/cost", 13},
         {"validation/stability", 13}, {"solvers/matter", 3},     {"solvers/reconstruction", 5},
+        {"solvers/distributed", 8},
     };
     return table;
 }
@@ -158,6 +159,17 @@ TEST("VTK is included by solvers/output, for files, by solvers/reconstruction, f
         for (const auto& include : includes_of(fs::path(WEIR_SOURCE_DIR) / library.folder))
             EXPECT_FALSE(include.what.starts_with("vtk")) << include.file << ':' << include.line;
     }
+}
+
+TEST("MPI is included by one file: solvers/distributed/mpi_slabs.cpp") {
+    int found = 0;
+    for (const auto& [target, library] : read_libraries())
+        for (const auto& include : includes_of(fs::path(WEIR_SOURCE_DIR) / library.folder)) {
+            if (include.what != "mpi.h") continue;
+            ++found;
+            EXPECT_TRUE(include.file.ends_with("solvers/distributed/mpi_slabs.cpp")) << include.file << ':' << include.line;
+        }
+    EXPECT_EQ(found, 1);
 }
 
 TEST("every folder of sources below solvers and validation is a target of its own") {

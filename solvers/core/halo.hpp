@@ -1,0 +1,61 @@
+// Which planes are whose, and which must travel: plain arithmetic, known to all ranks alike.
+#pragma once
+#include <algorithm>
+#include <vector>
+
+namespace weir {
+
+/// Where the planes of cells of the slowest axis are cut: rank r owns [at[r], at[r + 1]). Empty: there is one rank.
+struct Cut {
+    std::vector<int> at{};
+
+    bool empty() const { return at.empty(); }
+    int ranks() const { return static_cast<int>(at.size()) - 1; }
+    int planes() const { return at.back(); }
+    int begin(int rank) const { return at[static_cast<std::size_t>(rank)]; }
+    /// Of an array of `count` planes: the last rank owns those beyond the cells, the last plane of faces.
+    int end(int rank, int count) const { return rank + 1 == ranks() ? count : at[static_cast<std::size_t>(rank) + 1]; }
+    bool operator==(const Cut&) const = default;
+};
+
+/// Slabs as equal as multiples of 8 planes allow, so that three coarser levels of a multigrid are cut alike; of fewer where the planes are
+/// few. One rank gets no cut. There must be a plane for each.
+inline Cut cut_of(int planes, int ranks) {
+    Cut cut;
+    if (ranks == 1) return cut;
+    int unit = 8;
+    while (unit > 1 && planes / unit < ranks) unit /= 2;
+    const int units = planes / unit;
+    for (int r = 0; r < ranks; ++r) cut.at.push_back(static_cast<int>(static_cast<long>(units) * r / ranks) * unit);
+    cut.at.push_back(planes);
+    return cut;
+}
+
+/// Planes [begin, end).
+struct PlaneRange {
+    int begin, end;
+    bool operator==(const PlaneRange&) const = default;
+};
+
+/// The planes of an array of `count` that rank `to` gets from rank `from`, so that it has `deep` beyond both its cuts; around the ends of
+/// a periodic axis (`ring`), where plane n of faces is plane 0 again.
+inline std::vector<PlaneRange> halo_from(const Cut& cut, int from, int to, int count, int deep, bool ring) {
+    const int n = cut.planes(), begin = cut.begin(to), end = cut.end(to, n);
+    std::vector<char> wanted(static_cast<std::size_t>(count), 0);
+    const auto want = [&](int plane) {
+        if (plane >= 0 && plane < count) wanted[static_cast<std::size_t>(plane)] = 1;
+        if (ring && (plane < 0 || plane >= n)) wanted[static_cast<std::size_t>((plane % n + n) % n)] = 1;
+    };
+    deep = std::min(deep, n);
+    for (int k = 1; k <= deep; ++k) want(begin - k), want(end + k - 1);
+    for (int plane = begin; plane < cut.end(to, count); ++plane) wanted[static_cast<std::size_t>(plane)] = 0;
+    std::vector<PlaneRange> list;
+    for (int plane = cut.begin(from); plane < cut.end(from, count); ++plane) {
+        if (!wanted[static_cast<std::size_t>(plane)]) continue;
+        if (list.empty() || list.back().end != plane) list.push_back({plane, plane});
+        list.back().end = plane + 1;
+    }
+    return list;
+}
+
+}  // namespace weir

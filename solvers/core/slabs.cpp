@@ -1,0 +1,30 @@
+#include "core/slabs.hpp"
+
+#include <utility>
+
+namespace weir {
+
+namespace {
+std::unique_ptr<Slabs>& of_process() {
+    static std::unique_ptr<Slabs> several;
+    return several;
+}
+}  // namespace
+
+Slabs& slabs() {
+    static Slabs one;
+    return of_process() ? *of_process() : one;
+}
+
+void set_slabs(std::unique_ptr<Slabs> several) { of_process() = std::move(several); }
+
+OwnPlanes::OwnPlanes(const Cut& cut, int reach) : before_(detail::own_share) {
+    if (cut.empty()) return;
+    const int rank = slabs().rank();
+    detail::own_share = {.begin = rank == 0 ? INT_MIN : cut.begin(rank),
+                         .end = rank + 1 == cut.ranks() ? INT_MAX : cut.end(rank, cut.planes()),
+                         .cut = &cut,
+                         .reach = reach};
+}
+
+}  // namespace weir

@@ -1,0 +1,127 @@
+// One run by several processes (ranks): each owns a slab, the planes of the slowest axis between two cuts, and computes them as one process
+// would. What stands beyond its cuts comes from its neighbours; sums are of the parts of planes, which are the same whoever computes them,
+// added in the order of the planes. So the number of ranks changes no bit. With one rank, the default, every call does nothing.
+#pragma once
+#include "core/error.hpp"
+#include "core/halo.hpp"
+
+#include <climits>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <span>
+
+namespace weir {
+
+/// The planes of an array over the slowest axis, neighbours in memory: plane 0 stands at `first`, `margin` more before it and after the last.
+struct Planes {
+    void* first;
+    std::size_t bytes;  // of a plane
+    int count;
+    int margin = 0;
+};
+
+/// What this rank has sent so far.
+struct Traffic {
+    std::int64_t messages = 0, bytes = 0;
+};
+
+class Slabs {
+public:
+    Slabs() = default;
+    Slabs(int rank, int ranks) : rank_(rank), ranks_(ranks) {}
+    virtual ~Slabs() = default;
+    Slabs(const Slabs&) = delete;
+    Slabs& operator=(const Slabs&) = delete;
+
+    int rank() const { return rank_; }
+    int ranks() const { return ranks_; }
+    bool several() const { return ranks_ > 1; }
+    const Traffic& traffic() const { return traffic_; }
+
+    /// Brings the `deep` planes beyond both cuts of this rank from whoever owns them; `ring`: around the ends of the axis too.
+    virtual void refresh(const Cut&, const Planes&, int /*deep*/, bool /*ring*/) {}
+    /// Brings every plane that this rank does not own.
+    virtual void gather(const Cut&, const Planes&) {}
+    /// The same of pieces that are no planes: rank r owns the entries [begins[r], begins[r + 1]), of `bytes` each.
+    virtual void gather_parts(void* /*entries*/, std::size_t /*bytes*/, std::span<const std::size_t> /*begins*/) {}
+    /// The largest of the values that the ranks give.
+    virtual int largest(int value) { return value; }
+    /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never come.
+    virtual bool all_arrive(double /*seconds*/) { return true; }
+    /// Ends all ranks at once, with this exit code.
+    virtual void abort(int /*exit_code*/) {}
+
+protected:
+    Traffic traffic_;
+
+private:
+    int rank_ = 0, ranks_ = 1;
+};
+
+/// Those of this process: one rank, unless set_slabs has been called.
+Slabs& slabs();
+/// Back to one rank with nullptr.
+void set_slabs(std::unique_ptr<Slabs> several);
+
+/// What one rank does for all, the first: writing. One fails, all fail, with the same exit code; its own words are shown.
+template <class F>
+void by_first_rank(F&& f) {
+    if (!slabs().several()) return f();
+    std::exception_ptr failure;
+    if (slabs().rank() == 0) try {
+            f();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+    if (slabs().largest(failure ? 1 : 0) == 0) return;
+    if (failure) std::rethrow_exception(failure);
+    throw OutputError("rank 0 could not write");
+}
+
+namespace detail {
+
+/// What loops over planes do now: planes [begin, end) of cells; what lies beyond the ends of the axis belongs to its first and last plane.
+struct OwnShare {
+    int begin = INT_MIN, end = INT_MAX;
+    const Cut* cut = nullptr;  // none: everything
+    int reach = 0;             // planes beyond the cuts that ghosts are filled with
+    int lower(int lo) const { return lo > begin ? lo : begin; }
+    int upper(int hi) const { return hi < end ? hi : end; }
+};
+inline OwnShare own_share;
+
+}  // namespace detail
+
+/// While it lives, loops over planes are of this rank's own, and sums over planes are of everybody's. An empty cut changes nothing.
+class OwnPlanes {
+public:
+    explicit OwnPlanes(const Cut& cut, int reach = 1);
+    ~OwnPlanes() { detail::own_share = before_; }
+    OwnPlanes(const OwnPlanes&) = delete;
+    OwnPlanes& operator=(const OwnPlanes&) = delete;
+
+private:
+    detail::OwnShare before_;
+};
+
+/// While it lives, every rank does everything: the same work, with the same answer.
+class AllPlanes {
+public:
+    AllPlanes() : before_(detail::own_share) { detail::own_share = {}; }
+    ~AllPlanes() { detail::own_share = before_; }
+    AllPlanes(const AllPlanes&) = delete;
+    AllPlanes& operator=(const AllPlanes&) = delete;
+
+private:
+    detail::OwnShare before_;
+};
+
+/// From here on ghosts are filled this deep beyond the cuts: as far as anything moves in a step.
+inline void set_reach(int planes) { detail::own_share.reach = planes; }
+
+/// Are loops over planes those of one rank among several?
+inline bool over_ranks() { return detail::own_share.cut != nullptr; }
+
+}  // namespace weir

@@ -1,0 +1,164 @@
+// Slabs over MPI. What travels is known to both ends beforehand (core/halo.hpp), so that there is a message for each run of planes and none
+// that says how many. Only the thread that joined may call.
+#include "core/slabs.hpp"
+#include "distributed/mpi_entry.hpp"
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+#include <vector>
+
+#include <mpi.h>
+
+namespace weir::distributed {
+
+namespace {
+
+constexpr unsigned char poison_byte = 0xff;  // of NaN, single or double
+
+/// What one kind of array exchanges at a refresh.
+struct Plan {
+    Cut cut;
+    int count, deep;
+    bool ring;
+    struct Message {
+        int peer;
+        PlaneRange planes;
+        bool sends;
+    };
+    std::vector<Message> messages;
+};
+
+class MpiSlabs final : public Slabs {
+public:
+    MpiSlabs(int rank, int ranks) : Slabs(rank, ranks), poisons_(std::getenv("WEIR_HALO_POISON") != nullptr) {
+        MPI_Comm_dup(MPI_COMM_WORLD, &farewell_);
+    }
+    ~MpiSlabs() override { MPI_Finalize(); }
+
+    void refresh(const Cut& cut, const Planes& planes, int deep, bool ring) override {
+        const Plan& plan = plan_of(cut, planes.count, deep, ring);
+        const PlaneType plane(planes.bytes);
+        requests_.clear();
+        for (const auto& message : plan.messages) {
+            void* at = plane_at(planes, message.planes.begin);
+            const int count = message.planes.end - message.planes.begin;
+            requests_.emplace_back();
+            if (message.sends)
+                MPI_Isend(at, count, plane.type, message.peer, 0, MPI_COMM_WORLD, &requests_.back());
+            else
+                MPI_Irecv(at, count, plane.type, message.peer, 0, MPI_COMM_WORLD, &requests_.back());
+            if (message.sends) count_message(planes.bytes * static_cast<std::size_t>(count));
+        }
+        MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+        if (poisons_) poison(plan, planes);
+    }
+
+    void gather(const Cut& cut, const Planes& planes) override {
+        const PlaneType plane(planes.bytes);
+        counts_.clear(), begins_.clear();
+        for (int r = 0; r < ranks(); ++r) {
+            begins_.push_back(cut.begin(r));
+            counts_.push_back(cut.end(r, planes.count) - cut.begin(r));
+        }
+        MPI_Allgatherv(MPI_IN_PLACE, 0, plane.type, planes.first, counts_.data(), begins_.data(), plane.type, MPI_COMM_WORLD);
+        count_message(planes.bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
+    }
+
+    void gather_parts(void* entries, std::size_t bytes, std::span<const std::size_t> begins) override {
+        const PlaneType entry(bytes);
+        counts_.clear(), begins_.clear();
+        for (std::size_t r = 0; r + 1 < begins.size(); ++r) {
+            begins_.push_back(static_cast<int>(begins[r]));
+            counts_.push_back(static_cast<int>(begins[r + 1] - begins[r]));
+        }
+        MPI_Allgatherv(MPI_IN_PLACE, 0, entry.type, entries, counts_.data(), begins_.data(), entry.type, MPI_COMM_WORLD);
+        count_message(bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
+    }
+
+    int largest(int value) override {
+        MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+        count_message(sizeof value);
+        return value;
+    }
+
+    bool all_arrive(double seconds) override {
+        using clock = std::chrono::steady_clock;
+        MPI_Request request;
+        MPI_Ibarrier(farewell_, &request);
+        const auto start = clock::now();
+        for (int done = 0;;) {
+            MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+            if (done) return true;
+            if (std::chrono::duration<double>(clock::now() - start).count() > seconds) return false;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+
+    void abort(int exit_code) override { MPI_Abort(MPI_COMM_WORLD, exit_code); }
+
+private:
+    /// A plane may be of any size, and a message of more than 2 GB: counts are of planes.
+    struct PlaneType {
+        MPI_Datatype type;
+        explicit PlaneType(std::size_t bytes) {
+            MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type);
+            MPI_Type_commit(&type);
+        }
+        ~PlaneType() { MPI_Type_free(&type); }
+        PlaneType(const PlaneType&) = delete;
+        PlaneType& operator=(const PlaneType&) = delete;
+    };
+
+    static unsigned char* plane_at(const Planes& planes, int plane) {
+        return static_cast<unsigned char*>(planes.first) + static_cast<std::ptrdiff_t>(planes.bytes) * plane;
+    }
+
+    void count_message(std::size_t bytes) {
+        ++traffic_.messages;
+        traffic_.bytes += static_cast<std::int64_t>(bytes);
+    }
+
+    const Plan& plan_of(const Cut& cut, int count, int deep, bool ring) {
+        for (const Plan& plan : plans_)
+            if (plan.count == count && plan.deep == deep && plan.ring == ring && plan.cut == cut) return plan;
+        Plan plan{cut, count, deep, ring, {}};
+        for (int peer = 0; peer < ranks(); ++peer) {
+            if (peer == rank()) continue;
+            for (const PlaneRange& range : halo_from(cut, peer, rank(), count, deep, ring)) plan.messages.push_back({peer, range, false});
+            for (const PlaneRange& range : halo_from(cut, rank(), peer, count, deep, ring)) plan.messages.push_back({peer, range, true});
+        }
+        plans_.push_back(std::move(plan));
+        return plans_.back();
+    }
+
+    /// NaN in every plane that is neither owned nor was brought, for a test: nothing may read them before they are brought.
+    void poison(const Plan& plan, const Planes& planes) const {
+        std::vector<char> known(static_cast<std::size_t>(planes.count), 0);
+        for (int plane = plan.cut.begin(rank()); plane < plan.cut.end(rank(), planes.count); ++plane)
+            known[static_cast<std::size_t>(plane)] = 1;
+        for (const auto& message : plan.messages)
+            for (int plane = message.planes.begin; !message.sends && plane < message.planes.end; ++plane)
+                known[static_cast<std::size_t>(plane)] = 1;
+        for (int plane = 0; plane < planes.count; ++plane)
+            if (!known[static_cast<std::size_t>(plane)]) std::fill_n(plane_at(planes, plane), planes.bytes, poison_byte);
+    }
+
+    bool poisons_;
+    MPI_Comm farewell_{};
+    std::vector<Plan> plans_;
+    std::vector<MPI_Request> requests_;
+    std::vector<int> counts_, begins_;
+};
+
+}  // namespace
+
+}  // namespace weir::distributed
+
+extern "C" weir::Slabs* weir_mpi_slabs() {
+    int given = 0, rank = 0, ranks = 1;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    return new weir::distributed::MpiSlabs(rank, ranks);
+}

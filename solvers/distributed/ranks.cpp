@@ -1,0 +1,75 @@
+#include "distributed/ranks.hpp"
+
+#include "core/error.hpp"
+#include "core/library.hpp"
+#include "core/slabs.hpp"
+#include "distributed/mpi_entry.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include <fcntl.h>
+#include <sched.h>
+#include <unistd.h>
+
+namespace weir::distributed {
+
+namespace {
+
+/// Longer than ranks of one machine differ in what they do between two exchanges, where all of them fail at the same place.
+constexpr double patience = 10;  // [s]
+
+int own_stderr = -1;  // of a rank whose words are not shown
+
+/// The first of these that is set, by Open MPI, by MPICH and Intel's MPI, by Slurm with PMIx.
+int number_of(std::initializer_list<const char*> names, int fallback) {
+    for (const char* name : names)
+        if (const char* text = std::getenv(name)) return std::atoi(text);
+    return fallback;
+}
+
+void print_nothing() {
+    own_stderr = dup(STDERR_FILENO);
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    close(nowhere);
+}
+
+}  // namespace
+
+int started_ranks() { return number_of({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1); }
+int started_rank() { return number_of({"OMPI_COMM_WORLD_RANK", "PMI_RANK"}, 0); }
+
+int threads_of_rank() {
+    const int here = number_of({"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"}, 1);
+    const auto processors = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+    cpu_set_t may{};
+    if (here <= 1 || sched_getaffinity(0, sizeof may, &may) != 0 || CPU_COUNT(&may) < processors) return 0;
+    return std::max(1, processors / here);
+}
+
+void join() {
+    if (started_ranks() <= 1) return;
+    const auto entry = reinterpret_cast<MpiEntry>(entry_of_library("libweir_mpi.so", WEIR_MPI_LIBRARY, mpi_entry));
+    if (!entry)
+        throw BadInput("weir was started as " + std::to_string(started_ranks()) +
+                       " ranks and has no MPI: install libopenmpi-dev, configure with WEIR_MPI=ON and build again, or start it once");
+    set_slabs(std::unique_ptr<Slabs>(entry()));
+    if (slabs().rank() > 0) print_nothing();
+}
+
+int leave(int exit_code, const std::string& complaint) {
+    if (!slabs().several()) return exit_code;
+    if (!slabs().all_arrive(exit_code == exit_success ? infinity : patience)) {
+        std::fflush(nullptr);
+        if (own_stderr >= 0) dup2(own_stderr, STDERR_FILENO);
+        if (own_stderr >= 0) std::fprintf(stderr, "rank %d alone: %s\n", slabs().rank(), complaint.c_str());
+        slabs().abort(exit_code);
+    }
+    set_slabs(nullptr);
+    return exit_code;
+}
+
+}  // namespace weir::distributed

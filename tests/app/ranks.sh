@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# ranks.sh WEIR SCENES MPI_LIBRARY PART: weir run over several processes leaves what one process leaves, byte for byte; what cannot run so
+# is refused; and however a run ends, it ends on all ranks. Exit code 77 (skipped) where there is no MPI.
+set -uo pipefail
+weir=$1 scenes=$2 library=$3 part=$4
+[ -n "$library" ] || { echo "skipped: built without MPI (Debian: apt-get install libopenmpi-dev)"; exit 77; }
+command -v mpirun >/dev/null || { echo "skipped: no mpirun (Debian: apt-get install openmpi-bin)"; exit 77; }
+mpirun_sh=$(realpath "$(dirname "$0")/../support/mpirun.sh")
+source "$mpirun_sh"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+export OMP_NUM_THREADS=1 GOMP_SPINCOUNT=2000
+
+fail() { echo "FAILED: $*"; tail -n 20 "$work"/log; exit 1; }
+# ends CODE COMMAND...: the command ends with it, within a minute
+ends() {
+    local wanted=$1 code=0
+    shift
+    timeout 60 bash -c 'source "$0"; "$@"' "$mpirun_sh" "$@" </dev/null >"$work/log" 2>&1 || code=$?
+    [ "$code" -eq "$wanted" ] || fail "ended with $code, not $wanted: $*"
+}
+says() { grep -q -- "$1" "$work/log" || fail "did not say: $1"; }
+# alike ONE OTHER: the same files with the same bytes, but for run.json, which holds milliseconds
+alike() {
+    local difference
+    difference=$(diff -rq --exclude run.json "$1" "$2") && [ -e "$2/run.json" ] || fail "$2 is not as $1: $difference"
+}
+# compare NAME "RANKS THREADS, ..." SCENE [--set ...]: each against one process with one thread
+compare() {
+    local name=$1 list=$2 pair
+    shift 2
+    ends 0 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out "$name"
+    while read -r -d, ranks threads; do
+        ends 0 over "$ranks" "$weir" run "$@" --checkpoint-every 1000 --quiet --threads "$threads" --out "$name-$ranks-$threads"
+        alike "$name" "$name-$ranks-$threads"
+    done <<<"$list,"
+}
+
+flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml
+case $part in
+2d)
+    compare all "1 2,2 1,2 2,3 1,3 2,4 1,4 2" "$flat"
+    grep -q '"count":2,"cut":\[0,72,152\]' all-2-1/run.json || fail "run.json does not tell the ranks"
+    ;;
+3d)
+    compare all "2 1,2 2,3 1,3 2,4 1,4 2" "$deep"
+    ;;
+schemes)
+    periodic='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},y_min={kind="periodic"},y_max={kind="periodic"}} --set emitters=[]'
+    compare ring "2 1,3 2" "$flat" $periodic --set scheme.interpolation=monotone_cubic --set time.cfl=6 --set time.max_dt=0.04
+    compare fluxes "3 1" "$flat" --set scheme.advection=conservative
+    compare paths "3 1" "$flat" --set scheme.advection=semi_lagrangian --set effects.viscosity.scheme=implicit
+    compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
+    compare small "4 1" "$flat" --set grid.cells=[16,5]
+    ;;
+halo) # NaN in every plane that no one has brought, whenever something is brought
+    ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 2 --out poisoned
+    alike one poisoned
+    ends 0 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out one_3d
+    ends 0 over 2 WEIR_HALO_POISON=1 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out poisoned_3d
+    alike one_3d poisoned_3d
+    ;;
+ends)
+    # saved on three, continued on two
+    ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out whole
+    ends 0 over 3 "$weir" run "$flat" --checkpoint-every 1000 --quiet --out parts --set time.end=0.08
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.12
+    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    # refused by name, before anything is written, by all ranks
+    refused() { # KEY SCENE [--set ...]
+        local key=$1
+        shift
+        ends 2 over 3 "$weir" run "$@" --quiet --out refused
+        says "$key"
+        [ ! -e refused ] || fail "a refused run has written"
+    }
+    refused 'solver "pbf" runs in one process' "$scenes/particles.toml"
+    refused 'solids\[0\].motion' "$scenes/smoke.toml"
+    refused scheme.poisson.method "$flat" --set scheme.poisson.method=petsc_gamg
+    refused "planes of cells" "$flat" --set grid.cells=[16,2]
+    refused "unknown key" "$flat" --set grid.cell=2
+    ends 2 over 2 "$weir" list solvers
+    says "only weir run goes over ranks"
+    # a failure is everybody's
+    ends 3 over 3 "$weir" run "$flat" --quiet --out failed --set scheme.poisson.method=cg --set scheme.poisson.max_iterations=1
+    says "last good state"
+    [ "$(grep -c "step 1" log)" -eq 1 ] || fail "said more than once"
+    [ -e failed/last_good.weir ] || fail "no last good state"
+    ;;
+signals)
+    long=(--set time.end=100 --set output.every=0.02 --checkpoint-every 1)
+    begin() { # OUT
+        over 3 "$weir" run "$flat" "${long[@]}" --quiet --out "$1" >log 2>&1 &
+        started=$!
+        for _ in $(seq 600); do
+            [ -e "$1/checkpoint.weir" ] && return
+            sleep 0.1
+        done
+        fail "no checkpoint came"
+    }
+    ranks_of() { pgrep -f -- "run $flat .*--out $1"'$' | while read -r p; do [ "$(readlink "/proc/$p/exe")" = "$(realpath "$weir")" ] && echo "$p"; done; }
+    # asked to end by the signal that mpirun passes on
+    begin asked
+    kill -USR1 "$started"
+    code=0
+    wait "$started" || code=$?
+    [ "$code" -eq 130 ] || fail "ended with $code after SIGUSR1"
+    says "interrupted at step"
+    ends 0 over 2 "$weir" run --restart asked --quiet --set time.end=0.3
+    ends 0 "$weir" run "$flat" --quiet --threads 1 --set output.every=0.02 --set time.end=0.3 --out straight
+    diff -rq --exclude run.json --exclude checkpoint.weir straight asked >log || fail "an interrupted run is another"
+    # one is killed: all are gone, and what was written stays whole
+    begin killed
+    kill -9 "$(ranks_of killed | tail -n 1)"
+    code=0 start=$SECONDS
+    wait "$started" || code=$?
+    [ "$code" -ne 0 ] || fail "a run with a killed rank has succeeded"
+    [ $((SECONDS - start)) -le 5 ] && [ -z "$(ranks_of killed)" ] || fail "ranks live on beside a killed one"
+    cmp straight/*_0001.vti killed/*_0001.vti >log 2>&1 || cmp "$(ls straight/*.vti | head -n 1)" "$(ls killed/*.vti | head -n 1)" || fail "a finished frame is another"
+    ends 0 "$weir" run --restart killed --threads 1 --quiet --set time.end=0.3
+    diff -rq --exclude run.json --exclude checkpoint.weir straight killed >log || fail "the last checkpoint of a killed run continues otherwise"
+    ;;
+esac

@@ -1,0 +1,104 @@
+// Who owns which planes and what travels: arithmetic that all ranks do alike, against its definition; and that one rank asks for nothing.
+#include "core/grid.hpp"
+#include "support/test.hpp"
+
+#include <set>
+
+namespace weir {
+
+namespace {
+
+TEST("planes are cut at multiples of 8 where there are enough, of fewer where not, and every rank has some") {
+    EXPECT_TRUE(cut_of(100, 1).empty());
+    EXPECT_EQ(cut_of(64, 4).at, (std::vector<int>{0, 16, 32, 48, 64}));
+    EXPECT_EQ(cut_of(70, 3).at, (std::vector<int>{0, 16, 40, 70}));
+    EXPECT_EQ(cut_of(3, 3).at, (std::vector<int>{0, 1, 2, 3}));
+    for (int planes = 1; planes < 80; ++planes)
+        for (int ranks = 2; ranks <= std::min(planes, 9); ++ranks) {
+            const Cut cut = cut_of(planes, ranks);
+            ASSERT_EQ(cut.ranks(), ranks);
+            ASSERT_EQ(cut.planes(), planes);
+            for (int r = 0; r < ranks; ++r) ASSERT_LT(cut.begin(r), cut.end(r, planes)) << planes << " planes, " << ranks << " ranks";
+        }
+}
+
+/// Beyond both cuts, plane by plane as one would say it.
+std::set<int> wanted(const Cut& cut, int rank, int count, int deep, bool ring) {
+    std::set<int> planes;
+    const int n = cut.planes();
+    for (int plane = cut.begin(rank) - deep; plane < cut.end(rank, n) + deep; ++plane) {
+        if (plane >= 0 && plane < count) planes.insert(plane);
+        if (ring && (plane < 0 || plane >= n)) planes.insert((plane + 8 * n) % n);
+    }
+    for (int plane = cut.begin(rank); plane < cut.end(rank, count); ++plane) planes.erase(plane);
+    return planes;
+}
+
+TEST("what all ranks together send to one are the planes beyond its cuts, each once, from its owner; cells and faces, around a ring too") {
+    for (const int n : {4, 9, 16, 24, 33})
+        for (const int ranks : {2, 3, 4})
+            for (const int faces : {0, 1})
+                for (const int deep : {1, 3, 7})
+                    for (const bool ring : {false, true}) {
+                        const Cut cut = cut_of(n, ranks);
+                        for (int to = 0; to < ranks; ++to) {
+                            std::set<int> sent;
+                            for (int from = 0; from < ranks; ++from)
+                                for (const PlaneRange& range : halo_from(cut, from, to, n + faces, deep, ring))
+                                    for (int plane = range.begin; plane < range.end; ++plane) {
+                                        EXPECT_TRUE(plane >= cut.begin(from) && plane < cut.end(from, n + faces));
+                                        EXPECT_TRUE(sent.insert(plane).second) << "twice";
+                                    }
+                            EXPECT_EQ(sent, wanted(cut, to, n + faces, std::min(deep, n), ring)) << n << ' ' << ranks << ' ' << deep << ' ' << ring;
+                        }
+                    }
+}
+
+TEST("one rank owns everything, and an empty cut changes no loop") {
+    EXPECT_FALSE(slabs().several());
+    const Cut none = cut_of(10, slabs().ranks());
+    const OwnPlanes mine(none);
+    EXPECT_FALSE(over_ranks());
+    int visited = 0;
+    const int before = set_threads(1);
+    for_each_cell(Index<2>{{3, 10}}, [&](const Index<2>&) { ++visited; });
+    set_threads(before);
+    EXPECT_EQ(visited, 30);
+    Grid<real, 2> q(Index<2>{{3, 10}}, 2);
+    refresh(q, true, 3);
+    gather(q);
+    EXPECT_EQ(sum_over(q.extent(), [&](const Index<2>& I) { return q(I); }), 60);
+    EXPECT_EQ(slabs().traffic().messages, 0);
+}
+
+/// Two ranks of which the other answers with a plane's own number, as a rank whose planes hold those would.
+class Echo final : public Slabs {
+public:
+    Echo() : Slabs(1, 2) {}
+    void gather(const Cut& cut, const Planes& planes) override {
+        auto* values = static_cast<real*>(planes.first);
+        for (int plane = 0; plane < cut.end(0, planes.count); ++plane) values[plane] = plane;
+    }
+};
+
+TEST("over ranks a loop does its own planes, and a sum adds everybody's in the order of the planes") {
+    set_slabs(std::make_unique<Echo>());
+    {
+        const Cut cut = cut_of(16, 2);
+        const OwnPlanes mine(cut);
+        std::vector<int> seen(17, 0);
+        for_each_plane(0, 17, [&](int plane) { seen[static_cast<std::size_t>(plane)] = 1; });  // 17: faces
+        for (int plane = 0; plane < 17; ++plane) EXPECT_EQ(seen[static_cast<std::size_t>(plane)], plane >= 8 ? 1 : 0);
+        EXPECT_EQ(plane_sum(16, [](int plane) { return real(plane); }), 120);
+        EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 7);  // of the other's, which echo their numbers
+        const AllPlanes all;
+        EXPECT_FALSE(over_ranks());
+        EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 0);
+    }
+    set_slabs(nullptr);
+    EXPECT_FALSE(over_ranks());
+}
+
+}  // namespace
+
+}  // namespace weir
