@@ -112,23 +112,21 @@ Curve line_of(const thermo::Substance& substance, thermo::Boundary boundary, con
     return curve;
 }
 
-/// Where the warmest and the coldest particle of a run have been among the states of its substance.
+/// Where the warmest particle of a run has been among the states of its substance.
 Panel path_in_diagram(const RunRecord& run, const Reference&) {
     Panel panel{.title = "The run among the states", .x = {"T [K]"}, .y = {"p [Pa]", true}};
     const auto substance = matter::substance_of(*run.scene);
     const matter::Ambient ambient(*run.scene);
-    const std::pair<const char*, const char*> ends[] = {{"warmest", "warmest particle"}, {"coldest", "coldest particle"}};
-    constexpr real below = 40;  // the triple point, so much of the line to ice [K]
+    constexpr real below = 20, above = 160;  // the triple point, so much of the lines: water from 90 Pa to 0.7 MPa [K]
     if (const auto triple = substance->triple(); triple && substance->critical()) {
-        panel.curves.push_back(line_of(*substance, thermo::Boundary::saturation, "saturation", triple->T, substance->critical()->T));
         panel.curves.push_back(line_of(*substance, thermo::Boundary::sublimation, "sublimation", triple->T - below, triple->T));
+        panel.curves.push_back(line_of(*substance, thermo::Boundary::saturation, "saturation", triple->T,
+                                       std::min(triple->T + above, substance->critical()->T)));
     }
-    for (const auto& [series, label] : ends) {
-        const Curve T = run.series(series);
-        Curve path{.label = label, .x = T.y};
-        for (const real t : T.x) path.y.push_back(ambient.pressure(t));
-        panel.curves.push_back(std::move(path));
-    }
+    const Curve T = run.series("warmest");
+    Curve path{.label = "warmest", .x = T.y};
+    for (const real t : T.x) path.y.push_back(ambient.pressure(t));
+    panel.curves.push_back(std::move(path));
     return panel;
 }
 
