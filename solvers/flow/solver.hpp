@@ -20,7 +20,7 @@ namespace weir::flow {
 scene::SolverKind kind();
 
 template <int D>
-class FlowSolver final : public Solver {
+class FlowSolver : public Solver {
 public:
     explicit FlowSolver(const scene::Scene& scene);
 

@@ -47,6 +47,25 @@ Key ambient_key() {
                                 .min_open = true}}}}};
 }
 
+Key ambient_pressure_key() {
+    return {
+        .name = "ambient",
+        .type = Type::table,
+        .doc = "The surroundings.",
+        .keys = {{.name = "keyframes",
+                  .type = Type::tables,
+                  .doc = "Pressure in the course of time, on straight lines between these moments. Only with heat.vapour, which boils at "
+                         "it; latent heats, heat capacities and where it melts are those of the lowest.",
+                  .keys = {{.name = "t", .type = Type::number, .doc = "The moment.", .unit = "s", .required = true},
+                           {.name = "pressure",
+                            .type = Type::number,
+                            .doc = "At which it boils, in place of heat.pressure.",
+                            .unit = "Pa",
+                            .required = true,
+                            .min = 0,
+                            .min_open = true}}}}};
+}
+
 Ambient::Ambient(const scene::Scene& scene) {
     pressure_ = {{0, scene.number("heat.pressure")}};
     if (!scene.has("heat.ambient")) return;
@@ -77,6 +96,13 @@ real Ambient::at(const std::vector<Frame>& frames, real t) {
     const Frame& last = *(next - 1);
     if (next == frames.end()) return last.value;
     return last.value + (t - last.t) / (next->t - last.t) * (next->value - last.value);
+}
+
+real Ambient::lowest_pressure() const {
+    return std::min_element(pressure_.begin(), pressure_.end(), [](const Frame& a, const Frame& b) { return a.value < b.value; })->value;
+}
+real Ambient::highest_pressure() const {
+    return std::max_element(pressure_.begin(), pressure_.end(), [](const Frame& a, const Frame& b) { return a.value < b.value; })->value;
 }
 
 real Ambient::to_next_frame(real t) const {

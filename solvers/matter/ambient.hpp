@@ -9,6 +9,8 @@ namespace weir::matter {
 
 /// The key "ambient" of the table "heat".
 scene::Key ambient_key();
+/// The same where nothing but what boils sees the surroundings: their pressure in the course of time.
+scene::Key ambient_pressure_key();
 
 class Ambient {
 public:
@@ -20,6 +22,8 @@ public:
     bool pressure_changes() const { return pressure_.size() > 1; }
     real temperature(real t) const { return at(temperature_, t); }  // [K]
     real pressure(real t) const { return at(pressure_, t); }        // heat.pressure where no keyframe says another [Pa]
+    real lowest_pressure() const;                                   // of all times [Pa]
+    real highest_pressure() const;                                  // [Pa]
     /// Until the next keyframe; ∞ after the last [s].
     real to_next_frame(real t) const;
 

@@ -79,10 +79,14 @@ scene::Variant wall_with_exchange() {
 }
 
 thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance) {
+    return curve_at(scene.number("heat.pressure"), "heat.pressure", scene, substance);
+}
+
+thermo::HeatCurve curve_at(real pressure, const std::string& path, const scene::Scene& scene, const thermo::Substance& substance) {
     try {
-        return substance.heat_curve(scene.number("heat.pressure"));
+        return substance.heat_curve(pressure);
     } catch (const BadInput& error) {
-        scene.refuse("heat.pressure", error.what());
+        scene.refuse(path, error.what());
     }
 }
 

@@ -24,6 +24,8 @@ scene::Variant wall_with_exchange();
 
 /// Enthalpy against temperature at the scene's heat.pressure, at which it is refused where the substance is not known there.
 thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance);
+/// At another pressure, which `path` of the scene says.
+thermo::HeatCurve curve_at(real pressure, const std::string& path, const scene::Scene& scene, const thermo::Substance& substance);
 /// Refuses a temperature of 0 K and below, at its place.
 void check_temperature(const scene::Scene& scene, const std::string& path, real T);
 /// Refuses a heater, scene.heaters[i], that ends before it starts.

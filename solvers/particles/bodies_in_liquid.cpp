@@ -148,6 +148,14 @@ void BodiesInLiquid<D>::count_forces() {
 }
 
 template <int D>
+void BodiesInLiquid<D>::fall(Domain<D>& domain, real end, real dt) {
+    begin(domain, dt);
+    exchange(domain, dt, true);
+    domain.solids.set_time(end);
+    move(domain, dt);
+}
+
+template <int D>
 void BodiesInLiquid<D>::exchange(Domain<D>& domain, real dt, bool heavy) {
     sum_up();
     solve_for_velocities(dt, heavy);

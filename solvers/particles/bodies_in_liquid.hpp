@@ -50,6 +50,8 @@ public:
     real over_last(real dt) const { return last_dt_ > 0 ? dt / last_dt_ : 0; }
     /// A step starts: remembers where bodies are, and what they may touch in a step.
     void begin(const Domain<D>& domain, real dt);
+    /// Then they fall by their weight, and go where their velocities take them; `end`: the time at the end of the step.
+    void fall(Domain<D>& domain, real end, real dt);
     /// New velocities of bodies from all meetings, from their weight where `heavy`, and from what they touch. Meetings then say what
     /// particles have been given in all.
     void exchange(Domain<D>& domain, real dt, bool heavy);

@@ -35,7 +35,8 @@ template <int D>
 void DeviceFluid<D>::expand() {
     if (ice_ && count() > 0) run("rests_of_ice", {count(), heat_states_, order, enthalpy, rests});
     if (!effects_.heat || !effects_.heat->vapour() || count() == 0) return;
-    const auto& vapour = *effects_.heat->vapour();
+    auto& vapour = *effects_.heat->vapour();
+    if (vapour.set_time(host_.time)) device_->upload(vapour_, &vapour.params(), sizeof(VapourParams));
     const int columns = vapour.columns(), rows = vapour.rows();
     device_->fill_zero(above_, above_.bytes);
     run("count_in_columns", {count(), stride_, vapour_, x, above_});

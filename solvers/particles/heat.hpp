@@ -76,6 +76,8 @@ public:
 
     /// Of a temperature; no more than the liquid has where it begins to boil [J/kg].
     real enthalpy(real T) const { return std::min(curve_.enthalpy(T), states_.liquid_end); }
+    /// Of a liquid, or what it freezes to, at the start. Throws BadInput where it boils under the pressure of the first moment [J/kg].
+    real start_enthalpy(real T) const;
     /// What the scene lets boil; nullptr: nothing.
     Vapour<D>* vapour() const { return vapour_.get(); }
     /// How deep the particles are and what density they are to have; false: none boils.
@@ -125,7 +127,7 @@ public:
     }
 
 private:
-    void refuse_boiling(const scene::Scene& scene, const std::string& path, real T, const std::string& why) const;
+    bool boils_at_start(real T) const;
     real theta_of_wall(real T) const;
     void set_pairs(const Scheme& scheme);
     void set_ice(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance);

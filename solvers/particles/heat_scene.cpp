@@ -1,6 +1,7 @@
 // What a scene says of heat to particles: the substance, what sides and heaters give, temperatures at the start.
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
+#include "matter/ambient.hpp"
 #include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "particles/heat.hpp"
@@ -39,11 +40,14 @@ void check_density(const scene::Scene& scene, const thermo::Substance& substance
                  "solid " + text(solid) + ", liquid " + text(liquid) + " kg/m^3: this solver takes one for both");
 }
 
+/// At the lowest pressure that the scene tells of: where there is more it boils at a higher enthalpy (Vapour).
 thermo::HeatCurve liquid_curve(const scene::Scene& scene, const thermo::Substance& substance) {
-    const auto curve = matter::curve_of(scene, substance);
+    const matter::Ambient ambient(scene);
+    const std::string path = ambient.pressure_changes() ? "heat.ambient.keyframes" : "heat.pressure";
+    const auto curve = matter::curve_at(ambient.lowest_pressure(), path, scene, substance);
     if (!has_liquid(curve))
-        scene.refuse(substance.has(thermo::Boundary::saturation) ? "heat.pressure" : "substance",
-                     "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance.name() + " is never a liquid",
+        scene.refuse(substance.has(thermo::Boundary::saturation) ? path : "substance",
+                     "at " + scene::number_text(ambient.lowest_pressure()) + " Pa " + substance.name() + " is never a liquid",
                      "particles are those of a liquid");
     return curve;
 }
@@ -98,7 +102,7 @@ std::vector<Key> heat_keys() {
         {.name = "heat",
          .type = Type::table,
          .doc = "How a substance takes up heat. Only where `substance` is named.",
-         .keys = {matter::pressure_key(), frozen_key(), vapour_key()}},
+         .keys = {matter::pressure_key(), matter::ambient_pressure_key(), frozen_key(), vapour_key()}},
         matter::heaters_key(
             "Regions that give off heat, evenly over the particles inside; while there is none, nothing. Only where `substance` is named."),
         sides};
@@ -151,10 +155,12 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
     check_density(scene, *substance, states_);
     set_ice(scene, domain, *substance);
     if (vapour_is_named(scene)) {
-        vapour_ = std::make_unique<Vapour<D>>(scene, domain, *substance, states_);
-        const real highest = vapour_->params().shift[WEIR_SHIFT_PIECES];
+        vapour_ = std::make_unique<Vapour<D>>(scene, domain, substance, states_);
+        const real highest = vapour_->highest_shift();
         states_.T_vapour = heat_temperature(states_.liquid_end + highest, highest, &states_);
     }
+    if (!vapour_ && !scene.root().tables("heat.ambient.keyframes").empty())
+        scene.refuse("heat.ambient.keyframes", "the surroundings' pressure is where the liquid boils, and here none does", "heat.vapour");
     Scheme scheme;
     scheme.read(scene);
     set_pairs(scheme);
@@ -200,9 +206,19 @@ std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene& scene) {
     };
 }
 
+/// At the surface, where it boils first.
 template <int D>
-void Heat<D>::refuse_boiling(const scene::Scene& scene, const std::string& path, real T, const std::string& why) const {
-    if (curve_.enthalpy(T) > states_.liquid_end) scene.refuse(path, "at " + scene::number_text(T) + " K the liquid boils", why);
+bool Heat<D>::boils_at_start(real T) const {
+    const real more = vapour_ ? vapour_->params().shift[0] : 0;
+    return T > heat_temperature(states_.liquid_end + more, more, &states_);
+}
+
+/// The curve's own liquid ends where it boils under the lowest pressure of all times.
+template <int D>
+real Heat<D>::start_enthalpy(real T) const {
+    if (boils_at_start(T)) throw BadInput("at " + scene::number_text(T) + " K the liquid boils");
+    const real least = heat_temperature(states_.liquid_end, 0, &states_);
+    return T > least ? states_.liquid_end + (T - least) / states_.per_c[1] : curve_.enthalpy(T);
 }
 
 /// Beyond it the particles' own function of the temperature goes on.
@@ -236,7 +252,9 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
             };
             if (T) {
                 matter::check_temperature(scene, path + ".temperature", *T);
-                if (!vapour_) refuse_boiling(scene, path + ".temperature", *T, "the scene names no heat.vapour");
+                if (!vapour_ && boils_at_start(*T))
+                    scene.refuse(path + ".temperature", "at " + scene::number_text(*T) + " K the liquid boils",
+                                 "the scene names no heat.vapour");
                 held_ = true;
                 freezing_[static_cast<std::size_t>(2 * a + end)] = *T < states_.T;
             }
@@ -283,23 +301,25 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
         const real T = value(fluid.position(i));
         if (!(T >= coldest)) coldest = T;
         hottest = std::max(hottest, T);
-        fluid.enthalpy.push_back(curve_.enthalpy(T));
+        fluid.enthalpy.push_back(boils_at_start(T) ? states_.vapour_begin : start_enthalpy(T));  // refused below
         if (free_) fluid.density[static_cast<std::size_t>(i)] = rho0_ * rest(fluid.enthalpy.back());
     }
     if (!(coldest > 0))
         scene.refuse("initial.temperature", "somewhere it is " + scene::number_text(coldest) + " K at the start",
                      "temperatures are above 0 K");
-    refuse_boiling(scene, "initial.temperature", hottest, "particles start as a liquid");
+    if (boils_at_start(hottest))
+        scene.refuse("initial.temperature", "at " + scene::number_text(hottest) + " K the liquid boils", "particles start as a liquid");
 }
 
-#define WEIR_INSTANTIATE(D)                                                                                         \
-    template Heat<D>::Heat(const scene::Scene&, const Domain<D>&);                                                  \
-    template void Heat<D>::set_ice(const scene::Scene&, const Domain<D>&, const thermo::Substance&);                \
-    template std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene&);                               \
-    template void Heat<D>::refuse_boiling(const scene::Scene&, const std::string&, real, const std::string&) const; \
-    template real Heat<D>::theta_of_wall(real) const;                                                               \
-    template void Heat<D>::read_sides(const scene::Scene&, const Domain<D>&);                                       \
-    template void Heat<D>::read_heaters(const scene::Scene&, const Domain<D>&);                                     \
+#define WEIR_INSTANTIATE(D)                                                                          \
+    template Heat<D>::Heat(const scene::Scene&, const Domain<D>&);                                   \
+    template void Heat<D>::set_ice(const scene::Scene&, const Domain<D>&, const thermo::Substance&); \
+    template std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene&);                \
+    template bool Heat<D>::boils_at_start(real) const;                                               \
+    template real Heat<D>::start_enthalpy(real) const;                                               \
+    template real Heat<D>::theta_of_wall(real) const;                                                \
+    template void Heat<D>::read_sides(const scene::Scene&, const Domain<D>&);                        \
+    template void Heat<D>::read_heaters(const scene::Scene&, const Domain<D>&);                      \
     template void Heat<D>::start(const scene::Scene&, Fluid<D>&) const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -49,14 +49,15 @@ Key vapour_key() {
 }
 
 template <int D>
-Vapour<D>::Vapour(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance, const HeatStates& states) {
-    const real p = scene.number("heat.pressure"), rho0 = scene.number("fluid.density");
-    const auto critical = substance.critical();
+Vapour<D>::Vapour(const scene::Scene& scene, const Domain<D>& domain, thermo::SubstancePtr substance, const HeatStates& states)
+    : ambient_(scene), substance_(std::move(substance)), per_c_(states.per_c[1]) {
+    const real p = ambient_.lowest_pressure(), rho0 = scene.number("fluid.density");
+    const auto critical = substance_->critical();
     if (!(states.vapour_begin < 1e300) || (critical && !(p < critical->p)))
-        scene.refuse("heat.vapour", "at " + scene::number_text(p) + " Pa " + std::string(substance.name()) + " does not boil",
+        scene.refuse("heat.vapour", "at " + scene::number_text(p) + " Pa " + std::string(substance_->name()) + " does not boil",
                      "vapour is below the critical pressure");
-    const real boils = substance.temperature(thermo::Boundary::saturation, p);
-    const real physical = substance.warmer_density(thermo::Boundary::saturation, boils);
+    const real boils = substance_->temperature(thermo::Boundary::saturation, p);
+    const real physical = substance_->warmer_density(thermo::Boundary::saturation, boils);
     const real density = scene.text("heat.vapour.name") == "own" ? scene.number("heat.vapour.density") : physical;
     if (!(density < rho0))
         scene.refuse("heat.vapour.density", "the vapour's " + scene::number_text(density) + " kg/m^3 are not less than the liquid's",
@@ -65,10 +66,16 @@ Vapour<D>::Vapour(const scene::Scene& scene, const Domain<D>& domain, const ther
         concern_ = fmt::format(
             "the vapour's density is not the physical one: {:.4g} kg/m^3, {:.3g} times {}'s {:.4g} kg/m^3 where it boils at {:.6g} Pa; "
             "mass, latent heat and temperatures are not changed by that",
-            density, density / physical, substance.name(), physical, p);
+            density, density / physical, substance_->name(), physical, p);
     params_.expansion = rho0 / density;
     set_columns(scene, domain);
-    set_shifts(scene, substance, states);
+    const real most = ambient_.highest_pressure() + weight_ * deepest_;
+    if (critical && !(most < critical->p))
+        scene.refuse("heat.vapour", "under the weight of the liquid the pressure may be " + scene::number_text(most) + " Pa",
+                     std::string(substance_->name()) + " boils below " + scene::number_text(critical->p) + " Pa");
+    set_shifts(ambient_.highest_pressure());
+    highest_shift_ = params_.shift[WEIR_SHIFT_PIECES];
+    set_shifts(ambient_.pressure(0));
 }
 
 template <int D>
@@ -94,19 +101,22 @@ void Vapour<D>::set_columns(const scene::Scene& scene, const Domain<D>& domain) 
     deepest_ = domain.hi[axis] - domain.lo[axis];
 }
 
-/// By the line of saturation; latent heat and heat capacities stay those of heat.pressure.
+/// By the line of saturation; latent heat and heat capacities stay those of the lowest pressure.
 template <int D>
-void Vapour<D>::set_shifts(const scene::Scene& scene, const thermo::Substance& substance, const HeatStates& states) {
-    const real p = scene.number("heat.pressure"), most = p + weight_ * deepest_;
-    if (const auto critical = substance.critical(); critical && !(most < critical->p))
-        scene.refuse("heat.vapour", "under the weight of the liquid the pressure may be " + scene::number_text(most) + " Pa",
-                     std::string(substance.name()) + " boils below " + scene::number_text(critical->p) + " Pa");
-    const real boils = substance.temperature(thermo::Boundary::saturation, p);
+void Vapour<D>::set_shifts(real pressure) {
+    const real boils = substance_->temperature(thermo::Boundary::saturation, ambient_.lowest_pressure());
     for (int i = 0; i <= WEIR_SHIFT_PIECES; ++i) {
-        const real there = p + weight_ * deepest_ * i / WEIR_SHIFT_PIECES;
-        params_.shift[i] = (substance.temperature(thermo::Boundary::saturation, there) - boils) / states.per_c[1];
+        const real there = pressure + weight_ * deepest_ * i / WEIR_SHIFT_PIECES;
+        params_.shift[i] = (substance_->temperature(thermo::Boundary::saturation, there) - boils) / per_c_;
     }
     params_.pieces_per_depth = WEIR_SHIFT_PIECES / deepest_;
+}
+
+template <int D>
+bool Vapour<D>::set_time(real t) {
+    if (!ambient_.pressure_changes()) return false;
+    set_shifts(ambient_.pressure(t));
+    return true;
 }
 
 template <int D>
@@ -120,6 +130,7 @@ int Vapour<D>::columns() const {
 template <int D>
 bool Vapour<D>::find(const Fluid<D>& fluid, const HeatStates& states) {
     const auto h = [&](int i) { return fluid.enthalpy[static_cast<std::size_t>(i)]; };
+    set_time(fluid.time);
     boils_ = fluid.count() > 0 && block_max(fluid.count(), h) > states.liquid_end;
     if (!boils_) return false;
     const auto n = static_cast<std::size_t>(fluid.count());

@@ -1,9 +1,10 @@
 // Boiling and condensation of particles: one whose enthalpy is beyond the liquid's end at the pressure of its place takes the latent heat
 // up in becoming vapour, and expands to the vapour's density; cooled, it goes back the same way. Enthalpy is all that is kept: shares,
 // densities and temperatures follow from it and from the place (kernels/heat_state.inl, kernels/vapour.inl).
-//     p = heat.pressure + rho0 g d,   d: liquid volume above the particle over area, in its column of four spacings across
+//     p = p(t) + rho0 g d,   d: liquid volume above the particle over area, in its column of four spacings across
 // which is the weight above it, whether of liquid or vapour, and the depth below the surface of a liquid at rest.
 #pragma once
+#include "matter/ambient.hpp"
 #include "particles/fluid.hpp"
 #include "thermo/substance.hpp"
 
@@ -30,8 +31,8 @@ scene::Key vapour_key();
 template <int D>
 class Vapour {
 public:
-    /// states: of the substance at the scene's pressure.
-    Vapour(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance, const HeatStates& states);
+    /// states: of the substance at the lowest pressure that the scene tells of.
+    Vapour(const scene::Scene& scene, const Domain<D>& domain, thermo::SubstancePtr substance, const HeatStates& states);
 
     /// How deep every particle is, and what density it is to have; false: all are liquid at any depth, and nothing needs to know.
     bool find(const Fluid<D>& fluid, const HeatStates& states);
@@ -42,6 +43,10 @@ public:
     bool boils() const { return boils_; }
 
     const VapourParams& params() const { return params_; }
+    /// To the pressure of that moment; whether it changes in the course of time.
+    bool set_time(real t);
+    /// The largest of all depths and times [J/kg].
+    real highest_shift() const { return highest_shift_; }
     int columns() const;
     int rows() const { return params_.cells[params_.axis]; }
     /// That the vapour's density is not the physical one, where that is so.
@@ -52,10 +57,14 @@ public:
 
 private:
     void set_columns(const scene::Scene& scene, const Domain<D>& domain);
-    void set_shifts(const scene::Scene& scene, const thermo::Substance& substance, const HeatStates& states);
+    void set_shifts(real pressure);
 
     VapourParams params_{};
+    matter::Ambient ambient_;
+    thermo::SubstancePtr substance_;
+    real per_c_ = 0;                 // of the liquid [kg K/J]
     real weight_ = 0, deepest_ = 0;  // rho0 g [Pa/m]; the height of the domain [m]
+    real highest_shift_ = 0;
     std::string concern_;
     std::vector<real> shift_, rest_;
     std::vector<int> above_;  // particles above each row of each column

@@ -17,28 +17,17 @@ using scene::Type;
 
 template <int D>
 std::vector<Key> LiquidHeat<D>::keys() {
+    const auto none_or_more = [](const char* name, const char* unit, const char* doc) {
+        return Key{.name = name, .type = Type::number, .doc = doc, .unit = unit, .fallback = 0.0, .min = 0};
+    };
     return matter::keys_on_a_grid(
         "the liquid carry heat, freeze and evaporate",
-        {{.name = "surface_exchange",
-          .type = Type::number,
-          .doc = "Heat that comes in through the free surface for each kelvin by which heat.ambient is warmer.",
-          .unit = "W/(m^2 K)",
-          .fallback = 0.0,
-          .min = 0},
-         {.name = "evaporation",
-          .type = Type::number,
-          .doc = "Liquid that evaporates from the surface for each pascal by which its saturation pressure is above "
-                 "vapour_pressure. It goes with its heat and the heat of evaporation, and is counted.",
-          .unit = "kg/(m^2 s Pa)",
-          .fallback = 0.0,
-          .min = 0},
-         {.name = "vapour_pressure",
-          .type = Type::number,
-          .doc = "Of the substance's vapour above the liquid.",
-          .unit = "Pa",
-          .fallback = 0.0,
-          .min = 0},
-         matter::ClosedGas::key()},
+        {none_or_more("surface_exchange", "W/(m^2 K)",
+                      "Heat that comes in through the free surface for each kelvin by which heat.ambient is warmer."),
+         none_or_more("evaporation", "kg/(m^2 s Pa)",
+                      "Liquid that evaporates from the surface for each pascal by which its saturation pressure is above "
+                      "vapour_pressure. It goes with its heat and the heat of evaporation, and is counted."),
+         none_or_more("vapour_pressure", "Pa", "Of the substance's vapour above the liquid."), matter::ClosedGas::key()},
         "the liquid's cells whose centres they cover; none where there is no liquid.");
 }
 

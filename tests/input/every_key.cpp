@@ -231,6 +231,7 @@ std::map<std::string, Said> everything() {
         said["mac_water"].lines.push_back(line);
     for (const std::string& line : fluids) said["mac_water"].refused.push_back(line);
     for (const std::string& line : of_field("temperature", true)) said["mac_water"].refused.push_back(line);  // of no substance
+    const std::string of_falling = "\nheat.ambient.keyframes = [ { t = 0, pressure = 2e3 }, { t = 1, pressure = 3e3 } ]";
     Lines of_heat{"substance = \"water\"\nfluid.density = 1000\ninitial.temperature = { name = \"constant\", value = 280 }",
                   wax + "heat.pressure = 2e3",
                   wax + "heat.frozen = \"free\"",
@@ -266,7 +267,7 @@ std::map<std::string, Said> everything() {
     said["pbf"] = {
         liquid,
         all(of_the_run, particles, solids, bodies, joints, particle_velocities, of_the_surface, of_heat, Lines{walls[0]}, open_sides,
-            Lines{"time.cfl = 0.4", "fluid.density = 2", wax + "heat.vapour = { name = \"own\", density = 600 }",
+            Lines{"time.cfl = 0.4", "fluid.density = 2", wax + "heat.vapour = { name = \"own\", density = 600 }" + of_falling,
                   "scheme = { kernel = \"cubic\", support = 2, iterations = 3, cfm = 1, relaxation = 1, warm_start = 0, settle = 1 "
                   "}",
                   "scheme = { tolerance = 0.1, max_iterations = 9, backend = \"threads\" }",
@@ -284,7 +285,7 @@ std::map<std::string, Said> everything() {
                   "name = \"constant\", value = 280 "
                   "}\nsides.x_min = { kind = \"moving_wall\", velocity = [0, 1], temperature = 310 }"},
             Lines{wax + "scheme.density = \"summation\"\nheat.vapour = \"substance\"",
-                  wax + "scheme.density = \"summation\"\nheat.vapour = { name = \"own\", density = 600 }"},
+                  wax + "scheme.density = \"summation\"\nheat.vapour = { name = \"own\", density = 600 }" + of_falling},
             Lines{walls[1] + "\neffects.viscosity = {}\nfluid.viscosity = 0.01", "fluid.density = 2", "initial.surface = [0, 1]",
                   "scheme = { kernel = \"cubic\", support = 2, sound_speed = 10, state = \"tait\", gamma = 7, density = \"delta\" }",
                   "scheme = { backend = \"threads\", tension = true }\neffects.surface_tension.sigma = 1",

@@ -1,15 +1,11 @@
 // What is true on every backend of particles that carry heat. A file that includes this says first, in namespace weir::test: `backend` (as
 // a scene names it), Sph<D> and Pbf<D> (types of solvers) and missing() (why this machine cannot run them; empty where it can).
 #pragma once
-#include "core/error.hpp"
+#include "matter/substance.hpp"
 #include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
+#include "shared/needs_backend.hpp"
 #include "shared/sph_reference.hpp"
-
-#include "support/test.hpp"
-
-#define NEEDS_BACKEND \
-    if (const std::string why = weir::test::missing(); !why.empty()) GTEST_SKIP() << why
 
 namespace weir::test {
 namespace {  // every file that includes this has its own
@@ -298,5 +294,39 @@ TEST_IN_2D_AND_3D("what boils becomes no warmer than the warmest and no colder t
             EXPECT_GE(c, cold - 1e-5 * cold) << name;  // of thetas in single precision, over the conductivities' ratio
             EXPECT_LE(w, std::max(warm, 600.0) * (1 + 1e-5)) << name;
         }
+    });
+}
+
+/// Nothing but the pressure changes: what is warmer than it boils at becomes vapour, by as much as its surplus of heat pays for.
+TEST_IN_2D_AND_3D("where the pressure of the surroundings falls, a liquid boils at that of the moment") {
+    NEEDS_BACKEND;
+    test::on_both_boiling<D>([&](auto here, auto there, const char* name, const std::string&, const std::string& scheme) {
+        const std::string place = "heat.vapour = { name = \"own\", density = 400.0 }\neffects.gravity.g = " + test::list<D>(0, -9.81, 0) +
+                                  "\nheat.ambient.keyframes = [ { t = 0.001, pressure = 100000.0 }, { t = 0.003, pressure = 20000.0 } ]\n";
+        const auto scene = test::heat_scene<D>(name, test::backend, place, scheme);
+        typename decltype(here)::type solver(scene);
+        typename decltype(there)::type reference(test::heat_scene<D>(name, "reference", place, scheme));
+        const auto substance = matter::substance_of(scene);
+        const auto boils = [&](real p) { return substance->temperature(thermo::Boundary::saturation, p); };
+        const particles::Heat<D> heat(scene, solver.fluid().domain);
+        const real warm = boils(60000), h = heat.start_enthalpy(warm);
+        for (Fluid<D>* fluid : {&solver.fluid(), &reference.fluid()}) std::fill(fluid->enthalpy.begin(), fluid->enthalpy.end(), h);
+        for (int s = 0; s < 3; ++s) solver.step(0.0005), reference.step(0.0005);
+        EXPECT_EQ(test::sum_of("vapour_mass", solver), 0) << name;  // 80 kPa
+        for (int s = 0; s < 4; ++s) solver.step(0.0005), reference.step(0.0005);
+        // Under no depth and under twice the water's: the block may be pressed together.
+        const real least = boils(20000), most = boils(20000 + 1000 * 9.81 * 2),
+                   latent = heat.states().vapour_begin - heat.states().liquid_end;
+        const Fluid<D>& fluid = solver.fluid();
+        const auto set = solver.fields();
+        for (const real T : set.find("temperature")->data[0]) {
+            EXPECT_GE(T, least - 1e-6) << name;
+            EXPECT_LE(T, most + 1e-6) << name;
+        }
+        const real mass = fluid.mass * fluid.count();
+        EXPECT_LE(test::sum_of("vapour_mass", solver), 4000 * (warm - least) / latent * mass) << name;
+        EXPECT_GE(test::sum_of("vapour_mass", solver), 4000 * (warm - most) / latent * mass) << name;
+        EXPECT_NEAR(test::sum_of("vapour_mass", solver), test::sum_of("vapour_mass", reference), 1e-4 * mass) << name;  // depths as cells
+        EXPECT_NEAR(test::sum_of("heat", solver), mass * h, 1e-13 * std::abs(mass * h)) << name;
     });
 }

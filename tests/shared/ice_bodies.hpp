@@ -2,12 +2,8 @@
 #pragma once
 #include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
+#include "shared/needs_backend.hpp"
 #include "shared/sph_reference.hpp"
-
-#include "support/test.hpp"
-
-#define NEEDS_BACKEND \
-    if (const std::string why = weir::test::missing(); !why.empty()) GTEST_SKIP() << why
 
 namespace weir::test {
 namespace {  // every file that includes this has its own

@@ -1,13 +1,8 @@
 // Solvers of SPH for the bodies of tests that every backend shares. A file that includes this says first, in namespace weir::test:
 // `backend` (as a scene names it), `Sph<D>` (the solver's type) and `missing()` (why this machine cannot run it; empty where it can).
 #pragma once
-#include "core/error.hpp"
+#include "shared/needs_backend.hpp"
 #include "shared/sph_reference.hpp"
-
-#include "support/test.hpp"
-
-#define NEEDS_BACKEND \
-    if (const std::string why = weir::test::missing(); !why.empty()) GTEST_SKIP() << why
 
 namespace weir::test {
 namespace {  // every file that includes this has its own

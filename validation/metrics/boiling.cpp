@@ -1,4 +1,6 @@
 // Particles that boil by heat: at what temperature, and the gas that they become.
+#include "matter/ambient.hpp"
+#include "matter/substance.hpp"
 #include "thermo/substance.hpp"
 #include "validation/metrics/lists.hpp"
 
@@ -67,9 +69,9 @@ real last_known(const RunRecord& run, const char* series) {
     return last;
 }
 
-/// Largest |T − T_sat(p + ρ g d)| of what is partly vapour, and T − T_sat of what is liquid, d below the level of the liquid at rest; while
-/// no more than a hundredth of all has become vapour, before bubbles stir it.
-real boiling_error(const FieldSet& fields, const scene::Scene& scene) {
+/// Largest |T − T_sat(p(t) + ρ g d)| of what is partly vapour, and T − T_sat of what is liquid, d below the level of the liquid at rest;
+/// while no more than a hundredth of all has become vapour, before bubbles stir it.
+real boiling_error(const FieldSet& fields, const scene::Scene& scene, real t) {
     constexpr real first_hundredth = 0.01;
     const auto& y = fields.find("particles", "position")->data[1];
     const auto& T = fields.find("particles", "temperature")->data[0];
@@ -82,10 +84,11 @@ real boiling_error(const FieldSet& fields, const scene::Scene& scene) {
     const real level = count * g.spacing[1] / g.cells[0];
     const real weight = scene.number("fluid.density") * std::abs(scene.root().numbers("effects.gravity.g").at(1));
     const auto water = thermo::water();
+    const real pressure = matter::Ambient(scene).pressure(t);
     real worst = 0;
     for (std::size_t i = 0; i < y.size(); ++i) {
         const real depth = std::max<real>(0, level - (y[i] - g.origin[1]));
-        const real above = T[i] - water->temperature(thermo::Boundary::saturation, scene.number("heat.pressure") + weight * depth);
+        const real above = T[i] - water->temperature(thermo::Boundary::saturation, pressure + weight * depth);
         worst = std::max(worst, share[i] > 0 ? std::abs(above) : above);
     }
     return worst;
@@ -98,6 +101,35 @@ real largest_known(const RunRecord& run, const char* series) {
     return worst;
 }
 
+/// A line of the substance between two temperatures.
+Curve line_of(const thermo::Substance& substance, thermo::Boundary boundary, const char* label, real from, real to) {
+    constexpr int pieces = 60;
+    Curve curve{.label = label, .dashed = true};
+    for (int i = 0; i <= pieces; ++i) {
+        const real T = from + (to - from) * i / pieces;
+        curve.x.push_back(T), curve.y.push_back(substance.pressure(boundary, T));
+    }
+    return curve;
+}
+
+/// Where the warmest particle of a run has been among the states of its substance.
+Panel path_in_diagram(const RunRecord& run, const Reference&) {
+    Panel panel{.title = "The run among the states", .x = {"T [K]"}, .y = {"p [Pa]", true}};
+    const auto substance = matter::substance_of(*run.scene);
+    const matter::Ambient ambient(*run.scene);
+    constexpr real below = 20, above = 160;  // the triple point, so much of the lines: water from 90 Pa to 0.7 MPa [K]
+    if (const auto triple = substance->triple(); triple && substance->critical()) {
+        panel.curves.push_back(line_of(*substance, thermo::Boundary::sublimation, "sublimation", triple->T - below, triple->T));
+        panel.curves.push_back(line_of(*substance, thermo::Boundary::saturation, "saturation", triple->T,
+                                       std::min(triple->T + above, substance->critical()->T)));
+    }
+    const Curve T = run.series("warmest");
+    Curve path{.label = "warmest", .x = T.y};
+    for (const real t : T.x) path.y.push_back(ambient.pressure(t));
+    panel.curves.push_back(std::move(path));
+    return panel;
+}
+
 }  // namespace
 
 std::vector<Metric> boiling_metrics() {
@@ -107,6 +139,7 @@ std::vector<Metric> boiling_metrics() {
          .doc = "How far the density of the container's middle half, along every axis, is from the mean at the last moment at which all is "
                 "vapour, relative.",
          .measure = [](const RunRecord& run, const Reference&) { return last_known(run, "gas.mean_error"); },
+         .figure = path_in_diagram,
          .observe = [](const FieldSet& fields, const scene::Scene&, real) { return gas_mean_error(fields); }},
         {.name = "gas.profile_error",
          .unit = "",
@@ -117,11 +150,11 @@ std::vector<Metric> boiling_metrics() {
          .observe = [](const FieldSet& fields, const scene::Scene&, real) { return gas_profile_error(fields); }},
         {.name = "boiling.temperature_error",
          .unit = "K",
-         .doc = "Largest |T - T_sat(p + rho g d)| of any boiling particle, and T - T_sat of any liquid one, d below the level at rest, "
-                "until a "
-                "hundredth of all is vapour.",
+         .doc = "Largest |T - T_sat(p + rho g d)| of any boiling particle, and T - T_sat of any liquid one, d below the level at rest "
+                "and p the pressure of the moment, until a hundredth of all is vapour.",
          .measure = [](const RunRecord& run, const Reference&) { return largest_known(run, "boiling.temperature_error"); },
-         .observe = [](const FieldSet& fields, const scene::Scene& scene, real) { return boiling_error(fields, scene); }},
+         .figure = path_in_diagram,
+         .observe = [](const FieldSet& fields, const scene::Scene& scene, real t) { return boiling_error(fields, scene, t); }},
     };
 }
 

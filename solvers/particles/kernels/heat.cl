@@ -54,7 +54,7 @@ __kernel void conduct(int count, int stride, __constant HeatParams* p, __constan
         const float4 other = at[list[(size_t)k * stride + i]], d = APART(me, other);
         const float y[3] = {other.x, other.y, other.z};
         const float r2 = DISTANCE2(d, p), rise = other.w - me.w;
-        sum += (double)heat_flow(r2, rise, p);
+        float flow = heat_flow(r2, rise, p); /* with those to images it is the same with the other sign at the other end, as each is */
         for (int m = 0; m < images; ++m) {
             float behind = r2;
             for (int a = 0, rest = near[m]; a < 3; ++a, rest /= 3)
@@ -62,8 +62,9 @@ __kernel void conduct(int count, int stride, __constant HeatParams* p, __constan
             if (held[m])
                 of_walls += (double)heat_flow(behind, 2 * theta[m] - (other.w + me.w), p);
             else
-                sum += (double)heat_flow(behind, rise, p);
+                flow += heat_flow(behind, rise, p);
         }
+        sum += (double)flow;
     }
     to[i] = sum + of_walls;
     by_walls[i] = of_walls;

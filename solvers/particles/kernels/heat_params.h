@@ -6,5 +6,5 @@ typedef struct {
     double k_c[3];                                            /* conductivity over heat capacity [kg/(m s)] */
     double T;                                                 /* where the liquid begins [K] */
     double k[3], T_vapour; /* conductivity [W/(m K)]; that of the vapour from this temperature on, of a liquid that may boil [K] */
-    double swells;                                            /* how much more room what is frozen takes: 0 or, where ice moves, 0.09 */
+    double swells;         /* how much more room what is frozen takes: 0 or, where ice moves, 0.09 */
 } HeatStates;

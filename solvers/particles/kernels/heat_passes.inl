@@ -25,7 +25,7 @@ static void heat(const HeatPass& a, const ListChunk& chunk) {
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
             const vf r2 = distance2(dx, dy, dz, p->guard), rise = j.w - i.w;
-            add(sum, heat_flow(r2, rise, p));
+            vf flow = heat_flow(r2, rise, p); /* the sum with those to images is the same with the other sign at j, as each is */
             for (int m = 0; m < images.count; ++m) {
                 const HeatImages::Image& image = images.of[m];
                 const vf other[3] = {j.x, j.y, j.z};
@@ -35,8 +35,9 @@ static void heat(const HeatPass& a, const ListChunk& chunk) {
                 if (image.held)
                     add(by_walls, heat_flow(behind, broadcast(2 * image.theta) - (j.w + i.w), p));
                 else
-                    add(sum, heat_flow(behind, rise, p));
+                    flow += heat_flow(behind, rise, p);
             }
+            add(sum, flow);
         }
         sum += by_walls;
         for (int l = 0; l < live(first, a.count); ++l) a.to[first + l] = sum[l];

@@ -117,6 +117,45 @@ TEST("a liquid boils at the saturation temperature of the pressure at its depth,
     }
 }
 
+TEST("where the pressure of the surroundings changes, a liquid boils at the saturation temperature of the moment") {
+    const std::string falling =
+        "heat = { vapour = { name = \"own\", density = 10.0 }, ambient.keyframes = [ { t = 0.0, pressure = 101325.0 }, "
+        "{ t = 1.0, pressure = 20000.0 } ] }\neffects.gravity.g = [0, -9.81]\n";
+    const auto scene = pot(falling);
+    auto fluid = particles::initial_fluid<2>(scene);
+    const particles::Heat<2> heat(scene, fluid.domain);
+    const auto water = thermo::water();
+    const auto& states = heat.states();
+    fluid.enthalpy.assign(fluid.enthalpy.size(), 0.5 * (states.liquid_end + states.vapour_begin));  // all of it boils
+    for (const real t : {0.0, 0.25, 1.0, 2.0, 0.5}) {
+        const real p = 101325 - std::min<real>(t, 1) * (101325 - 20000);
+        fluid.time = t;
+        heat.place(fluid);
+        for (int i = 0; i < fluid.count(); ++i) {
+            const real d = 0.5 - fluid.position(i)[1];
+            EXPECT_NEAR(particles::heat_temperature(fluid.enthalpy[static_cast<std::size_t>(i)], heat.shift(i), &states),
+                        water->temperature(thermo::Boundary::saturation, p + 1000 * 9.81 * d), 1e-4)  // as at constant pressure
+                << t << ' ' << d;
+        }
+    }
+}
+
+TEST("a liquid starts as warm as the pressure at the start lets it be, however low that will fall") {
+    const auto start = [](const std::string& first, real T) {
+        auto scene = pot("heat = { vapour = { name = \"own\", density = 10.0 }, ambient.keyframes = [ { t = 0.0, pressure = " + first +
+                         " }, { t = 1.0, pressure = 20000.0 } ] }\neffects.gravity.g = [0, -9.81]\n");
+        auto fluid = particles::initial_fluid<2>(scene);
+        particles::Heat<2> heat(scene, fluid.domain);
+        fluid.time = 0;
+        fluid.enthalpy.assign(fluid.enthalpy.size(), heat.start_enthalpy(T));
+        heat.place(fluid);
+        return particles::heat_temperature(fluid.enthalpy[0], heat.shift(0), &heat.states());
+    };
+    for (const real T : {300.0, 333.0, 334.0, 371.0, 373.1}) EXPECT_NEAR(start("101325.0", T), T, 1e-9) << T;
+    EXPECT_THROW(start("101325.0", 374.0), BadInput);
+    EXPECT_THROW(start("30000.0", 371.0), BadInput);
+}
+
 TEST("depth is the weight above over the area, whatever way gravity points and whether it is liquid or vapour") {
     for (const char* g : {"[0, 9.81]", "[-9.81, 0]", "[9.81, 1]"}) {
         const auto scene = pot(std::string("heat.vapour = { name = \"own\", density = 10.0 }\neffects.gravity.g = ") + g + "\n", "1.0");

@@ -2,6 +2,7 @@
 #include "validation/stability/command.hpp"
 
 #include "core/error.hpp"
+#include "flow/solver.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -173,6 +174,47 @@ TEST("each kind of invariant is watched after every step; an axis without its ow
     EXPECT_FALSE(breaks("at_most = 4, power = 1")) << "4 times 0.5";
     EXPECT_TRUE(breaks("at_most = 2, power = 1")) << "2 times 0.5";
     EXPECT_FALSE(breaks("at_most = 1, power = -1")) << "1 over 0.5";
+}
+
+/// The real solver, but for one of its integrals, which is off after the first step.
+struct OffByOne final : flow::FlowSolver<2> {
+    std::string name;
+    real by;
+    OffByOne(const scene::Scene& scene, std::string name_, real by_) : FlowSolver(scene), name(std::move(name_)), by(by_) {}
+    std::vector<Integral> integrals() const override {
+        auto list = FlowSolver::integrals();
+        for (auto& integral : list)
+            if (integral.name == name && time() > 0) integral.value += by;
+        return list;
+    }
+};
+
+/// A watch that no run has ever broken might watch nothing.
+TEST("each watch of hard_melting sees its own number leave its bound") {
+    const auto study = read_stability(WEIR_SOURCE_DIR "/cases/hard_melting", Size::ci);
+    const auto of_mac = std::find_if(study.stresses.begin(), study.stresses.end(),
+                                     [](const Stress& s) { return s.method == "mac" && s.name == "latent heat"; });
+    ASSERT_NE(of_mac, study.stresses.end());
+    Stress stress = *of_mac;
+    stress.steps = 2, stress.proof.clear();
+    const auto broke = [&](const std::string& name, real by) {
+        auto kind = flow::kind();
+        kind.make = [&, name, by](const scene::Scene& scene) { return std::make_unique<OffByOne>(scene, name, by); };
+        return push(stress, 1, {kind});
+    };
+    EXPECT_FALSE(broke("", 0));
+    ASSERT_FALSE(stress.watch.empty());
+    for (const Invariant& watch : stress.watch) {
+        const std::string series = watch.series.substr(0, watch.series.find('-'));
+        const real heat = 1e5;  // of the box: more than 1e5 J/m, so that a millionth of a joule less than that is beyond 1e-12 of it
+        const real by = watch.test == Invariant::Test::drift     ? 1e-6 * heat
+                        : watch.test == Invariant::Test::at_most ? watch.bound
+                                                                 : -2 * std::max<real>(watch.bound, 1);
+        const auto seen = broke(series, by);
+        ASSERT_TRUE(seen) << watch.text();
+        EXPECT_NE(seen->what.find(series), std::string::npos) << seen->what;
+        EXPECT_EQ(seen->step, 1) << watch.text();
+    }
 }
 
 TEST("what is wrong in stability.toml is named") {

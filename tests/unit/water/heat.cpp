@@ -23,6 +23,15 @@ std::string box(int dim, const std::vector<std::string>& cells, const std::vecto
                        list(cells, dim), list(size, dim));
 }
 
+/// So many steps, then as many of that and of another one that goes on from its checkpoint.
+void steps_and_restart(water::Water<2>& one, water::Water<2>& again, int steps) {
+    for (int i = 0; i < steps; ++i) one.step(0.01);
+    Checkpoint checkpoint;
+    one.save(checkpoint);
+    again.restore(checkpoint);
+    for (int i = 0; i < steps; ++i) one.step(0.01), again.step(0.01);
+}
+
 template <int D>
 std::span<const real> field_of(const water::Water<D>& water, const char* name) {
     return water.fields().find(name)->data[0];
@@ -149,11 +158,7 @@ TEST("vapour in a closed box goes on after a restart to the bit") {
         "effects = { gravity = { g = [0.0, -9.81] } }\ninitial = { temperature = { name = \"constant\", value = 350.0 } }\n"
         "heat = { evaporation = 1e-6, enclosed_vapour = 1e-4 }\n");
     water::Water<2> one(scene), other(scene);
-    for (int i = 0; i < 5; ++i) one.step(0.01);
-    Checkpoint checkpoint;
-    one.save(checkpoint);
-    other.restore(checkpoint);
-    for (int i = 0; i < 5; ++i) one.step(0.01), other.step(0.01);
+    steps_and_restart(one, other, 5);
     for (const char* name : {"pressure", "vapour_mass", "internal_energy", "heat"})
         EXPECT_EQ(integral(one, name), integral(other, name)) << name;
 }
@@ -191,11 +196,7 @@ TEST("heat in water: the same bits with one and with three threads, and after a 
                     wax("").substr(wax("").find("[substance]")));
     set_threads(1);
     water::Water<2> one(scene), again(scene);
-    for (int i = 0; i < 4; ++i) one.step(0.01);
-    Checkpoint checkpoint;
-    one.save(checkpoint);
-    again.restore(checkpoint);
-    for (int i = 0; i < 4; ++i) one.step(0.01), again.step(0.01);
+    steps_and_restart(one, again, 4);
     set_threads(3);
     water::Water<2> three(scene);
     for (int i = 0; i < 8; ++i) three.step(0.01);
