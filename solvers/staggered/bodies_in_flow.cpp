@@ -24,6 +24,9 @@ constexpr real first_turn = 1e-2, of_change = 1e-2;
 /// A change tells the added mass if it is this much larger than the residual that was left before it.
 constexpr real differs = 5;
 
+/// Of a cell: how deep a body may dive into liquid that has not felt it yet.
+constexpr real unfelt = 0.1;
+
 }  // namespace
 
 template <int D>
@@ -68,6 +71,40 @@ template <int D>
 void BodiesInFlow<D>::fly(SolidPlacement<D>& solids, real dt) {
     for (auto& body : bodies_.all()) body.fly(dt, gravity_);
     bodies_.place(solids.solids());
+}
+
+/// Of a dry body and the liquid: the least of what the one and the other are away from a place beside the body.
+template <int D>
+real BodiesInFlow<D>::gap(const MacState<D>& s, const Grid<real, D>& phi, real cap, const Body<D>& body) const {
+    const geometry::Pose<D> pose = body.pose();
+    const real beside = norm(h_);
+    CellBox<D> box;
+    for (int d = 0; d < D; ++d) {
+        const auto cell = [&](real x) { return std::clamp(static_cast<int>(std::floor((x - s.u.origin[d]) / h_[d])), -1, s.u.cells[d]); };
+        box.lo[d] = std::max(0, cell(body.at[d] - body.radius - beside));
+        box.hi[d] = std::min(s.u.cells[d], cell(body.at[d] + body.radius + beside) + 1);
+    }
+    real least = infinity;
+    box.in_order([&](const Index<D>& I) {
+        const real away = phi(I);
+        if (away >= std::min(cap, least) || s.cells(I) == Cell::solid) return;
+        Vec<D> x;
+        for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + h_[d] * (I[d] + 0.5);
+        least = std::min(least, std::max(0.0, body.shape->distance(pose.to_rest(x))) + away);
+    });
+    return least;
+}
+
+template <int D>
+real BodiesInFlow<D>::time_to_land(const MacState<D>& s, const Grid<real, D>& phi, real cap, real speed, real dt) const {
+    const real least = unfelt * *std::min_element(h_.begin(), h_.end());
+    for (const Body<D>& body : bodies_.all()) {
+        if (body.wet > 0) continue;
+        const real closing = body.max_speed() + norm(gravity_) * dt;
+        if (closing * dt <= least) continue;
+        dt = std::min(dt, std::max(least, gap(s, phi, cap, body)) / (closing + speed));
+    }
+    return dt;
 }
 
 template <int D>
