@@ -237,7 +237,7 @@ time = { end = 1.0 }
 fluid = { density = 1000.0 }
 effects = { gravity = { g = [0.0, -9.81, 0.0] } }
 solids = [ { shape = "box", min = [-0.1, -0.1, -0.1], max = [1.1, 0.11, 0.7] } ]
-bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], density = 300.0, spin = [1.0, 5.0, 2.0], velocity = [2.0, 0.0, 0.5] },
+bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], density = 300.0, spin = [1.0, 5.0, 2.0], velocity = [25.0, 0.0, 0.5] },
            { shape = "sphere", centre = [0.75, 0.5, 0.3], radius = 0.1, density = 500.0 },
            { shape = "box", min = [0.5, 0.11, 0.3], max = [0.6, 0.2, 0.4], density = 500.0 } ]
 )");
