@@ -102,7 +102,7 @@ real BodiesInFlow<D>::time_to_land(const MacState<D>& s, const Grid<real, D>& ph
         if (body.wet > 0) continue;
         const real closing = body.max_speed() + norm(gravity_) * dt;
         if (closing * dt <= least) continue;
-        dt = std::min(dt, std::max(least, gap(s, phi, cap, body)) / (closing + speed));
+        dt = std::min(dt, std::max(least / closing, gap(s, phi, cap, body) / (closing + speed)));
     }
     return dt;
 }
@@ -479,18 +479,25 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
     adopt(s, dt, b);
     const real whole = coupled ? norm_of(s, *b) : 0, enough = coupled ? 0.5 * tolerance : tolerance;
     real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: of the residual, before the last change
-    for (int count = 0;; ++count) {
+    bool measured = false, again = false;
+    for (int count = 0, last = most_turns;; ++count) {
         if (solver) turn(s, *solver, aim, *b);
         std::swap(met_, last_);
         pushed(s, met_, dt);
-        if (count > 0 && change > differs * left) learn();
+        if (count > 0 && !again && change > differs * left) learn();
+        const real changed = change;
         move_under_forces();
         touch(placement.solids(), dt, count == 0);
         const real added = adopt(s, dt, b);
         left = aim, change = added == 0 ? 0 : added / whole;
         if (!coupled || (change <= enough && aim <= enough)) break;
-        if (count == most_turns) measure_added_mass(s, *solver);
-        if (count == most_turns + most_turns_measured) break;
+        again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so far off that turns lead away
+        if (again) {
+            next_ = before_;
+            change = std::max(adopt(s, dt, b) / whole, enough);
+        }
+        if (!measured && (again || count == last)) measured = true, last = count + most_turns_measured, measure_added_mass(s, *solver);
+        if (measured && count == last) break;
         aim = std::max(enough, of_change * std::min(change, 1.0));
     }
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
