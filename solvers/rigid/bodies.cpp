@@ -256,11 +256,7 @@ Surroundings<D> Bodies<D>::surroundings(const geometry::Solids<D>& solids) const
 template <int D>
 real Bodies<D>::max_rate(real h) const {
     real fastest = 0;
-    for (const Body<D>& body : list_) {
-        real moves = 0, turns = 0;
-        for (std::size_t k = 0; k < freedoms<D>; ++k) (k < D ? moves : turns) += body.velocity[k] * body.velocity[k];
-        fastest = std::max(fastest, std::sqrt(moves) + body.radius * std::sqrt(turns));
-    }
+    for (const Body<D>& body : list_) fastest = std::max(fastest, body.max_speed());
     return fastest / h;
 }
 

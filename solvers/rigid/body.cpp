@@ -116,6 +116,13 @@ Vec<3> Body<D>::angular_momentum() const {
 }
 
 template <int D>
+real Body<D>::max_speed() const {
+    real moves = 0, turns = 0;
+    for (std::size_t k = 0; k < freedoms<D>; ++k) (k < D ? moves : turns) += velocity[k] * velocity[k];
+    return std::sqrt(moves) + radius * std::sqrt(turns);
+}
+
+template <int D>
 real Body<D>::kinetic_energy() const {
     const auto m = mass_matrix();
     real energy = 0;

@@ -62,6 +62,7 @@ struct Body {
     /// Mass, then the inertia tensor in space; row by row.
     std::array<Twist<D>, freedoms<D>> mass_matrix() const;
     real kinetic_energy() const;
+    real max_speed() const;           // none of its points is faster
     Vec<3> angular_momentum() const;  // about the centre of mass; 2D: about z, in the last entry
     /// A time dt on its own: along its velocity, and where neither water nor walls touch it along the parabola of `gravity`, whose push on
     /// the velocity comes later.

@@ -24,6 +24,9 @@ constexpr real first_turn = 1e-2, of_change = 1e-2;
 /// A change tells the added mass if it is this much larger than the residual that was left before it.
 constexpr real differs = 5;
 
+/// Of a cell: how deep a body may dive into liquid that has not felt it yet.
+constexpr real unfelt = 0.1;
+
 }  // namespace
 
 template <int D>
@@ -68,6 +71,40 @@ template <int D>
 void BodiesInFlow<D>::fly(SolidPlacement<D>& solids, real dt) {
     for (auto& body : bodies_.all()) body.fly(dt, gravity_);
     bodies_.place(solids.solids());
+}
+
+/// Of a dry body and the liquid: the least of what the one and the other are away from a place beside the body.
+template <int D>
+real BodiesInFlow<D>::gap(const MacState<D>& s, const Grid<real, D>& phi, real cap, const Body<D>& body) const {
+    const geometry::Pose<D> pose = body.pose();
+    const real beside = norm(h_);
+    CellBox<D> box;
+    for (int d = 0; d < D; ++d) {
+        const auto cell = [&](real x) { return std::clamp(static_cast<int>(std::floor((x - s.u.origin[d]) / h_[d])), -1, s.u.cells[d]); };
+        box.lo[d] = std::max(0, cell(body.at[d] - body.radius - beside));
+        box.hi[d] = std::min(s.u.cells[d], cell(body.at[d] + body.radius + beside) + 1);
+    }
+    real least = infinity;
+    box.in_order([&](const Index<D>& I) {
+        const real away = phi(I);
+        if (away >= std::min(cap, least) || s.cells(I) == Cell::solid) return;
+        Vec<D> x;
+        for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + h_[d] * (I[d] + 0.5);
+        least = std::min(least, std::max(0.0, body.shape->distance(pose.to_rest(x))) + away);
+    });
+    return least;
+}
+
+template <int D>
+real BodiesInFlow<D>::time_to_land(const MacState<D>& s, const Grid<real, D>& phi, real cap, real speed, real dt) const {
+    const real least = unfelt * *std::min_element(h_.begin(), h_.end());
+    for (const Body<D>& body : bodies_.all()) {
+        if (body.wet > 0) continue;
+        const real closing = body.max_speed() + norm(gravity_) * dt;
+        if (closing * dt <= least) continue;
+        dt = std::min(dt, std::max(least / closing, gap(s, phi, cap, body) / (closing + speed)));
+    }
+    return dt;
 }
 
 template <int D>
@@ -442,18 +479,25 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
     adopt(s, dt, b);
     const real whole = coupled ? norm_of(s, *b) : 0, enough = coupled ? 0.5 * tolerance : tolerance;
     real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: of the residual, before the last change
-    for (int count = 0;; ++count) {
+    bool measured = false, again = false;
+    for (int count = 0, last = most_turns;; ++count) {
         if (solver) turn(s, *solver, aim, *b);
         std::swap(met_, last_);
         pushed(s, met_, dt);
-        if (count > 0 && change > differs * left) learn();
+        if (count > 0 && !again && change > differs * left) learn();
+        const real changed = change;
         move_under_forces();
         touch(placement.solids(), dt, count == 0);
         const real added = adopt(s, dt, b);
         left = aim, change = added == 0 ? 0 : added / whole;
         if (!coupled || (change <= enough && aim <= enough)) break;
-        if (count == most_turns) measure_added_mass(s, *solver);
-        if (count == most_turns + most_turns_measured) break;
+        again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so far off that turns lead away
+        if (again) {
+            next_ = before_;
+            change = std::max(adopt(s, dt, b) / whole, enough);
+        }
+        if (!measured && (again || count == last)) measured = true, last = count + most_turns_measured, measure_added_mass(s, *solver);
+        if (measured && count == last) break;
         aim = std::max(enough, of_change * std::min(change, 1.0));
     }
     for (std::size_t i = 0; i < bodies_.count(); ++i) {

@@ -43,6 +43,11 @@ public:
     const poisson::Report& solve(MacState<D>& s, SolidPlacement<D>& solids, real dt, poisson::Solver<D>* solver, real tolerance,
                                  Grid<real, D>* b);
 
+    /// How long until a dry body that moves as now meets the liquid, which moves by `speed` at most, or is a tenth of a cell in it; dt at
+    /// most. A body goes on with its velocity until the pressure has seen it, so that what it closes of the liquid until then is lost or
+    /// lifted. `phi`: distance from the liquid's surface, at least `cap` where it is not known.
+    real time_to_land(const MacState<D>& s, const Grid<real, D>& phi, real cap, real speed, real dt) const;
+
     const Vec<D>& gravity() const { return gravity_; }
     /// Pressure solves of the last step, for tests and studies.
     int turns() const { return turns_; }
@@ -65,6 +70,7 @@ private:
         real below = 0;       // g · (wall − middle of the cell), and of the wall from the body's centre of mass [m²/s²]
         real deep = 0;
     };
+    real gap(const MacState<D>& s, const Grid<real, D>& phi, real cap, const rigid::Body<D>& body) const;
     void find_cuts(const MacState<D>& s, const SolidPlacement<D>& solids);
     void find_faces(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t body);
     Cut& cut(std::size_t cell, std::size_t body);

@@ -121,9 +121,12 @@ void Water<D>::momentum_to_faces(real dt) {
     in_solids_.forget(known_);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
     if (options_.transfer == Transfer::flip) {
+        // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
+        // falls on water would be given to the markers there.
+        if (bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
         in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
-        copy_faces_near(markers_, frame_, state_.u, before_);
+        if (!bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
     }
 }
 
@@ -338,6 +341,7 @@ real Water<D>::advised_dt() const {
             for (int a = 0; a < D; ++a)
                 if (emitter.velocity[a] != 0) dt = std::min(dt, options_.cfl * frame_.h[a] / std::abs(emitter.velocity[a]));
     if (heat_) dt = std::min(dt, heat_->max_dt(state_, surface_.area()));
+    if (bodies_) dt = bodies_->time_to_land(state_, surface_.phi, surface_.cap(), rate_ * h, dt);
     return std::min(dt, effects_.max_dt(state_));
 }
 

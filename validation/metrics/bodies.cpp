@@ -185,6 +185,17 @@ std::vector<Metric> body_metrics() {
                  return std::abs(body_late_mean(track(run, "angle"), 0.75 * run.time, tilt) - ref.number("angle"));
              },
          .figure = body_tilt_panel},
+        {.name = "body.rest_speed",
+         .unit = "m/s",
+         .doc = "Greatest speed at which the body rose or sank in the last quarter of the run.",
+         .measure =
+             [](const RunRecord& run, const Reference&) {
+                 const Curve v = track(run, "velocity_y");
+                 real most = 0;
+                 for (std::size_t i = 0; i < v.size(); ++i)
+                     if (v.x[i] >= 0.75 * run.time) most = std::max(most, std::abs(v.y[i]));
+                 return most;
+             }},
         {.name = "bodies.lean",
          .unit = "rad",
          .doc = "Greatest angle by which any body was tilted from how the scene puts it.",

@@ -1,6 +1,7 @@
 #include "validation/stability/hardship.hpp"
 
 #include "geometry/solids.hpp"
+#include "rigid/bodies.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <fmt/format.h>
@@ -118,6 +119,45 @@ real solid_speed(const Simulation& simulation) {
     return fastest;
 }
 
+/// Bodies of which `is` holds, by their number in the set that the solver shows.
+template <class F>
+real bodies_with(const Simulation& simulation, const char* field, F&& is) {
+    const FieldSet fields = simulation.fields();
+    const FieldView* view = fields.find(rigid::body_set_name, field);
+    if (!view) return 0;
+    real count = 0;
+    for (std::size_t b = 0; b < view->data[0].size(); ++b) count += is(*view, b) ? 1 : 0;
+    return count;
+}
+
+real pushed(const Simulation& simulation) {
+    return bodies_with(simulation, "force", [](const FieldView& force, std::size_t b) {
+        return std::any_of(force.data.begin(), force.data.end(), [&](const auto& component) { return component[b] != 0; });
+    });
+}
+
+real strays(const Simulation& simulation) {
+    const FieldSet fields = simulation.fields();
+    const GridView& g = fields.grid;
+    return bodies_with(simulation, "position", [&](const FieldView& position, std::size_t b) {
+        for (std::size_t d = 0; d < static_cast<std::size_t>(g.dim); ++d)
+            if (const real x = position.data[d][b] - g.origin[d]; !(x >= 0 && x <= g.spacing[d] * g.cells[d])) return true;
+        return false;
+    });
+}
+
+/// The least and the greatest of what the scene's bodies weigh, over the fluid in their place.
+template <int D>
+std::pair<real, real> densities(const Simulation& simulation) {
+    const rigid::Bodies<D> bodies(simulation.scene());
+    std::pair<real, real> range{infinity, -infinity};
+    for (const auto& body : bodies.all()) {
+        const real ratio = body.density() / simulation.scene().number("fluid.density");
+        range = {std::min(range.first, ratio), std::max(range.second, ratio)};
+    }
+    return range;
+}
+
 real integral_of(const Simulation& simulation, const std::string& name) {
     for (const Integral& i : simulation.solver().integrals())
         if (i.name == name) return i.value;
@@ -143,6 +183,11 @@ std::optional<real> counted_in(const std::string& name, const Simulation& simula
     if (name == "aspect") return longest / shortest;
     if (name == "gap") return least_gap<D>(simulation, g);
     if (name == "solid_speed") return solid_speed<D>(simulation);
+    if (name == "pushed") return pushed(simulation);
+    if (name == "strays") return strays(simulation);
+    if (name == "lightest") return densities<D>(simulation).first;
+    if (name == "heaviest") return densities<D>(simulation).second;
+    if (name == "mass_ratio") return densities<D>(simulation).second / densities<D>(simulation).first;
     if (name == "viscous_number") return simulation.scene().number("fluid.viscosity") * report.dt / (shortest * shortest);
     if (name != "film") return std::nullopt;
     real floor = 1;

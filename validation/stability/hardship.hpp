@@ -34,6 +34,9 @@ struct Shown {
 ///   aspect               the longest side of a cell over the shortest
 ///   solid_cells          cells whose centre is inside a solid
 ///   solid_speed          of the fastest solid [m/s]
+///   pushed, strays       free bodies that the fluid pushes; those whose centre of mass is outside the domain
+///   lightest, heaviest   density of a free body over the fluid's
+///   mass_ratio           of the densest free body to the lightest
 ///   viscous_number       viscosity times step over the square of a cell's side
 /// No value for any other name.
 std::optional<real> counted(const std::string& name, const Simulation& simulation, const StepReport& report);

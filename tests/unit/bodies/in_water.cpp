@@ -137,3 +137,107 @@ TEST("a scene without bodies holds no byte of them, and runs no pass") {
     for (const auto& entry : without->passes().list()) EXPECT_NE(entry.name, "bodies");
     EXPECT_EQ(without->fields().find(rigid::body_set_name, "position"), nullptr);
 }
+
+TEST("a body that falls on water dives no deeper than a tenth of a cell before the water feels it, and throws up no more than it brought") {
+    const OneThread alone;
+    const int cells = 20;  // the surface lies on faces: the grid sees a body that dives from within a cell half a cell later
+    const real h = 1.0 / cells, top = 0.4, size = 0.2, start = 0.68;
+    const auto solver =
+        solver_of(tank(cells, fmt::format("{{ shape = \"box\", min = [0.4, {}], max = [0.6, {}], density = 1.0 }}", start, start + size)));
+    real speed = 0, before = start + size / 2;
+    while (shown(*solver, "velocity", 1) <= speed) {  // it falls faster and faster until it lands
+        speed = shown(*solver, "velocity", 1), before = shown(*solver, "position", 1);
+        solver->step(solver->advised_dt());
+    }
+    EXPECT_LE(shown(*solver, "position", 1), before);
+    EXPECT_GE(shown(*solver, "position", 1) - size / 2, top - 0.101 * h);  // the surface at rest is flat to the pressure's tolerance
+    for (const Integral& integral : solver->integrals()) {
+        if (integral.name == "kinetic_energy") {
+            EXPECT_LE(integral.value, 0.5 * size * size * 2 * 9.81 * (start - top));
+        }
+    }
+}
+
+namespace {
+
+/// What solids close of the grid as they stand, found in one sweep of all cells.
+template <int D>
+void expect_placed_as_a_whole(const staggered::MacState<D>& s, const geometry::Solids<D>& solids, const scene::Scene& scene,
+                              bool with_velocity) {
+    staggered::MacState<D> whole(scene, {});
+    staggered::SolidPlacement<D> placement(solids, whole);
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        for (std::size_t f = 0; f < whole.solid.open[at].size(); ++f) {
+            ASSERT_EQ(s.solid.open[at][f], whole.solid.open[at][f]) << "face " << f << " along " << a;
+            if (with_velocity) {
+                ASSERT_EQ(s.solid.velocity[at][f], whole.solid.velocity[at][f]) << "face " << f << " along " << a;
+            }
+        }
+    }
+    for (std::size_t c = 0; c < s.cells.size(); ++c)
+        ASSERT_EQ(s.cells[c] == poisson::Cell::solid, whole.cells[c] == poisson::Cell::solid) << "cell " << c;
+}
+
+}  // namespace
+
+TEST(
+    "what bodies close is found in boxes about them as in the whole grid, bit for bit, of bodies that fall, float, stand and meet a wall") {
+    const OneThread alone;
+    const std::string text = tank(
+        32,
+        "{ shape = \"box\", min = [0.1, 0.5], max = [0.25, 0.6], density = 300.0, spin = [2.0] }, { shape = \"sphere\", centre = [0.5, "
+        "0.4], radius = 0.08, density = 500.0 }, { shape = \"box\", min = [0.7, 0.0], max = [0.85, 0.1], density = 3000.0 }, { shape = "
+        "\"sphere\", centre = [0.35, 0.7], radius = 0.05, density = 10.0, velocity = [-3.0, 0.0] }",
+        "solids = [ { shape = \"box\", min = [0.93, -0.1], max = [1.1, 0.5] } ]");
+    const scene::Scene scene = scene_of(text);
+    const auto solver = water::kind().make(scene);
+    const auto& state = dynamic_cast<const water::Water<2>&>(*solver).state();
+    int moved = 0;
+    for (int step = 0; step < 80; ++step) {
+        const real before = shown(*solver, "position", 1, 0);
+        solver->step(solver->advised_dt());
+        moved += shown(*solver, "position", 1, 0) != before;
+        rigid::Bodies<2> bodies(scene);
+        const FieldSet fields = solver->fields();
+        bodies.recall([&](const char* field, std::size_t component, std::size_t body) {
+            return fields.find(rigid::body_set_name, field)->data[component][body];
+        });
+        geometry::Solids<2> solids(scene.root().tables("solids"));
+        bodies.join(solids);
+        bodies.place(solids);
+        expect_placed_as_a_whole(state, solids, scene, false);
+        if (::testing::Test::HasFatalFailure()) return;
+    }
+    EXPECT_GT(moved, 70);
+}
+
+TEST(
+    "what bodies close in space is found in boxes about them as in the whole grid, bit for bit, with the velocities that they close it "
+    "at") {
+    const OneThread alone;
+    const scene::Scene scene = scene_of(R"(solver = "mac"
+dim = 3
+grid = { cells = [20, 16, 12], size = [1.0, 0.8, 0.6] }
+time = { end = 1.0 }
+fluid = { density = 1000.0 }
+effects = { gravity = { g = [0.0, -9.81, 0.0] } }
+solids = [ { shape = "box", min = [-0.1, -0.1, -0.1], max = [1.1, 0.11, 0.7] } ]
+bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], density = 300.0, spin = [1.0, 5.0, 2.0], velocity = [25.0, 0.0, 0.5] },
+           { shape = "sphere", centre = [0.75, 0.5, 0.3], radius = 0.1, density = 500.0 },
+           { shape = "box", min = [0.5, 0.11, 0.3], max = [0.6, 0.2, 0.4], density = 500.0 } ]
+)");
+    auto bodies = staggered::BodiesInFlow<3>::make(scene);
+    staggered::MacState<3> state(scene, {});
+    staggered::SolidPlacement<3> placement(staggered::BodiesInFlow<3>::solids(scene, bodies.get()), state);
+    bodies->start(state, placement);
+    for (int step = 0; step < 60; ++step) {
+        bodies->fly(placement, 0.01);
+        state.time += 0.01;
+        placement.place(state, state.time);
+        expect_placed_as_a_whole(state, placement.solids(), scene, true);
+        if (::testing::Test::HasFatalFailure()) return;
+        bodies->solve(state, placement, 0.01, nullptr, 1e-6, nullptr);  // no fluid: they fall, turn, and meet the floor
+    }
+    EXPECT_LT(placement.changed().front().hi[0] - placement.changed().front().lo[0], 20);  // boxes, not the whole grid
+}
