@@ -45,6 +45,7 @@ public:
     real speed() const { return bodies_->max_rate(1); }
     /// Who meets whom: filled by a method before each exchange.
     std::vector<Meeting<D>>& meetings() { return meetings_; }
+    const std::vector<Meeting<D>>& meetings() const { return meetings_; }
 
     /// A time over the length of the last step; 0 before the first.
     real over_last(real dt) const { return last_dt_ > 0 ? dt / last_dt_ : 0; }

@@ -68,6 +68,7 @@ DeviceSetup with_scheme(DeviceSetup own, const Scheme& scheme, const Domain<D>& 
     own.device = scheme.backend.device;
     own.kernel = scheme.kernel();
     own.walls = wall_params<single::WallParams>(scheme, domain);
+    own.exact_walls = wall_params<plain::WallParams>(scheme, domain);
     own.support = scheme.support * domain.spacing;
     return own;
 }
@@ -110,6 +111,7 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
     plan_.want(list, static_cast<std::size_t>(room_) * sizeof(int));
     state_params = constant(state_params_of(effects, host_.domain, support_));
     wall_params = constant(setup.walls);
+    if (solid_) take_series(setup.exact_walls);
     kernel_params = constant(setup.kernels);
     parts_ = device_->alloc(device_reduction_groups * 2 * D * sizeof(double));
     host_parts_.resize(device_reduction_groups * 2 * D);
@@ -162,6 +164,14 @@ void DeviceFluid<D>::settle_in() {
 template <int D>
 const Fluid<D>& DeviceFluid<D>::host() const {
     if (host_is_old_) download();
+    return host_;
+}
+
+template <int D>
+Fluid<D>& DeviceFluid<D>::borrow() {
+    if (device_is_old_) upload();
+    download();
+    host_is_old_ = true;
     return host_;
 }
 

@@ -27,7 +27,8 @@ struct DeviceSetup {
     std::string defines;             // "-DWEIR_KEEP ..."
     single::PbfParams kernels{};     // as PBF, XSPH and vorticity read them
     single::WallParams walls{};
-    real support = 0;  // [m]
+    plain::WallParams exact_walls{};  // as solids are read by
+    real support = 0;                 // [m]
 };
 /// And what the scheme says of it.
 template <int D>
@@ -86,6 +87,7 @@ public:
     /// The fluid's constants; its particles may be old.
     const Fluid<D>& setting() const { return host_; }
     const Domain<D>& domain() const { return host_.domain; }
+    Domain<D>& domain() { return host_.domain; }
     const Vec<D>& gravity() const { return host_.gravity; }
     real rest_density() const { return host_.rho0; }
 
@@ -129,6 +131,24 @@ public:
 
     /// Zeroes a number of so many bytes of each particle.
     void clear(const Memory& numbers, std::size_t bytes_per_particle);
+    /// So many numbers of each particle, to the host and back.
+    template <class T>
+    void read(const Memory& from, std::vector<T>& to, std::size_t each = 1) const {
+        to.resize(each * static_cast<std::size_t>(count_));
+        if (!to.empty()) device_->download(to.data(), from, to.size() * sizeof(T));
+    }
+    template <class T>
+    void write(const std::vector<T>& from, const Memory& to) {
+        if (!from.empty()) device_->upload(to, from.data(), from.size() * sizeof(T));
+    }
+    void fetch(const Memory& from, std::array<std::vector<real>, D>& to) const;
+    void send(const std::array<std::vector<real>, D>& from, const Memory& to);
+    /// The state as it is now, for those who go on with it on the host within a step, and send what they have changed.
+    Fluid<D>& borrow();
+    /// Solids are where the host has put them.
+    void place_solids();
+    /// What solids add where a is, after they or some particles have moved.
+    void renew_terms();
     /// A kernel over all particles.
     void run(std::string_view kernel, std::initializer_list<backend::Argument> arguments);
     /// A kernel that leaves (largest, sum) of each group in parts(), and their whole.
@@ -177,7 +197,7 @@ private:
     void count_clamps();
     void reorder();
     void cross_sides();
-    void place_solids();
+    void take_series(const plain::WallParams& walls);
     void meet_solids();
     void append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities,
                 const std::vector<real>& enthalpies);
@@ -185,8 +205,6 @@ private:
     void find_ice();
     void predict_ice(real dt);
     void place_ice();
-    void fetch(const Memory& from, std::array<std::vector<real>, D>& to) const;
-    void send(const std::array<std::vector<real>, D>& from, const Memory& to);
     bool take_out(std::string_view find_stayers);
     std::size_t most_particles() const;
 
@@ -201,6 +219,7 @@ private:
     DeviceEffects<D> effects_;
     real speed_ = 0;
     std::uint32_t clamps_seen_ = 0;
+    Memory solid_series_;
     Memory warming_, by_walls_, heat_pairs_, heat_walls_, heat_states_;
     Memory shift_, vapour_, above_;
     Memory id_, scratch_, names_, cell_, sorted_cell_, velocities_, omegas_;

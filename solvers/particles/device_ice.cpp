@@ -90,12 +90,14 @@ void DeviceFluid<D>::hold_again() {
     send(host_.v, v);
 }
 
-#define WEIR_INSTANTIATE(D)                          \
-    template void DeviceFluid<D>::find_ice();        \
-    template void DeviceFluid<D>::predict_ice(real); \
-    template void DeviceFluid<D>::place_ice();       \
-    template void DeviceFluid<D>::arrive(real);      \
-    template void DeviceFluid<D>::carry_ice(real);   \
+#define WEIR_INSTANTIATE(D)                                                                      \
+    template void DeviceFluid<D>::fetch(const Memory&, std::array<std::vector<real>, D>&) const; \
+    template void DeviceFluid<D>::send(const std::array<std::vector<real>, D>&, const Memory&);  \
+    template void DeviceFluid<D>::find_ice();                                                    \
+    template void DeviceFluid<D>::predict_ice(real);                                             \
+    template void DeviceFluid<D>::place_ice();                                                   \
+    template void DeviceFluid<D>::arrive(real);                                                  \
+    template void DeviceFluid<D>::carry_ice(real);                                               \
     template void DeviceFluid<D>::hold_again();
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace weir::particles {
 
@@ -39,6 +40,15 @@ std::string text_of(const geometry::Solids<D>& solids) {
 }
 
 template <int D>
+void DeviceFluid<D>::take_series(const plain::WallParams& walls) {
+    SolidSeries series{};
+    series.inv_h = walls.inv_h;
+    std::copy(std::begin(walls.fraction), std::end(walls.fraction), series.fraction);
+    std::copy(std::begin(walls.slope), std::end(walls.slope), series.slope);
+    solid_series_ = constant(series);
+}
+
+template <int D>
 void DeviceFluid<D>::place_solids() {
     const auto& solids = host_.domain.solids;
     constexpr std::size_t each = sizeof(SolidPose) / sizeof(double);
@@ -63,17 +73,24 @@ void DeviceFluid<D>::pass_time(real dt) {
 
 template <int D>
 void DeviceFluid<D>::meet_solids() {
-    if (solid_) run("meet_solids", {count(), state_params, wall_params, poses, a, near_solid, terms});
+    if (solid_) run("meet_solids", {count(), state_params, solid_series_, poses, a, near_solid, terms});
 }
 
 template <int D>
 void DeviceFluid<D>::leave_solids() {
-    if (solid_) run("leave_solids", {count(), state_params, wall_params, poses, clamps, a, near_solid, terms});
+    if (solid_) run("leave_solids", {count(), state_params, solid_series_, poses, clamps, a, near_solid, terms});
     hold_places();
+}
+
+template <int D>
+void DeviceFluid<D>::renew_terms() {
+    run("renew_terms", {count(), state_params, solid_series_, poses, a, near_solid, terms});
 }
 
 template std::string text_of(const geometry::Solids<2>&);
 template std::string text_of(const geometry::Solids<3>&);
+template void DeviceFluid<2>::take_series(const plain::WallParams&);
+template void DeviceFluid<3>::take_series(const plain::WallParams&);
 template void DeviceFluid<2>::place_solids();
 template void DeviceFluid<3>::place_solids();
 template void DeviceFluid<2>::pass_time(real);
@@ -81,6 +98,8 @@ template void DeviceFluid<3>::pass_time(real);
 template void DeviceFluid<2>::meet_solids();
 template void DeviceFluid<3>::meet_solids();
 template void DeviceFluid<2>::leave_solids();
+template void DeviceFluid<2>::renew_terms();
+template void DeviceFluid<3>::renew_terms();
 template void DeviceFluid<3>::leave_solids();
 
 }  // namespace weir::particles

@@ -90,8 +90,10 @@ void refuse_what_lacks(const std::string& backend, const scene::Scene& scene, co
             if (scene.effect(name) && std::find(effects.begin(), effects.end(), name) == effects.end())
                 problems.push_back(scene.problem("effects." + name, "the backend " + backend + " has no effect \"" + name + "\"",
                                                  "it has " + known + "; or take scheme.backend = \"threads\""));
-    if (backend == "opencl" && scene.has("bodies") && !scene.root().tables("bodies").empty())
-        problems.push_back(scene.problem("bodies", "the backend opencl has no bodies", "take scheme.backend = \"threads\""));
+    for (std::size_t i = 0; backend == "opencl" && scene.has("bodies") && i < scene.root().tables("bodies").size(); ++i)
+        if (scene.root().tables("bodies")[i].text("shape") == "mesh")
+            problems.push_back(scene.problem("bodies[" + std::to_string(i) + "].shape", "the backend " + backend + " has no shape \"mesh\"",
+                                             "take scheme.backend = \"threads\""));
     if (scene.dim() == 2)
         check_periods<2>(backend, scene, problems);
     else

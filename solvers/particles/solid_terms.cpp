@@ -19,7 +19,7 @@ void SolidTerms<D>::mark(Pairs& pairs) {
     flag_.resize(static_cast<std::size_t>(pairs.size()));
     pairs.fit(terms_, 4);
     std::fill(terms_.begin(), terms_.end(), 0.0f);
-    pairs.each([&](int k) { flag_[static_cast<std::size_t>(k)] = domain_.solids.distance(world(pairs.a() + 4 * k)) < reach; });
+    pairs.each([&](int k) { flag_[static_cast<std::size_t>(k)] = domain_.solids.distance(world(pairs.a() + 4 * k), reach) < reach; });
     near_.clear();
     near_.reserve(flag_.size());
     for (int k = 0; k < pairs.size(); ++k)
@@ -29,14 +29,15 @@ void SolidTerms<D>::mark(Pairs& pairs) {
 template <int D>
 const float* SolidTerms<D>::at(const Pairs&, const float* positions) {
     if (domain_.solids.empty()) return nullptr;
+    const real far = 2 / walls_.inv_h;
     parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
         const int k = near_[static_cast<std::size_t>(i)];
         const Vec<D> x = world(positions + 4 * k);
-        const real phi = std::max<real>(0, domain_.solids.distance(x));
+        const real phi = std::max<real>(0, domain_.solids.distance(x, far));
         float* term = terms_.data() + 4 * k;
         std::fill(term, term + 4, 0.0f);
         if (phi * walls_.inv_h >= 1) return;
-        const Vec<D> n = domain_.solids.normal(x, 1e-3 * domain_.spacing);
+        const Vec<D> n = domain_.solids.normal(x, 1e-3 * domain_.spacing, far);
         const real pull = wall_series(phi, walls_.slope, walls_.inv_h);
         for (int a = 0; a < D; ++a) term[a] = static_cast<float>(-pull * n[a]);
         term[3] = static_cast<float>(wall_series(phi, walls_.fraction, walls_.inv_h));
@@ -45,20 +46,21 @@ const float* SolidTerms<D>::at(const Pairs&, const float* positions) {
 }
 
 template <int D>
-void SolidTerms<D>::meet(const float* positions, std::vector<Meeting<D>>& to) const {
-    const std::size_t bodies = domain_.first_body();
-    to.resize(near_.size());
-    parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
+void meet_bodies(const Domain<D>& domain, const plain::WallParams& walls, const std::vector<int>& near, const float* positions,
+                 const float* terms, std::vector<Meeting<D>>& to) {
+    const std::size_t bodies = domain.first_body();
+    to.resize(near.size());
+    parallel_for(0, static_cast<int>(near.size()), [&](int i) {
         Meeting<D>& m = to[static_cast<std::size_t>(i)];
         m = {};
-        const int k = m.particle = near_[static_cast<std::size_t>(i)];
-        const float* term = terms_.data() + 4 * k;
+        const int k = m.particle = near[static_cast<std::size_t>(i)];
+        const float* term = terms + 4 * k;
         if (term[3] == 0) return;
-        m.at = world(positions + 4 * k);
-        const std::size_t solid = domain_.solids.nearest(m.at);
+        m.at = world_of(domain, positions + 4 * k);
+        const std::size_t solid = domain.solids.nearest(m.at);
         if (solid < bodies) return;
         m.body = static_cast<std::ptrdiff_t>(solid - bodies);
-        for (int a = 0; a < D; ++a) m.open *= 1 - wall_part(static_cast<real>(positions[4 * k + a]), &walls_, a);
+        for (int a = 0; a < D; ++a) m.open *= 1 - wall_part(static_cast<real>(positions[4 * k + a]), &walls, a);
         for (int a = 0; a < D; ++a) m.pull[a] = m.open * static_cast<real>(term[a]);
         m.part = m.open * static_cast<real>(term[3]);
     });
@@ -70,12 +72,16 @@ void SolidTerms<D>::push_out(const Pairs& pairs, float* positions, Clamps& clamp
     parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
         const int k = near_[static_cast<std::size_t>(i)];
         const Vec<D> x = world(positions + 4 * k);
-        if (domain_.solids.distance(x) >= domain_.margin) return;
+        if (domain_.solids.distance(x, domain_.margin) >= domain_.margin) return;
         const Vec<D> y = pairs.is_image(k) ? domain_.kept(x) : domain_.kept(x, clamps);
         for (int a = 0; a < D; ++a) positions[4 * k + a] = pairs.local(y[a], a);
     });
 }
 
+template void meet_bodies(const Domain<2>&, const plain::WallParams&, const std::vector<int>&, const float*, const float*,
+                          std::vector<Meeting<2>>&);
+template void meet_bodies(const Domain<3>&, const plain::WallParams&, const std::vector<int>&, const float*, const float*,
+                          std::vector<Meeting<3>>&);
 template class SolidTerms<2>;
 template class SolidTerms<3>;
 

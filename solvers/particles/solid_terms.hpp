@@ -9,6 +9,20 @@
 
 namespace weir::particles {
 
+/// A place in the passes' coordinates.
+template <int D>
+Vec<D> world_of(const Domain<D>& domain, const float* four) {
+    Vec<D> x;
+    for (int a = 0; a < D; ++a) x[a] = four[a] + domain.centre()[a];
+    return x;
+}
+
+/// Of each particle of the list, the body next to it, if one is, and its term (float4, as passes read them) as walls beside it let the
+/// particle see it.
+template <int D>
+void meet_bodies(const Domain<D>& domain, const plain::WallParams& walls, const std::vector<int>& near, const float* positions,
+                 const float* terms, std::vector<Meeting<D>>& to);
+
 template <int D>
 class SolidTerms {
 public:
@@ -18,22 +32,23 @@ public:
     void mark(Pairs& pairs);
     /// The terms at these positions (float4, as the passes read them), or nullptr without solids.
     const float* at(const Pairs& pairs, const float* positions);
+    /// Those of the last call of at(), where nothing has moved since.
+    const float* there() const { return domain_.solids.empty() ? nullptr : terms_.data(); }
     /// f(k, place, terms) for the particles that can meet a solid; the terms are those of the last call of at().
     template <class F>
     void each_near(const float* positions, F&& f) const {
         for (const int k : near_) f(k, world(positions + 4 * k), terms_.data() + 4 * k);
     }
+    const std::vector<int>& near() const { return near_; }
     /// Of each particle that can meet a solid, the body next to it, if one is, and its term as walls beside it let the particle see it.
-    void meet(const float* positions, std::vector<Meeting<D>>& to) const;
+    void meet(const float* positions, std::vector<Meeting<D>>& to) const {
+        meet_bodies(domain_, walls_, near_, positions, terms_.data(), to);
+    }
     /// Moves marked particles out of solids.
     void push_out(const Pairs& pairs, float* positions, Clamps& clamps) const;
 
 private:
-    Vec<D> world(const float* four) const {
-        Vec<D> x;
-        for (int a = 0; a < D; ++a) x[a] = four[a] + domain_.centre()[a];
-        return x;
-    }
+    Vec<D> world(const float* four) const { return world_of(domain_, four); }
     const Domain<D>& domain_;
     plain::WallParams walls_;
     std::vector<int> near_;

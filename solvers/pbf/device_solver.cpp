@@ -1,5 +1,7 @@
 #include "pbf/device_solver.hpp"
 
+#include "pbf/bodies.hpp"
+
 #include <algorithm>
 
 namespace weir::pbf {
@@ -36,6 +38,7 @@ DevicePbfSolver<D>::DevicePbfSolver(const Options& options, const particles::Flu
     fluid_.plan().want(density_, sizeof(float));
     fluid_.plan().want(multiplier_, sizeof(float));
     fluid_.settle_in();
+    give_ = give_at_walls<D>(options_, start.domain.spacing);
     this->settle();
 }
 
@@ -43,22 +46,28 @@ DevicePbfSolver<D>::DevicePbfSolver(const Options& options, const particles::Flu
 template <int D>
 StepReport DevicePbfSolver<D>::step(real dt) {
     fluid_.let_in(dt);
-    fluid_.predict(dt);                     //  1-4
+    if (bodies_) start_bodies(dt);
+    fluid_.predict(dt);  //  1-4
+    if (bodies_) push_bodies_ahead();
     fluid_.find_neighbours(fluid_.x_star);  //  5-7
     fluid_.expand();
+    if (bodies_) beside_->find_near();
     warm_start(dt);
     int iterations = 0;  //  8
     for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && find_compression().sum <= options_.tolerance * fluid_.count()) break;
+        if (bodies_) carry_bodies();
         correct();  // 12-19
     }
-    update(dt, std::max(dt, last_dt_));  // 20-21, 23-24
+    const real slow = std::max(dt, last_dt_);
+    update(dt, slow);  // 20-21, 23-24
+    if (bodies_) bodies_->end(fluid_.domain(), dt, slow), carried_dt_ = 0;
     last_dt_ = dt;
     fluid_.finish(dt);  // 22
     fluid_.hold_again();
     this->conduct(dt);  // only where a substance is named
-    const real speed = fluid_.max_speed();
+    const real speed = this->find_speed();
     const Reduced c = find_compression();
     const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
     fluid_.end_step();
@@ -86,6 +95,7 @@ void DevicePbfSolver<D>::warm_start(real dt) {
     if (options_.warm_start == 0) return;
     const auto& f = fluid_;
     fluid_.run("start_multipliers", {f.count(), options_.warm_start * dt * dt, f.order, f.carried, f.a, f.b, multiplier_});
+    if (carried_dt_ > 0) carry_bodies();
     correct();
 }
 
@@ -103,7 +113,55 @@ void DevicePbfSolver<D>::correct() {
     const auto& f = fluid_;
     fluid_.run("correct", {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.rests, f.clamps, f.b,
                            f.neighbours, f.list, f.a});
+    if (carried_dt_ > 0)
+        push_bodies();
+    else
+        fluid_.leave_solids();
+}
+
+/// As in PbfSolver.
+template <int D>
+void DevicePbfSolver<D>::start_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    carried_dt_ = dt;
+    bodies_->begin(fluid_.domain(), dt);
+    bodies_->exchange(fluid_.domain(), dt, true);
+    fluid_.domain().solids.set_time(fluid_.time() + dt);
+    bodies_->move(fluid_.domain(), dt);
+}
+
+template <int D>
+void DevicePbfSolver<D>::push_bodies_ahead() {
+    const auto timed = passes_.time("bodies");
+    fluid_.fetch(fluid_.x_star, predicted_);
+    if (!push_ahead(*bodies_, fluid_.borrow(), predicted_, carried_dt_)) return;
+    fluid_.send(predicted_, fluid_.x_star);
+    fluid_.place_solids();
+}
+
+template <int D>
+void DevicePbfSolver<D>::carry_bodies() {
+    const auto timed = passes_.time("bodies");
+    const bool keeps = options_.warm_start > 0;
+    std::vector<float>& four = beside_->meet(fluid_.b);
+    if (keeps) fluid_.read(multiplier_, multipliers_);
+    carry(*bodies_, fluid_.domain(), four.data(), keeps ? multipliers_.data() : nullptr, give_, carried_dt_);
+    fluid_.write(four, fluid_.b);
+    if (keeps) fluid_.write(multipliers_, multiplier_);
+}
+
+template <int D>
+void DevicePbfSolver<D>::push_bodies() {
+    const auto timed = passes_.time("bodies");
+    bodies_->move(fluid_.domain(), carried_dt_);
+    fluid_.place_solids();
+    const std::vector<float>& before = beside_->places();
     fluid_.leave_solids();
+    fluid_.read(fluid_.a, four_, 4);
+    if (!push_on(*bodies_, fluid_.domain(), beside_->near(), before.data(), four_.data(), carried_dt_)) return;
+    fluid_.write(four_, fluid_.a);
+    fluid_.place_solids();
+    fluid_.renew_terms();
 }
 
 /// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone.

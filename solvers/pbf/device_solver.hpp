@@ -16,7 +16,7 @@ public:
 
 private:
     using Base = Pbf<particles::DeviceSolver<D>>;
-    using Base::fluid_, Base::passes_, Base::options_, Base::step_, Base::last_dt_;
+    using Base::fluid_, Base::passes_, Base::options_, Base::step_, Base::last_dt_, Base::bodies_, Base::beside_;
     using typename Base::Memory, typename Base::Reduced;
 
     void stay() override;
@@ -24,12 +24,19 @@ private:
     void warm_start(real dt);
     void find_lambdas();
     void correct();
+    void start_bodies(real dt);
+    void push_bodies_ahead();
+    void carry_bodies();
+    void push_bodies();
     void update(real dt, real slow) override;
     /// On the device, of the sorted particles; and on the host, of the state.
     Reduced find_compression();
     real worst_compression() override { return find_compression().largest; }
     Compression compression() const override;
 
+    real give_ = 0, carried_dt_ = 0;  // where there are bodies, with what they read on the host: see PbfSolver
+    std::array<std::vector<real>, D> predicted_;
+    std::vector<float> four_, multipliers_;
     Memory density_, multiplier_;  // of sorted particles: rho / rho0; sum of lambda over this step, with warm start
 };
 

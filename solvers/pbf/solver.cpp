@@ -1,5 +1,7 @@
 #include "pbf/solver.hpp"
 
+#include "pbf/bodies.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,14 +94,14 @@ void PbfSolver<D>::find_neighbours() {
 }
 
 template <int D>
-PbfPass PbfSolver<D>::pass(const float* from, float* to) {
+PbfPass PbfSolver<D>::pass(const float* from, float* to, const float* solid) {
     PbfPass a;
     a.p = &kernels_;
     a.walls = &walls_;
     a.count = pairs_.size();
     a.from = from;
     a.to = to;
-    a.solid = solids_.at(pairs_, from);
+    a.solid = solid;
     a.rest = this->rest();
     a.density = density_.data();
     a.multiplier = options_.warm_start > 0 ? multiplier_.data() : nullptr;
@@ -123,7 +125,8 @@ void PbfSolver<D>::warm_start(real dt) {
         for (int a = 0; a < 3; ++a) x[4 * k + a] = from[4 * k + a];
         x[4 * k + 3] = before;
     });
-    if (carried_dt_ > 0) solids_.at(pairs_, x), carry_bodies();
+    solids_.at(pairs_, x);
+    if (carried_dt_ > 0) carry_bodies();
     correct();
     collide();
 }
@@ -143,7 +146,7 @@ template <int D>
 void PbfSolver<D>::find_lambdas() {
     const auto timed = passes_.time("lambda");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
-    const PbfPass job = pass(pairs_.a(), pairs_.b());
+    const PbfPass job = pass(pairs_.a(), pairs_.b(), solids_.at(pairs_, pairs_.a()));
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.lambda(job, chunk); });
     pairs_.refresh_images(pairs_.b(), true);
 }
@@ -155,7 +158,7 @@ void PbfSolver<D>::correct() {
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const auto run = options_.pressure_k > 0 ? table.correct_with_pressure : table.correct;
     particles::ClampTally tally{.least2 = static_cast<float>(std::pow(particles::least_clamp * fluid_.domain.spacing, 2))};
-    PbfPass job = pass(pairs_.b(), pairs_.a());
+    PbfPass job = pass(pairs_.b(), pairs_.a(), solids_.there());  // b is where a was
     job.clamps = &tally;
     job.order = pairs_.cells().order().data();
     job.particles = pairs_.particles();
@@ -202,74 +205,29 @@ void PbfSolver<D>::start_bodies(real dt) {
     bodies_->fall(fluid_.domain, fluid_.time + dt, dt);
 }
 
-/// Particles whose prediction would be inside a body push it.
 template <int D>
 void PbfSolver<D>::push_bodies_ahead() {
     const auto timed = passes_.time("bodies");
-    auto& meetings = bodies_->meetings();
-    const real dt = carried_dt_;
-    meetings.clear();
-    for (int i = 0; i < fluid_.count(); ++i) {
-        const Vec<D> free = fluid_.position(i) + dt * fluid_.velocity(i), kept = particles::Fluid<D>::get(x_star_, i);
-        if (norm(kept - free) > 0) bodies_->push_out(fluid_.domain, i, free, dt);
-    }
-    if (meetings.empty()) return;
-    bodies_->exchange(fluid_.domain, dt, false);
-    bodies_->move(fluid_.domain, dt);
-    for (const auto& m : meetings)
-        particles::Fluid<D>::put(x_star_, m.particle, particles::Fluid<D>::get(x_star_, m.particle) + dt * bodies_->back(m));
+    push_ahead(*bodies_, fluid_, x_star_, carried_dt_);
 }
 
-/// In one iteration bodies go as far as the multipliers of the particles beside them push, which change by what they give way.
 template <int D>
 void PbfSolver<D>::carry_bodies() {
     const auto timed = passes_.time("bodies");
-    float* four = pairs_.b();
-    auto& meetings = bodies_->meetings();
-    solids_.meet(four, meetings);
-    for (auto& m : meetings) {
-        if (m.body < 0) continue;
-        const real lambda = static_cast<real>(four[4 * m.particle + 3]);
-        const real sum = options_.warm_start > 0 ? static_cast<real>(multiplier_[static_cast<std::size_t>(m.particle)]) : lambda;
-        m.given = lambda / carried_dt_ * m.pull;
-        m.stiff = sum < 0 ? give_ : 0;  // a liquid is pushed, never pulled
-    }
-    bodies_->exchange(fluid_.domain, carried_dt_, false);
-    for (const auto& m : meetings) {
-        if (m.body < 0 || m.stiff == 0) continue;
-        const auto change = static_cast<float>(carried_dt_ * m.stiff * bodies_->closing(m));
-        four[4 * m.particle + 3] += change;
-        if (options_.warm_start > 0) multiplier_[static_cast<std::size_t>(m.particle)] += change;
-    }
+    solids_.meet(pairs_.b(), bodies_->meetings());
+    carry(*bodies_, fluid_.domain, pairs_.b(), options_.warm_start > 0 ? multiplier_.data() : nullptr, give_, carried_dt_);
 }
 
 /// Bodies to where they go, and particles out of them, which pushes them on.
 template <int D>
 void PbfSolver<D>::push_bodies() {
     const auto timed = passes_.time("bodies");
-    const real dt = carried_dt_;
-    bodies_->move(fluid_.domain, dt);
+    bodies_->move(fluid_.domain, carried_dt_);
     float* x = pairs_.a();
     before_push_.clear();
-    solids_.each_near(x, [&](int k, const Vec<D>&, const float*) { before_push_.insert(before_push_.end(), x + 4 * k, x + 4 * k + D); });
+    for (const int k : solids_.near()) before_push_.insert(before_push_.end(), x + 4 * k, x + 4 * k + D);
     solids_.push_out(pairs_, x, fluid_.clamps);
-    auto& meetings = bodies_->meetings();
-    meetings.clear();
-    std::size_t at = 0;
-    solids_.each_near(x, [&](int k, const Vec<D>&, const float*) {
-        const float* before = before_push_.data() + D * at++;
-        if (std::equal(before, before + D, x + 4 * k)) return;
-        Vec<D> free;
-        for (int a = 0; a < D; ++a) free[a] = static_cast<real>(before[a]) + fluid_.domain.centre()[a];
-        bodies_->push_out(fluid_.domain, k, free, dt);
-    });
-    if (meetings.empty()) return;
-    bodies_->exchange(fluid_.domain, dt, false);
-    bodies_->move(fluid_.domain, dt);
-    for (const auto& m : meetings) {
-        const Vec<D> back = dt * bodies_->back(m);
-        for (int a = 0; a < D; ++a) x[4 * m.particle + a] += static_cast<float>(back[a]);
-    }
+    push_on(*bodies_, fluid_.domain, solids_.near(), before_push_.data(), x, carried_dt_);
 }
 
 template <int D>
@@ -286,7 +244,7 @@ template <int D>
 void PbfSolver<D>::update(real dt, real slow) {
     const auto timed = passes_.time("update");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
-    const PbfPass job = pass(pairs_.a(), nullptr);
+    const PbfPass job = pass(pairs_.a(), nullptr, solids_.at(pairs_, pairs_.a()));
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
     const float* now = pairs_.a();
     const real too_fast = dt > 0 ? 1 / dt - 1 / slow : 0;

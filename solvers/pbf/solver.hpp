@@ -37,7 +37,7 @@ private:
     void end_bodies(real dt, real slow);
     void update(real dt, real slow) override;
     Compression compression() const override;
-    particles::PbfPass pass(const float* from, float* to);
+    particles::PbfPass pass(const float* from, float* to, const float* solid);
     std::size_t own_bytes() const override;
 
     std::array<std::vector<real>, D> x_star_;

@@ -50,6 +50,7 @@ DeviceSphSolver<D>::DeviceSphSolver(const Options& options, const scene::Scene& 
     fluid_.plan().want(velocities_, 4 * sizeof(float));
     fluid_.plan().want(acceleration_, 4 * sizeof(float));
     if (options_.sigma > 0) fluid_.plan().want(normals_, 4 * sizeof(float));
+    exact_ = sph_params<particles::plain::SphParams, D>(options_, start.domain.spacing, start.rho0);
     params_ = fluid_.constant(sph_params<particles::single::SphParams, D>(options_, start.domain.spacing, start.rho0));
     fluid_.settle_in();
 }
@@ -64,14 +65,18 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     if (!options_.continuity) find_densities();  // eq. 3
     find_pressures();                            // eq. 12
     find_forces();                               // eq. 10 and 14
+    if (bodies_) meet_bodies(dt);                // and on bodies
     kick(dt);
+    if (bodies_) carry_bodies(dt);
     fluid_.hold();                                   // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
+    if (bodies_) move_bodies(dt);
     drift(dt);
-    fluid_.finish(dt);  // XSPH, vorticity
+    if (bodies_) give_back();  // of what pushed
+    fluid_.finish(dt);         // XSPH, vorticity
     fluid_.hold_again();
     this->conduct(dt);  // only where a substance is named
-    const real speed = fluid_.max_speed();
+    const real speed = this->find_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.order, fluid_.rests, fluid_.density, fluid_.parts()});
     const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
     fluid_.end_step();
@@ -91,6 +96,7 @@ template <int D>
 void DeviceSphSolver<D>::find_pressures() {
     const auto& f = fluid_;
     const real c2 = options_.sound * options_.sound;
+    if (bodies_) fluid_.read(f.carried, rise_);
     const std::array<double, 2> state{options_.gamma == 1 ? c2 : c2 * rho_rest_ / options_.gamma, options_.gamma};
     fluid_.run("find_pressures", {f.count(), f.stride(), state, rho_rest_, f.rests, f.order, f.v, f.density, f.carried, f.a, velocities_});
 }
@@ -103,13 +109,51 @@ void DeviceSphSolver<D>::find_forces() {
     if (sticky_solids_)
         fluid_.run("drag_at_solids", {f.count(), f.stride(), f.state_params, params_, 2 * options_.viscosity, f.poses, f.a, f.near_solid,
                                       f.terms, f.order, f.v, acceleration_});
-    max_acceleration_ = std::sqrt(fluid_.reduce("accelerations", {f.count(), acceleration_, f.parts()}).largest);
+}
+
+/// What particles feel of bodies, and what the passes leave out of it: see SphSolver.
+template <int D>
+void DeviceSphSolver<D>::meet_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    Fluid<D>& state = fluid_.borrow();
+    for (std::size_t i = 0; i < rise_.size(); ++i) rise_[i] = state.carried[i] - rise_[i];
+    bodies_->begin(state.domain, dt);
+    beside_->find_near();
+    beside_->meet(fluid_.a);
+    fluid_.read(acceleration_, accelerations_, 4);
+    sph::meet_bodies(
+        options_, exact_, state, *bodies_, [&](int k) { return beside_->owners()[static_cast<std::size_t>(k)]; }, rise_, dt, beside_bodies_,
+        accelerations_.data());
+    fluid_.write(accelerations_, acceleration_);
+}
+
+template <int D>
+void DeviceSphSolver<D>::carry_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    bodies_->exchange(fluid_.domain(), dt, true);
+    give_back();
+    fluid_.place_solids();
+}
+
+template <int D>
+void DeviceSphSolver<D>::give_back() {
+    if (bodies_->meetings().empty()) return;
+    Fluid<D>& state = fluid_.borrow();
+    sph::give_back(*bodies_, state);
+    fluid_.send(state.v, fluid_.v);
+}
+
+template <int D>
+void DeviceSphSolver<D>::move_bodies(real dt) {
+    const auto timed = passes_.time("bodies");
+    sph::move_bodies(*bodies_, fluid_.borrow(), beside_bodies_, dt);
 }
 
 /// v += dt a, with surface tension, gravity and other fields.
 template <int D>
 void DeviceSphSolver<D>::kick(real dt) {
     const auto& f = fluid_;
+    max_acceleration_ = std::sqrt(fluid_.reduce("accelerations", {f.count(), acceleration_, f.parts()}).largest);
     if (options_.sigma > 0) {
         fluid_.run("normals", {f.count(), f.stride(), params_, f.wall_params, f.terms, f.a, f.neighbours, f.list, normals_});
         fluid_.run("tension", {f.count(), f.stride(), params_, dt, f.a, normals_, f.neighbours, f.list, f.order, f.v});

@@ -13,6 +13,7 @@ public:
 
 private:
     using Base = Sph<particles::DeviceSolver<D>>;
+    using Base::bodies_, Base::beside_;
     using Base::fluid_, Base::passes_, Base::options_, Base::rest_density_, Base::rho_rest_, Base::max_acceleration_;
     using typename Base::Memory;
 
@@ -21,12 +22,20 @@ private:
     void find_densities();
     void find_pressures();
     void find_forces();
+    void meet_bodies(real dt);
+    void carry_bodies(real dt);
+    void give_back();
+    void move_bodies(real dt);
     void kick(real dt);
     void advance_densities(real dt);
     void drift(real dt);
 
     Memory params_, velocities_, acceleration_, normals_;  // the latter of sorted particles: float4
-    bool sticky_solids_ = false;                           // whether the liquid sticks to any
+    particles::plain::SphParams exact_;                    // as bodies read them
+    std::vector<float> accelerations_;                     // and what else they read on the host: see SphSolver
+    std::vector<int> beside_bodies_;
+    std::vector<real> rise_;
+    bool sticky_solids_ = false;  // whether the liquid sticks to any
 };
 
 }  // namespace weir::sph

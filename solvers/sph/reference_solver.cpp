@@ -55,9 +55,9 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     kick(dt);                                        // eq. 10 and 14
     this->hold();                                    // what is frozen
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
-    if (bodies_) move_bodies(dt);
+    if (bodies_) sph::move_bodies(*bodies_, fluid_, beside_bodies_, dt);
     drift(fluid_, dt);
-    if (bodies_) give_back();  // of what pushed
+    if (bodies_) give_back(*bodies_, fluid_);  // of what pushed
     this->carry_ice(dt);
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = this->speed();
@@ -143,7 +143,7 @@ void ReferenceSphSolver<D>::kick(real dt) {
         Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * (particles::vec_of<D>(a[static_cast<std::size_t>(i)]) + fluid_.gravity));
     if (!bodies_) return;
     bodies_->exchange(fluid_.domain, dt, true);
-    give_back();
+    give_back(*bodies_, fluid_);
 }
 
 /// What particles feel of bodies, and what accelerations leave out of it.
@@ -158,23 +158,6 @@ void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
         for (int b = 0; b < D; ++b) a[static_cast<std::size_t>(m.particle)][static_cast<std::size_t>(b)] += beyond[b];
         beside_bodies_.push_back(m.particle);
     }
-}
-
-/// What particles get back where bodies give way.
-template <int D>
-void ReferenceSphSolver<D>::give_back() {
-    for (const auto& m : bodies_->meetings())
-        if (m.body >= 0) Fluid<D>::put(fluid_.v, m.particle, fluid_.velocity(m.particle) + bodies_->back(m));
-}
-
-/// X += dt V. Particles that would come to be inside push.
-template <int D>
-void ReferenceSphSolver<D>::move_bodies(real dt) {
-    fluid_.domain.solids.set_time(fluid_.time + dt);
-    bodies_->move(fluid_.domain, dt);
-    find_pushes(*bodies_, fluid_, beside_bodies_, dt);
-    if (!bodies_->meetings().empty()) bodies_->exchange(fluid_.domain, dt, false);
-    bodies_->end(fluid_.domain, dt, dt);
 }
 
 /// d rho / dt = rate, with the new velocities from the old places, as SphSolver does. Walls' images in solids move with them.

@@ -28,8 +28,6 @@ private:
     void add_drag_of_solids(Points& to) const;
     void kick(real dt);
     void meet_bodies(Points& accelerations, real dt);
-    void give_back();
-    void move_bodies(real dt);
     void advance_densities(real dt);
     void conduct(real dt) override { this->conduct_at(x_, dt); }
     std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }

@@ -59,7 +59,7 @@ StepReport SphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back();                           // of what pushed
+    if (bodies_) give_back(*bodies_, fluid_);           // of what pushed
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
@@ -201,17 +201,9 @@ template <int D>
 void SphSolver<D>::meet_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     bodies_->begin(fluid_.domain, dt);
-    auto& meetings = bodies_->meetings();
-    solids_.meet(pairs_.a(), meetings);
-    beside_bodies_.resize(meetings.size());
-    parallel_for(0, static_cast<int>(meetings.size()), [&](int at) {
-        auto& m = meetings[static_cast<std::size_t>(at)];
-        const int k = m.particle, i = beside_bodies_[static_cast<std::size_t>(at)] = pairs_.owner(k);
-        m.particle = i;
-        if (m.body < 0) return;
-        const Vec<D> beyond = meet_body(options_, exact_, fluid_, i, bodies_->over_last(dt) * rise_[static_cast<std::size_t>(i)], dt, m);
-        for (int a = 0; a < D; ++a) acceleration_[static_cast<std::size_t>(4 * k + a)] += static_cast<float>(beyond[a]);
-    });
+    solids_.meet(pairs_.a(), bodies_->meetings());
+    sph::meet_bodies(
+        options_, exact_, fluid_, *bodies_, [&](int k) { return pairs_.owner(k); }, rise_, dt, beside_bodies_, acceleration_.data());
 }
 
 /// V += dt F / (M + K); what of F the bodies' own change takes off particles get back.
@@ -219,24 +211,14 @@ template <int D>
 void SphSolver<D>::carry_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     bodies_->exchange(fluid_.domain, dt, true);
-    give_back();
-}
-
-template <int D>
-void SphSolver<D>::give_back() {
-    for (const auto& m : bodies_->meetings())
-        if (m.body >= 0) Fluid<D>::put(fluid_.v, m.particle, fluid_.velocity(m.particle) + bodies_->back(m));
+    give_back(*bodies_, fluid_);
 }
 
 /// X += dt V. Particles that would come to be inside push.
 template <int D>
 void SphSolver<D>::move_bodies(real dt) {
     const auto timed = passes_.time("bodies");
-    fluid_.domain.solids.set_time(fluid_.time + dt);
-    bodies_->move(fluid_.domain, dt);
-    find_pushes(*bodies_, fluid_, beside_bodies_, dt);
-    if (!bodies_->meetings().empty()) bodies_->exchange(fluid_.domain, dt, false);
-    bodies_->end(fluid_.domain, dt, dt);
+    sph::move_bodies(*bodies_, fluid_, beside_bodies_, dt);
 }
 
 /// v += dt a, and the largest a.

@@ -33,7 +33,6 @@ private:
     void drag_at_solids();
     void meet_bodies(real dt);
     void carry_bodies(real dt);
-    void give_back();
     void move_bodies(real dt);
     void kick(real dt);
     void drift(real dt);

@@ -147,6 +147,26 @@ void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>
     for (const int i : near) bodies.push_out(fluid.domain, i, fluid.position(i) + dt * fluid.velocity(i), dt);
 }
 
+template <int D>
+void give_back(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid) {
+    using particles::Fluid;
+    for (const auto& m : bodies.meetings())
+        if (m.body >= 0) Fluid<D>::put(fluid.v, m.particle, fluid.velocity(m.particle) + bodies.back(m));
+}
+
+template <int D>
+void move_bodies(particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid, const std::vector<int>& near, real dt) {
+    fluid.domain.solids.set_time(fluid.time + dt);
+    bodies.move(fluid.domain, dt);
+    find_pushes(bodies, fluid, near, dt);
+    if (!bodies.meetings().empty()) bodies.exchange(fluid.domain, dt, false);
+    bodies.end(fluid.domain, dt, dt);
+}
+
+template void give_back(const particles::BodiesInLiquid<2>&, particles::Fluid<2>&);
+template void give_back(const particles::BodiesInLiquid<3>&, particles::Fluid<3>&);
+template void move_bodies(particles::BodiesInLiquid<2>&, particles::Fluid<2>&, const std::vector<int>&, real);
+template void move_bodies(particles::BodiesInLiquid<3>&, particles::Fluid<3>&, const std::vector<int>&, real);
 template Vec<2> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<2>&, int, real, real,
                           particles::Meeting<2>&);
 template Vec<3> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<3>&, int, real, real,

@@ -1,6 +1,7 @@
 // What a scene of SPH becomes on any backend: the rest density over time, the first pressure, kernels for the passes over velocities,
 // limits of the time step.
 #pragma once
+#include "core/parallel.hpp"
 #include "particles/bodies_in_liquid.hpp"
 #include "particles/fluid.hpp"
 #include "particles/passes.hpp"
@@ -62,9 +63,32 @@ std::string too_fast(const Options& options, real speed, real time);
 template <int D>
 Vec<D> meet_body(const Options& options, const particles::plain::SphParams& params, const particles::Fluid<D>& fluid, int i, real rise,
                  real dt, particles::Meeting<D>& m);
+/// The same of all meetings, whose sorted particles k belong to owner(k) of the state: `beside` are these, and what the passes leave out
+/// comes to the accelerations (float4). rise: of the pressures in the last step.
+template <int D, class Owner>
+void meet_bodies(const Options& options, const particles::plain::SphParams& params, const particles::Fluid<D>& fluid,
+                 particles::BodiesInLiquid<D>& bodies, Owner&& owner, const std::vector<real>& rise, real dt, std::vector<int>& beside,
+                 float* acceleration) {
+    auto& meetings = bodies.meetings();
+    beside.resize(meetings.size());
+    parallel_for(0, static_cast<int>(meetings.size()), [&](int at) {
+        auto& m = meetings[static_cast<std::size_t>(at)];
+        const int k = m.particle, i = beside[static_cast<std::size_t>(at)] = owner(k);
+        m.particle = i;
+        if (m.body < 0) return;
+        const Vec<D> beyond = meet_body(options, params, fluid, i, bodies.over_last(dt) * rise[static_cast<std::size_t>(i)], dt, m);
+        for (int a = 0; a < D; ++a) acceleration[4 * k + a] += static_cast<float>(beyond[a]);
+    });
+}
+/// v gets what the bodies' own change takes off what they gave.
+template <int D>
+void give_back(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid);
 /// Meetings with the bodies that particles would drift into.
 template <int D>
 void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>& fluid, const std::vector<int>& near, real dt);
+/// X += dt V, and these meetings. Their bodies' velocities are those of the step's end then.
+template <int D>
+void move_bodies(particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid, const std::vector<int>& near, real dt);
 
 /// x += dt v. What would enter a wall or a solid is put back and loses its speed into it.
 template <int D>

@@ -11,6 +11,8 @@
 
 #include "support/test.hpp"
 
+#include <algorithm>
+
 namespace {
 
 using namespace weir;
@@ -108,5 +110,55 @@ TEST_IN_2D_AND_3D("SPH is the same to the last bit on every backend, with every 
             return after<D, sph::SphSolver<D>, sph::DeviceSphSolver<D>>(on, 20, 0.001, scene,
                                                                         [](Fluid<D>& fluid) { test::shake(fluid, 0.1); });
         });
+    }
+}
+
+// Sums over the particles beside a body are the host's on every backend, in one order.
+TEST_IN_2D_AND_3D("bodies among particles are the same to the last bit on every backend, and go on from another's checkpoint") {
+    NEEDS_TWO_BACKENDS;
+    const char* at = D == 2 ? "0.5, 0.9" : "0.5, 0.9, 0.5";
+    const std::string bodies = fmt::format(
+        "bodies = [ {{ shape = \"sphere\", centre = [{0}], radius = 0.2, density = 200.0, spin = [{1}] }},\n"
+        "           {{ shape = \"box\", min = [{2}], max = [{3}], density = 1500.0, slip = \"SLIP\", friction = 0.3 }} ]\n"
+        "joints = [ {{ kind = \"mooring\", body = \"0\", at = [{0}], anchor = [{4}], length = 0.7, stiffness = 3000.0, damping = 10.0 }} "
+        "]\n",
+        at, D == 2 ? "1.0" : "1.0, 2.0, 3.0", D == 2 ? "0.3, 0.05" : "0.3, 0.05, 0.3", D == 2 ? "0.6, 0.3" : "0.6, 0.3, 0.7",
+        D == 2 ? "0.2, 0.0" : "0.2, 0.0, 0.5");
+    const auto solver = [&](bool sph, const std::string& on) -> std::unique_ptr<Solver> {
+        std::string all = bodies;
+        all.replace(all.find("SLIP"), 4, sph ? "no" : "free");
+        const std::string scheme = "backend = \"" + on + "\"";
+        if (!sph) return pbf::kind().make(test::pbf_scene<D>(test::box<D>(1, 1, 1), scheme, all));
+        return sph::kind().make(test::sph_scene<D>(scheme + ", sound_speed = 20",
+                                                   all + "effects.viscosity = {}\neffects.density_diffusion = {}\neffects.gravity.g = " +
+                                                       (D == 2 ? "[0, -9.81]\n" : "[0, -9.81, 0]\n")));
+    };
+    const auto expect_same = [](const Solver& one, const Solver& two, const std::string& what) {
+        const FieldSet a = one.fields(), b = two.fields();
+        for (std::size_t f = 0; f < a.fields.size(); ++f)
+            for (std::size_t c = 0; c < a.fields[f].data.size(); ++c)
+                EXPECT_TRUE(std::ranges::equal(a.fields[f].data[c], b.fields[f].data[c]))
+                    << a.fields[f].set << ' ' << a.fields[f].name << what;
+    };
+    for (const bool sph : {false, true}) {
+        const auto list = backends();
+        const real dt = sph ? 0.001 : 0.004;
+        const auto first = solver(sph, list.front());
+        const auto lowest = first->fields().find("bodies", "position")->data[1][1];
+        Checkpoint middle;
+        for (int s = 0; s < 30; ++s) {
+            if (s == 20) first->save(middle);
+            first->step(dt);
+        }
+        EXPECT_LT(first->fields().find("bodies", "position")->data[1][1], lowest);
+        for (std::size_t k = 1; k < list.size(); ++k) {
+            const std::string names = list.front() + " and " + list[k] + (sph ? ", SPH" : ", PBF");
+            const auto other = solver(sph, list[k]), later = solver(sph, list[k]);
+            for (int s = 0; s < 30; ++s) other->step(dt);
+            expect_same(*first, *other, names);
+            later->restore(middle);
+            for (int s = 20; s < 30; ++s) later->step(dt);
+            expect_same(*first, *later, names + ", restored");
+        }
     }
 }

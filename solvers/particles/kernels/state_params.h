@@ -16,3 +16,8 @@ typedef struct {
     double rotation[9], spin[3];              /* rows of R; [rad/s] */
     double no_slip;                           /* 1: the liquid sticks to it */
 } SolidPose;
+
+/* WallParams without its walls, in double precision: what solids add (solid_terms.cl). */
+typedef struct {
+    double inv_h, fraction[WEIR_WALL_TERMS], slope[WEIR_WALL_TERMS];
+} SolidSeries;
