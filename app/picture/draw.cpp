@@ -5,6 +5,10 @@
 #include "app/picture/view.hpp"
 #include "core/error.hpp"
 
+#include <array>
+#include <charconv>
+#include <cmath>
+
 namespace weir::picture {
 
 namespace {
@@ -20,6 +24,23 @@ Canvas draw_with_rays(const View& view, bool columns) {
 }
 
 }  // namespace
+
+Range range_of(const std::string& text) {
+    const auto refuse = [&](const std::string& why) { throw BadInput("--range " + text + ": " + why + "; HIGH or LOW,HIGH is allowed"); };
+    std::array<double, 2> ends{};
+    std::size_t count = 0;
+    const char *at = text.data(), *behind = at + text.size();
+    for (; count < ends.size(); ++count) {
+        const auto [next, error] = std::from_chars(at, behind, ends[count]);
+        if (error != std::errc() || !std::isfinite(ends[count])) refuse("\"" + std::string(at, behind) + "\" is no number");
+        at = next;
+        if (at == behind) break;
+        if (*at++ != ',' || count == 1) refuse("\"" + std::string(at - 1, behind) + "\" is too much");
+    }
+    if (count == 0 && ends[0] <= 0) refuse("the highest colour alone has a value above 0");
+    if (count == 1 && ends[0] >= ends[1]) refuse("the lower end is not below the upper one");
+    return count == 0 ? Range{{}, ends[0]} : Range{ends[0], ends[1]};
+}
 
 Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish) {
     particles_as_markers(frame, scene);

@@ -45,8 +45,9 @@ struct Splats {
         const auto& x = view.frame.particles.at("markers").at("position");
         const auto* field = marker_field(view.frame, view.field);
         const auto speeds = field ? *field : marker_speeds(view.frame);
-        fastest = view.range > 0 ? view.range : field ? *std::max_element(speeds.begin(), speeds.end()) : robust_max(speeds);
-        if (field) slowest = *std::min_element(speeds.begin(), speeds.end()), colours = view.field == "temperature" ? "inferno" : "viridis";
+        fastest = view.range.high.value_or(field ? *std::max_element(speeds.begin(), speeds.end()) : robust_max(speeds));
+        slowest = view.range.low.value_or(field ? *std::min_element(speeds.begin(), speeds.end()) : 0);
+        if (field) colours = view.field == "temperature" ? "inferno" : "viridis";
         const real radius = view.frame.grid.spacing[0] / plane.metre;  // pixels
         for (std::size_t m = 0; m < speeds.size(); ++m)
             add((x[0][m] - plane.x0) / plane.metre, (plane.y1 - x[1][m]) / plane.metre, radius, speeds[m], plane);
@@ -83,8 +84,9 @@ public:
         const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
         const bool crosses = *low < 0 && *high > 0;
         signed_ = name_ == "vorticity" || (crosses && name_ != "temperature");
-        upper_ = view.range > 0 ? view.range : signed_ || name_ == "speed" || name_ == "smoke" ? robust_max(values_) : *high;
-        lower_ = signed_ ? -upper_ : name_ == "speed" || name_ == "smoke" ? 0 : *low;
+        const bool from_nothing = name_ == "speed" || name_ == "smoke";
+        upper_ = view.range.high.value_or(signed_ || from_nothing ? robust_max(values_) : *high);
+        lower_ = view.range.low.value_or(signed_ ? -upper_ : from_nothing ? 0 : *low);
     }
     Colour operator()(const Vec<2>& x) const {
         const real value = sim::sample(values_, lattice_, {{x[0], x[1], 0}});

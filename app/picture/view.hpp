@@ -1,6 +1,7 @@
 // What a picture is made of: one frame and the scene that it belongs to.
 #pragma once
 #include "app/picture/canvas.hpp"
+#include "app/picture/draw.hpp"
 #include "output/read_frame.hpp"
 #include "rigid/bodies.hpp"
 #include "scene/scene.hpp"
@@ -14,7 +15,7 @@ struct View {
     const output::FrameData& frame;
     std::string field;  // smoke, speed, vorticity, temperature, pressure, ...; or "water": the markers
     int size = 900;     // pixels of the longer side
-    real range = 0;     // of colours: from 0 (or -range) to range; 0: the frame's own
+    Range range{};      // of colours
     bool grid = false;  // 2D: lines between the cells that hold liquid, tall ones as they are
 };
 
