@@ -166,6 +166,10 @@ void add_movie(CLI::App& app, int& exit_code) {
     movie->add_option("--field", arguments->wish.field, "What is shown, as weir picture");
     movie->add_option("--range", arguments->range,
                       "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: each frame's own)");
+    movie
+        ->add_option("--surface", arguments->wish.surface,
+                     "How the surface of a liquid is made, with --quality or in 2D (default: as the scene says)")
+        ->check(CLI::IsMember({"zhu_bridson", "anisotropic", "density", "level_set"}));
     movie->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
         ->check(CLI::Range(32, 8192));
     movie->add_flag("--quality", arguments->wish.quality, "As a camera would see it, as weir picture --quality");

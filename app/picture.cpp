@@ -64,6 +64,10 @@ void add_picture(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 20));
     picture->add_option("--range", arguments->range,
                         "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: the frame's own)");
+    picture
+        ->add_option("--surface", arguments->wish.surface,
+                     "How the surface of a liquid is made, with --quality or in 2D (default: as the scene says)")
+        ->check(CLI::IsMember({"zhu_bridson", "anisotropic", "density", "level_set"}));
     picture->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
         ->check(CLI::Range(32, 8192));
     picture->add_flag("--grid", arguments->wish.grid, "Draw the cells that hold liquid, tall ones as they are (2D)");

@@ -51,7 +51,9 @@ Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish
     if (field == "water" && !columns && !frame.particles.count("markers") && !has_sea(frame))
         throw BadInput("this run has no markers, and no surface, to draw as water");
     const int size = wish.size > 0 ? wish.size : wish.quality ? usual_size_of_quality : usual_size;
-    const View view{scene, frame, field, size, wish.range, wish.grid};
+    const View view{scene, frame, field, size, wish.range, wish.surface, wish.grid};
+    if (!wish.surface.empty() && (field != "water" || columns || (scene.dim() == 3 && !wish.quality)))
+        throw BadInput("--surface goes with liquids in pictures of quality, and in 2D");
     if (wish.quality) return draw_with_rays(view, columns);
     return columns ? draw_columns(view) : scene.dim() == 2 ? draw_2d(view) : draw_3d(view);
 }

@@ -24,6 +24,7 @@ struct Wish {
     Range range{};
     int size = 0;  // 0: the usual one
     bool grid = false, quality = false;
+    std::string surface{};  // how the liquid's surface is made; empty: as the scene says
 };
 
 /// Throws BadInput where the frame has not what is asked for.
