@@ -141,7 +141,7 @@ void ReferencePbfSolver<D>::correct() {
 template <int D>
 void ReferencePbfSolver<D>::start_bodies(real dt) {
     carried_dt_ = dt;
-    bodies_->begin(fluid_.domain, dt);
+    bodies_->begin(fluid_.domain, fluid_.time, dt);
     bodies_->exchange(fluid_.domain, dt, true);
     fluid_.domain.solids.set_time(fluid_.time + dt);
     bodies_->move(fluid_.domain, dt);

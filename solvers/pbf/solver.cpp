@@ -199,7 +199,7 @@ template <int D>
 void PbfSolver<D>::start_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     carried_dt_ = dt;
-    bodies_->begin(fluid_.domain, dt);
+    bodies_->begin(fluid_.domain, fluid_.time, dt);
     bodies_->exchange(fluid_.domain, dt, true);
     fluid_.domain.solids.set_time(fluid_.time + dt);
     bodies_->move(fluid_.domain, dt);

@@ -200,7 +200,7 @@ void SphSolver<D>::drag_at_solids() {
 template <int D>
 void SphSolver<D>::meet_bodies(real dt) {
     const auto timed = passes_.time("bodies");
-    bodies_->begin(fluid_.domain, dt);
+    bodies_->begin(fluid_.domain, fluid_.time, dt);
     auto& meetings = bodies_->meetings();
     solids_.meet(pairs_.a(), meetings);
     beside_bodies_.resize(meetings.size());
