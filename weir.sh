@@ -5,7 +5,7 @@
 #   view RESULT         the frames of a run in a window
 #   live SCENE          a scene in a window, with a hand in it
 #   picture RESULT      the frames of a run as a PNG
-#   movie RESULT        the frames of a run as a film
+#   movie RESULT        the frames of a run as a film; of a scene or a case, which it runs first
 #   validate [...]      the claims of the cases
 #   cost [...]          error against computing time; --plan SCENE: what a scene will cost
 #   plan CASE [...]     which setting to take: --budget 16ms --error 2%

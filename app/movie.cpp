@@ -1,10 +1,13 @@
-// weir movie RESULT: every frame of a run as a picture, and the pictures as a film by ffmpeg, with a poster beside it.
+// weir movie RESULT: every frame of a run as a picture, and the pictures as a film by ffmpeg, with a poster beside it. Of a scene the run
+// is made first.
 #include "app/commands.hpp"
 #include "app/picture/draw.hpp"
 #include "app/run_folder.hpp"
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/read_frame.hpp"
+#include "sim/registry.hpp"
+#include "validation/report/command.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -19,7 +22,8 @@ namespace weir::app {
 namespace {
 
 struct MovieArguments {
-    std::string result, out;
+    std::string result, out, range;
+    std::vector<std::string> set;
     picture::Wish wish;
     int rate = 0;
     bool quiet = false;
@@ -106,14 +110,34 @@ void show(std::size_t done, std::size_t all, bool quiet) {
     if (done == all) std::fprintf(stderr, "\n");
 }
 
+/// The folder of a run, as it is named; where a scene is, or a case, that of its run, which is made before.
+std::filesystem::path run_of(const MovieArguments& arguments) {
+    const std::filesystem::path named = arguments.result;
+    const bool is_scene = std::filesystem::is_regular_file(named) || std::filesystem::exists(named / "scene.toml");
+    if (std::filesystem::exists(named) && (std::filesystem::exists(named / "run.json") || !is_scene)) {
+        if (!arguments.set.empty()) throw BadInput("--set goes with a scene; " + named.string() + " is the folder of a run");
+        return named;
+    }
+    const auto scene = validation::scene_named(arguments.result);
+    const auto folder = std::filesystem::path("out") / scene_name(scene::read(scene, sim::schemas(), {}));
+    std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string(), "run", scene.string(), "--out",
+                                   folder.string()};
+    for (const auto& change : arguments.set) words.insert(words.end(), {"--set", change});
+    if (arguments.quiet) words.push_back("--quiet");
+    run_program(words);
+    return folder;
+}
+
 int film(const MovieArguments& arguments) {
     if (!has_program("ffmpeg"))
         throw BadInput("weir movie needs ffmpeg, which is not on the PATH: install it (Debian, Ubuntu: apt install ffmpeg)");
-    const std::filesystem::path folder = arguments.result;
+    const auto ending = std::filesystem::path(arguments.out).extension();
+    if (!arguments.out.empty() && ending != ".mp4" && ending != ".webm")
+        throw BadInput("--out " + arguments.out + ": a film is an .mp4 or a .webm");
+    const std::filesystem::path folder = run_of(arguments);
     const scene::Scene scene = scene_of_run(folder);
     const std::vector<real> times = output::frame_times(folder);
     const std::filesystem::path out = arguments.out.empty() ? folder / "movie.mp4" : std::filesystem::path(arguments.out);
-    if (out.extension() != ".mp4" && out.extension() != ".webm") throw BadInput("--out " + out.string() + ": a film is an .mp4 or a .webm");
     output::require_writable(out.has_parent_path() ? out.parent_path() : ".");
     const Pictures pictures(out.string() + ".frames");
     for (std::size_t frame = 0; frame < times.size(); ++frame) {
@@ -135,17 +159,27 @@ int film(const MovieArguments& arguments) {
 void add_movie(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<MovieArguments>();
     CLI::App* movie = app.add_subcommand("movie", "All frames of a run as a film (MP4 or WebM, by ffmpeg), and a poster");
-    movie->add_option("result", arguments->result, "Output folder of a run")->required();
+    movie->add_option("result", arguments->result, "Output folder of a run; or a scene or a case, which is run first, to out/<its name>")
+        ->required();
+    movie->add_option("--set", arguments->set, "Of a scene: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
     movie->add_option("--out", arguments->out, "File to write: .mp4 or .webm (default: RESULT/movie.mp4); the poster beside it");
     movie->add_option("--field", arguments->wish.field, "What is shown, as weir picture");
-    movie->add_option("--range", arguments->wish.range, "Value of the brightest colour (default: each frame's own)");
+    movie->add_option("--range", arguments->range,
+                      "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: each frame's own)");
+    movie
+        ->add_option("--surface", arguments->wish.surface,
+                     "How the surface of a liquid is made, with --quality or in 2D (default: as the scene says)")
+        ->check(CLI::IsMember({"zhu_bridson", "anisotropic", "density", "level_set"}));
     movie->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
         ->check(CLI::Range(32, 8192));
     movie->add_flag("--quality", arguments->wish.quality, "As a camera would see it, as weir picture --quality");
     movie->add_option("--rate", arguments->rate, "Frames a second (default: the run's own speed, from 10 to 30)")
         ->check(CLI::Range(1, 120));
     movie->add_flag("--quiet", arguments->quiet, "No progress bar");
-    movie->callback([arguments, &exit_code] { exit_code = film(*arguments); });
+    movie->callback([arguments, &exit_code] {
+        if (!arguments->range.empty()) arguments->wish.range = picture::range_of(arguments->range);
+        exit_code = film(*arguments);
+    });
 }
 
 }  // namespace weir::app

@@ -13,7 +13,7 @@ namespace weir::app {
 namespace {
 
 struct PictureArguments {
-    std::string result, out;
+    std::string result, out, range;
     double time = -1;
     int sheet = 1;
     picture::Wish wish;
@@ -62,14 +62,22 @@ void add_picture(CLI::App& app, int& exit_code) {
     picture->add_option("--time", arguments->time, "Time of the frame [s] (default: the last)");
     picture->add_option("--sheet", arguments->sheet, "Draw so many frames side by side, from the first to --time")
         ->check(CLI::Range(1, 20));
-    picture->add_option("--range", arguments->wish.range, "Value of the brightest colour (default: the frame's own)");
+    picture->add_option("--range", arguments->range,
+                        "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: the frame's own)");
+    picture
+        ->add_option("--surface", arguments->wish.surface,
+                     "How the surface of a liquid is made, with --quality or in 2D (default: as the scene says)")
+        ->check(CLI::IsMember({"zhu_bridson", "anisotropic", "density", "level_set"}));
     picture->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
         ->check(CLI::Range(32, 8192));
     picture->add_flag("--grid", arguments->wish.grid, "Draw the cells that hold liquid, tall ones as they are (2D)");
     picture->add_flag("--quality", arguments->wish.quality,
                       "As a camera would see it: bent and mirrored light, a sky, a floor (3D; 16 to 9)");
     picture->add_option("--out", arguments->out, "File to write (default: RESULT/picture.png)");
-    picture->callback([arguments, &exit_code] { exit_code = draw(*arguments); });
+    picture->callback([arguments, &exit_code] {
+        if (!arguments->range.empty()) arguments->wish.range = picture::range_of(arguments->range);
+        exit_code = draw(*arguments);
+    });
 }
 
 }  // namespace weir::app

@@ -4,6 +4,7 @@
 #include "app/interrupt.hpp"
 #include "app/measured.hpp"
 #include "app/progress.hpp"
+#include "app/run_folder.hpp"
 #include "app/space.hpp"
 #include "core/parallel.hpp"
 #include "core/slabs.hpp"
@@ -167,14 +168,6 @@ private:
     clock::time_point written_{};
     clock::duration write_time_{};
 };
-
-/// "cases/plume" and "cases/plume/scene.toml" are both called plume.
-std::string scene_name(const scene::Scene& scene) {
-    const std::filesystem::path path = std::filesystem::path(scene.file()).lexically_normal();
-    const std::string stem = path.stem().string();
-    const std::string folder = path.parent_path().filename().string();
-    return stem == "scene" && !folder.empty() ? folder : stem;
-}
 
 std::filesystem::path find_checkpoint(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return path;

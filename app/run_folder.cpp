@@ -19,6 +19,13 @@ scene::Scene scene_of_run(const std::filesystem::path& folder) {
     return scene::parse(j["scene"]["source"].get<std::string>(), j["scene"]["file"].get<std::string>(), sim::schemas(), overrides);
 }
 
+std::string scene_name(const scene::Scene& scene) {
+    const std::filesystem::path path = std::filesystem::path(scene.file()).lexically_normal();
+    const std::string stem = path.stem().string();
+    const std::string folder = path.parent_path().filename().string();
+    return stem == "scene" && !folder.empty() ? folder : stem;
+}
+
 std::size_t frame_at(const std::vector<real>& times, real time) {
     if (time < 0) return times.size() - 1;
     std::size_t frame = 0;

@@ -104,13 +104,13 @@ void Scenery::add_texts() {
 }
 
 void Scenery::tell(const std::string& figures, const std::string& help) {
-    figures_->SetInput(figures.c_str());
+    const int* size = renderer_->GetSize();
+    figures_->SetInput(view::wrapped(figures, size[0] - 24).c_str());
     help_->SetInput(help.c_str());
     help_->SetVisibility(!help.empty());
     double box[4];  // of the text, from its corner [pixels]
     figures_->GetBoundingBox(renderer_, box);
-    const int* size = renderer_->GetSize();
-    if (size[1] > 0) scale_.keep_above((10 + box[3] + 16) / size[1]);  // and half a line between them
+    scale_.place(size[0], size[1], static_cast<int>(10 + box[3] + 16));  // and half a line between them
 }
 
 void Scenery::set_colours(const Snapshot& s) {

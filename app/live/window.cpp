@@ -134,7 +134,7 @@ void Window::tell() {
     text += fmt::format("\nt = {:.3f} s   ", s.time);
     if (s.paused)
         text += "paused";
-    else
+    else if (s.factor > 0)  // known after half a second
         text += s.factor > 0.95 ? fmt::format("{:.2f} of real time", s.factor)
                                 : fmt::format("{:.2g} of real time: {:.1f} times slower", s.factor, 1 / std::max(s.factor, 1e-6));
     text += fmt::format("   step {}", s.steps);

@@ -138,7 +138,7 @@ public:
         if (view.field != "water") {
             values_ = scalar_field(view.frame, view.field);
             const auto [a, b] = std::minmax_element(values_.begin(), values_.end());
-            least_ = view.range > 0 ? 0 : *a, most_ = view.range > 0 ? view.range : *b;
+            least_ = view.range.low.value_or(view.range.high ? 0 : *a), most_ = view.range.high.value_or(*b);
         }
     }
     Canvas draw() const {

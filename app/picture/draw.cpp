@@ -5,6 +5,10 @@
 #include "app/picture/view.hpp"
 #include "core/error.hpp"
 
+#include <array>
+#include <charconv>
+#include <cmath>
+
 namespace weir::picture {
 
 namespace {
@@ -21,6 +25,23 @@ Canvas draw_with_rays(const View& view, bool columns) {
 
 }  // namespace
 
+Range range_of(const std::string& text) {
+    const auto refuse = [&](const std::string& why) { throw BadInput("--range " + text + ": " + why + "; HIGH or LOW,HIGH is allowed"); };
+    std::array<double, 2> ends{};
+    std::size_t count = 0;
+    const char *at = text.data(), *behind = at + text.size();
+    for (; count < ends.size(); ++count) {
+        const auto [next, error] = std::from_chars(at, behind, ends[count]);
+        if (error != std::errc() || !std::isfinite(ends[count])) refuse("\"" + std::string(at, behind) + "\" is no number");
+        at = next;
+        if (at == behind) break;
+        if (*at++ != ',' || count == 1) refuse("\"" + std::string(at - 1, behind) + "\" is too much");
+    }
+    if (count == 0 && ends[0] <= 0) refuse("the highest colour alone has a value above 0");
+    if (count == 1 && ends[0] >= ends[1]) refuse("the lower end is not below the upper one");
+    return count == 0 ? Range{{}, ends[0]} : Range{ends[0], ends[1]};
+}
+
 Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish) {
     particles_as_markers(frame, scene);
     if (wish.field.empty() || wish.field == "water") level_set_as_markers(frame);
@@ -30,7 +51,9 @@ Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish
     if (field == "water" && !columns && !frame.particles.count("markers") && !has_sea(frame))
         throw BadInput("this run has no markers, and no surface, to draw as water");
     const int size = wish.size > 0 ? wish.size : wish.quality ? usual_size_of_quality : usual_size;
-    const View view{scene, frame, field, size, wish.range, wish.grid};
+    const View view{scene, frame, field, size, wish.range, wish.surface, wish.grid};
+    if (!wish.surface.empty() && (field != "water" || columns || (scene.dim() == 3 && !wish.quality)))
+        throw BadInput("--surface goes with liquids in pictures of quality, and in 2D");
     if (wish.quality) return draw_with_rays(view, columns);
     return columns ? draw_columns(view) : scene.dim() == 2 ? draw_2d(view) : draw_3d(view);
 }

@@ -1,8 +1,10 @@
 // 2D pictures: smoke, colour maps of fields, water from its markers, solids in front.
+#include "app/picture/liquid.hpp"
 #include "app/picture/view.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "geometry/solids.hpp"
+#include "reconstruction/reconstruction.hpp"
 #include "sim/sampling.hpp"
 
 namespace weir::picture {
@@ -45,8 +47,9 @@ struct Splats {
         const auto& x = view.frame.particles.at("markers").at("position");
         const auto* field = marker_field(view.frame, view.field);
         const auto speeds = field ? *field : marker_speeds(view.frame);
-        fastest = view.range > 0 ? view.range : field ? *std::max_element(speeds.begin(), speeds.end()) : robust_max(speeds);
-        if (field) slowest = *std::min_element(speeds.begin(), speeds.end()), colours = view.field == "temperature" ? "inferno" : "viridis";
+        fastest = view.range.high.value_or(field ? *std::max_element(speeds.begin(), speeds.end()) : robust_max(speeds));
+        slowest = view.range.low.value_or(field ? *std::min_element(speeds.begin(), speeds.end()) : 0);
+        if (field) colours = view.field == "temperature" ? "inferno" : "viridis";
         const real radius = view.frame.grid.spacing[0] / plane.metre;  // pixels
         for (std::size_t m = 0; m < speeds.size(); ++m)
             add((x[0][m] - plane.x0) / plane.metre, (plane.y1 - x[1][m]) / plane.metre, radius, speeds[m], plane);
@@ -83,8 +86,9 @@ public:
         const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
         const bool crosses = *low < 0 && *high > 0;
         signed_ = name_ == "vorticity" || (crosses && name_ != "temperature");
-        upper_ = view.range > 0 ? view.range : signed_ || name_ == "speed" || name_ == "smoke" ? robust_max(values_) : *high;
-        lower_ = signed_ ? -upper_ : name_ == "speed" || name_ == "smoke" ? 0 : *low;
+        const bool from_nothing = name_ == "speed" || name_ == "smoke";
+        upper_ = view.range.high.value_or(signed_ || from_nothing ? robust_max(values_) : *high);
+        lower_ = view.range.low.value_or(signed_ ? -upper_ : from_nothing ? 0 : *low);
     }
     Colour operator()(const Vec<2>& x) const {
         const real value = sim::sample(values_, lattice_, {{x[0], x[1], 0}});
@@ -142,6 +146,25 @@ void draw_solids(const View& view, const Plane& plane, Canvas& canvas) {
     });
 }
 
+/// The line of the liquid's surface, two pixels wide, away from the sides of the domain, which it follows.
+void draw_surface(const View& view, const Plane& plane, Canvas& canvas) {
+    const FieldSet fields = fields_of(view.frame, view.scene);
+    reconstruction::Reconstruction maker(options_for(view, fields), view.scene);
+    const SurfaceMesh& mesh = maker.make(fields, view.frame.time);
+    const Colour ink = hex(0x0b2f4a);
+    for (const auto& [from, to] : mesh.lines) {
+        const Vec<3>&a = mesh.points[static_cast<std::size_t>(from)], &b = mesh.points[static_cast<std::size_t>(to)];
+        const int steps = 1 + static_cast<int>(norm(b - a) / plane.metre);
+        for (int s = 0; s <= steps; ++s) {
+            const Vec<3> x = a + (real(s) / steps) * (b - a);
+            const int px = static_cast<int>((x[0] - plane.x0) / plane.metre), py = static_cast<int>((plane.y1 - x[1]) / plane.metre);
+            for (int y = py - oversampling; y < py + oversampling; ++y)
+                for (int column = px - oversampling; column < px + oversampling; ++column)
+                    if (column >= 0 && column < plane.width && y >= 0 && y < plane.height) canvas.at(column, y) = ink;
+        }
+    }
+}
+
 /// Lines around the grid cells that hold liquid. A solver with tall cells says in "cell_height" how high each is, counted from its bottom.
 void draw_grid(const View& view, const Plane& plane, Canvas& canvas) {
     const auto found = view.frame.cells.find("cell_height");
@@ -190,6 +213,7 @@ Canvas draw_2d(const View& view) {
             for (int x = 0; x < plane.width; ++x) canvas.at(x, y) = colours(plane.place(x, y));
         });
     }
+    if (view.field == "water" && (!view.surface.empty() || view.scene.has("output.surface"))) draw_surface(view, plane, canvas);
     if (view.grid) draw_grid(view, plane, canvas);
     draw_solids(view, plane, canvas);
     return canvas.smaller(oversampling);

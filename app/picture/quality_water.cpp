@@ -1,5 +1,6 @@
 // Water as triangles: at each crossing a ray is split into what is mirrored and what is bent (Fresnel's and Snell's laws, Whitted 1980),
 // and inside the water light is swallowed by its path (Beer's law). Where the surface is torn there is foam.
+#include "app/picture/liquid.hpp"
 #include "app/picture/quality.hpp"
 #include "app/picture/rays.hpp"
 #include "core/parallel.hpp"
@@ -15,34 +16,6 @@ constexpr int rays = 2, deepest = 9;
 constexpr real faintest = 0.01;
 /// Water closer than this to the floor or a solid touches it: no air is between them. In sizes of the domain.
 constexpr real touching = 1e-3;
-
-/// A frame as the fields that a reconstruction asks for. Of a run without a grid the markers are its particles.
-FieldSet fields_of(const output::FrameData& frame, const scene::Scene& scene) {
-    FieldSet set;
-    const Vec<3> size = scene.vec<3>("grid.size"), origin = scene.vec<3>("grid.origin");
-    const Index<3> cells = scene.index<3>("grid.cells");
-    set.grid.dim = 3;
-    for (std::size_t a = 0; a < 3; ++a)
-        set.grid.cells[a] = cells[a], set.grid.origin[a] = origin[a], set.grid.spacing[a] = size[a] / cells[a];
-    const auto add = [&](const std::string& name, Where where, const std::string& of, const output::Components& data) {
-        FieldView view{name, "", where, of, {}};
-        for (const auto& component : data) view.data.push_back(component);
-        set.fields.push_back(std::move(view));
-    };
-    for (const auto& [name, data] : frame.cells)
-        if (name == level_set_name || name == "velocity") add(name, Where::cell, "", data);
-    for (const auto& [of, fields] : frame.particles)
-        if (of == marker_set_name || of == particle_set_name)
-            for (const auto& [name, data] : fields) add(name, Where::particle, frame.cells.empty() ? particle_set_name : of, data);
-    return set;
-}
-
-/// As the scene says; else from particles by stretched kernels, which are smoothest, else from the level set.
-reconstruction::Options options_for(const scene::Scene& scene, const FieldSet& fields) {
-    if (const auto said = reconstruction::options_of(scene)) return *said;
-    const bool particles = fields.find(marker_set_name, "position") || fields.find(particle_set_name, "position");
-    return {particles ? reconstruction::Method::anisotropic : reconstruction::Method::level_set, 1, 0};
-}
 
 /// What is seen of a surface beside its shape: how torn it is at each point, 0 to 1, and normals without the bumps of single particles.
 struct Look {
@@ -183,7 +156,7 @@ private:
 
 Canvas draw_quality_water(const View& view, const Box& domain) {
     const FieldSet fields = fields_of(view.frame, view.scene);
-    reconstruction::Reconstruction maker(options_for(view.scene, fields), view.scene);
+    reconstruction::Reconstruction maker(options_for(view, fields), view.scene);
     const WaterPicture picture(view, domain, maker.make(fields, view.frame.time));
     const WideCamera camera(domain, view.size);
     Canvas canvas(camera.width * rays, camera.height * rays);

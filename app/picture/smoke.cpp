@@ -26,12 +26,13 @@ Smoke::Smoke(const View& view, const Vec<3>& towards_light)
     : density_(volume_of(view.frame.grid, scalar_field(view.frame, view.field))), light_(density_) {
     const GridView& grid = view.frame.grid;
     step_ = 0.5 * std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
-    const real dense = view.range > 0 ? view.range : dense_value(density_.values);
     // the densest smoke hides what is behind an eighth of the domain: opaque enough to have a shape, thin enough to have an inside
     const Vec<3> extent = density_.box.max - density_.box.min;
-    const real scale = 3.0 / (std::min({extent[0], extent[1], extent[2]}) / 4) / dense;
-    const real base = *std::min_element(density_.values.begin(), density_.values.end());  // a temperature's surroundings are not smoke
-    for (auto& value : density_.values) value = scale * std::max(0.0, value - (view.field == "temperature" ? base : 0));
+    const real least = *std::min_element(density_.values.begin(), density_.values.end());  // a temperature's surroundings are not smoke
+    const real base = view.range.low.value_or(view.field == "temperature" ? least : 0);
+    const real dense = view.range.high.value_or(dense_value(density_.values)) - view.range.low.value_or(0);
+    const real scale = 3.0 / (std::min({extent[0], extent[1], extent[2]}) / 4) / std::max(dense, 1e-300);
+    for (auto& value : density_.values) value = scale * std::max(0.0, value - base);
     const auto& n = density_.lattice.n;
     parallel_for(0, n[2], [&](int k) {
         for (int j = 0; j < n[1]; ++j)

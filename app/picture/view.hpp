@@ -1,6 +1,7 @@
 // What a picture is made of: one frame and the scene that it belongs to.
 #pragma once
 #include "app/picture/canvas.hpp"
+#include "app/picture/draw.hpp"
 #include "output/read_frame.hpp"
 #include "rigid/bodies.hpp"
 #include "scene/scene.hpp"
@@ -12,10 +13,11 @@ namespace weir::picture {
 struct View {
     const scene::Scene& scene;
     const output::FrameData& frame;
-    std::string field;  // smoke, speed, vorticity, temperature, pressure, ...; or "water": the markers
-    int size = 900;     // pixels of the longer side
-    real range = 0;     // of colours: from 0 (or -range) to range; 0: the frame's own
-    bool grid = false;  // 2D: lines between the cells that hold liquid, tall ones as they are
+    std::string field;      // smoke, speed, vorticity, temperature, pressure, ...; or "water": the markers
+    int size = 900;         // pixels of the longer side
+    Range range{};          // of colours
+    std::string surface{};  // how the liquid's surface is made; empty: as the scene says
+    bool grid = false;      // 2D: lines between the cells that hold liquid, tall ones as they are
 };
 
 /// What a frame says of its bodies, as rigid::ShownSolids asks for it.

@@ -24,6 +24,7 @@
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkVolumeProperty.h>
+#include <vtkWindow.h>
 #include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
@@ -34,8 +35,10 @@ namespace weir::view {
 namespace {
 
 constexpr int shades = 256, shades_of_clouds = 16;
-constexpr double glare = 1 / 2.2;  // linear light as a screen wants it
-constexpr double bar_foot = 0.12, bar_head = 0.82;
+constexpr double glare = 1 / 2.2;                   // linear light as a screen wants it
+constexpr double bar_foot = 0.12, bar_head = 0.82;  // in parts of a window's height
+constexpr int text_room = 72;                       // below: three lines of text [pixels]
+constexpr int usual_width = 1100, usual_height = 800;
 
 Rgb screen_colour(std::string_view map, real s) {
     const picture::Colour linear = picture::colour_of(map, s);
@@ -75,20 +78,22 @@ Scale::Scale() {
     bar_->SetNumberOfLabels(5);
     bar_->SetLabelFormat("%.3g");
     bar_->SetVerticalTitleSeparation(12);
-    bar_->SetWidth(0.1);
+    bar_->SetBarRatio(0.2);  // the rest is for numbers such as -1.23e-05
     set_style(bar_->GetLabelTextProperty());
     set_style(bar_->GetTitleTextProperty());
-    keep_above(0);
+    place(usual_width, usual_height, 0);
 }
 
 Scale::~Scale() = default;
 
 void Scale::join(vtkRenderer* renderer) { renderer->AddActor2D(bar_); }
 
-void Scale::keep_above(double height) {
-    const double foot = std::clamp(height, bar_foot, 0.5 * bar_head);
-    bar_->SetPosition(0.87, foot);
-    bar_->SetHeight(bar_head - foot);
+void Scale::place(int width, int height, int foot) {
+    if (width <= 0 || height <= 0) return;
+    const double low = std::clamp(static_cast<double>(foot) / height, bar_foot, 0.5 * bar_head);
+    bar_->SetPosition(1 - static_cast<double>(bar_room - 4) / width, low);
+    bar_->SetWidth(static_cast<double>(bar_room - 8) / width);
+    bar_->SetHeight(bar_head - low);
 }
 
 void Scale::widen(real low, real high) {
@@ -135,6 +140,26 @@ void Scale::colour(vtkVolumeProperty* cloud) const {
 void Scale::show(bool shown) { bar_->SetVisibility(shown); }
 
 void set_style(vtkTextActor* text) { set_style(text->GetTextProperty()); }
+
+std::string wrapped(const std::string& text, int width) {
+    constexpr double letter = 6.9;  // a mean one of the style, and a little [pixels]
+    const std::size_t most = static_cast<std::size_t>(std::max(16.0, width / letter));
+    std::string lines;
+    std::size_t column = 0, space = std::string::npos;  // where the line may be broken
+    for (const char c : text) {
+        lines += c;
+        column = c == '\n' ? 0 : column + 1;
+        if (c == '\n') space = std::string::npos;
+        if (c == ' ') space = lines.size() - 1;
+        if (column <= most || space == std::string::npos) continue;
+        lines[space] = '\n';
+        const std::size_t words = lines.find_first_not_of(' ', space + 1);  // a line begins with a word
+        if (words != std::string::npos) lines.erase(space + 1, words - space - 1);
+        column = lines.size() - space - 1;
+        space = std::string::npos;
+    }
+    return lines;
+}
 
 vtkSmartPointer<vtkActor> outline(const Domain& domain) {
     vtkNew<vtkOutlineSource> lines;
@@ -207,8 +232,16 @@ void look_at_all(vtkRenderer* renderer, const Domain& domain) {
     camera->SetParallelProjection(flat);
     camera->SetPosition(middle(0) + (flat ? 0 : 0.45), middle(1) + (flat ? 0 : 0.42), middle(2) + 1);
     renderer->ResetCamera(domain.box.data());
-    const bool wide = domain.box[1] - domain.box[0] > 1.6 * (domain.box[3] - domain.box[2]);
-    if (flat) camera->Zoom(wide ? 0.95 : 1.2);  // room is left for a turn that a flat picture does not take, and for the scale
+    const int* size = renderer->GetVTKWindow() ? renderer->GetVTKWindow()->GetSize() : nullptr;
+    const double width = size && size[0] > 0 ? size[0] : usual_width, height = size && size[1] > 0 ? size[1] : usual_height;
+    const double across = std::max(0.5 * width, width - 1.1 * bar_room), up = std::max(0.5 * height, height - text_room);
+    if (!flat) return camera->Zoom(std::min(1.0, 1.1 * across / width));
+    // as large as fits beside the bar and above the text, and in the middle of what they leave
+    const double metre = 1.06 * std::max((domain.box[1] - domain.box[0]) / across, (domain.box[3] - domain.box[2]) / up);
+    const double x = middle(0) + 0.5 * (width - across) * metre, y = middle(1) - 0.5 * (height - up) * metre;
+    camera->SetParallelScale(0.5 * height * metre);
+    camera->SetFocalPoint(x, y, middle(2));
+    camera->SetPosition(x, y, camera->GetPosition()[2]);
 }
 
 std::string main_field(const std::vector<std::string>& names) {

@@ -61,8 +61,8 @@ public:
     /// A cloud is the denser, the further its value is from nothing.
     void colour(vtkVolumeProperty* cloud) const;
     void show(bool shown);
-    /// The bar stands above this height of the window, in [0, 1].
-    void keep_above(double height);
+    /// The bar stands at the right, above `foot`, in a window of this size [pixels].
+    void place(int width, int height, int foot);
 
 private:
     vtkNew<vtkLookupTable> table_;
@@ -74,6 +74,8 @@ private:
 
 /// Black on paper.
 void set_style(vtkTextActor* text);
+/// With lines broken at spaces where they would be wider than this [pixels].
+std::string wrapped(const std::string& text, int width);
 
 vtkSmartPointer<vtkActor> outline(const Domain& domain);
 /// All particles in one draw call, as shaded discs; `markers`: two of them lie along a cell's side, else one.
@@ -91,7 +93,9 @@ struct FloatingBox {
 vtkSmartPointer<vtkPolyData> mesh_of(const std::vector<FloatingBox>& boxes, const Domain& domain);
 void paint_boxes(vtkActor* actor, const Domain& domain);
 
-/// Looks at the whole domain: from the front (2D), from in front and above (3D).
+/// Room that is left for the colour bar at the right [pixels].
+inline constexpr int bar_room = 104;
+/// Looks at the whole domain: from the front (2D), from in front and above (3D), beside the colour bar.
 void look_at_all(vtkRenderer* renderer, const Domain& domain);
 
 /// The field that a run is about: smoke, temperature, speed, or the first; empty where there is none.

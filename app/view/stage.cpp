@@ -49,7 +49,11 @@ void Stage::show(const Frame& frame, const std::string& field, Show what) {
     renderer_->ResetCameraClippingRange();
 }
 
-void Stage::tell(const std::string& text) { text_->SetInput(text.c_str()); }
+void Stage::tell(const std::string& text) {
+    const int* size = renderer_->GetSize();
+    text_->SetInput(wrapped(text, size[0] - 24).c_str());
+    scale_.place(size[0], size[1], 0);
+}
 
 void Stage::add(vtkSmartPointer<vtkProp> prop) {
     renderer_->AddViewProp(prop);

@@ -113,6 +113,13 @@ std::shared_ptr<Hand> make_hand(const scene::Scene& scene, std::initializer_list
     return hand;
 }
 
+std::initializer_list<HandKind> kinds_of_hand(bool heats, bool holds) {
+    using enum HandKind;
+    static constexpr auto on_fluid = {push, pull, pour, drain}, heating = {push, pull, pour, drain, heat},
+                          holding = {push, pull, pour, drain, grab}, both = {push, pull, pour, drain, heat, grab};
+    return heats && holds ? both : heats ? heating : holds ? holding : on_fluid;
+}
+
 scene::Table to_table(const HandKey& key, int dim) {
     const scene::Place given{1, 1};
     const auto list = [&](const Vec<3>& v) { return std::vector<double>(v.begin(), v.begin() + dim); };

@@ -16,6 +16,8 @@ std::shared_ptr<Hand> make_hand(const scene::Scene& scene, std::initializer_list
 inline constexpr std::initializer_list<HandKind> moving_kinds{HandKind::push, HandKind::pull, HandKind::pour, HandKind::drain};
 inline constexpr std::initializer_list<HandKind> warming_kinds{HandKind::push, HandKind::pull, HandKind::pour, HandKind::drain,
                                                                HandKind::heat};
+/// Of one that may heat, and that may take hold of bodies.
+std::initializer_list<HandKind> kinds_of_hand(bool heats, bool holds);
 /// A keyframe as the scene would say it.
 scene::Table to_table(const HandKey& key, int dim);
 /// hand_impulse_x .. [kg m/s], hand_mass [kg], and hand_heat [J] where it can heat, per metre of depth in 2D.

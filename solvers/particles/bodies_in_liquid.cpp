@@ -20,7 +20,7 @@ std::unique_ptr<BodiesInLiquid<D>> BodiesInLiquid<D>::make(const Fluid<D>& fluid
 
 template <int D>
 BodiesInLiquid<D>::BodiesInLiquid(const Fluid<D>& fluid)
-    : bodies_(fluid.domain.bodies), gravity_(fluid.gravity), mass_(fluid.mass), spacing_(fluid.domain.spacing) {
+    : bodies_(fluid.domain.bodies), gravity_(fluid.gravity), mass_(fluid.mass), spacing_(fluid.domain.spacing), rho0_(fluid.rho0) {
     const std::size_t count = bodies_->count();
     start_ = bodies_->all();
     for (auto& body : start_) {
@@ -38,7 +38,7 @@ BodiesInLiquid<D>::BodiesInLiquid(const Fluid<D>& fluid)
 }
 
 template <int D>
-void BodiesInLiquid<D>::begin(const Domain<D>& domain, real dt) {
+void BodiesInLiquid<D>::begin(const Domain<D>& domain, real time, real dt) {
     real fastest = 0;
     for (std::size_t b = 0; b < bodies_->count(); ++b) {
         rigid::Body<D>& body = (*bodies_)[b];
@@ -54,6 +54,41 @@ void BodiesInLiquid<D>::begin(const Domain<D>& domain, real dt) {
     around.reach = 2 * dt * (fastest + dt * norm(gravity_)) + spacing_;  // a particle may push it as far as that
     contacts_.find(start_, around);
     meetings_.clear();
+    if (hand_) be_held(time, dt);
+}
+
+template <int D>
+void BodiesInLiquid<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& scene) {
+    hand_ = std::move(hand);
+    for (std::size_t i = 0; i < hand_->keys.size(); ++i)
+        if (hand_->keys[i].kind == HandKind::grab && hand_->keys[i].body >= static_cast<int>(bodies_->count()))
+            scene.refuse("effects.hand.keyframes[" + std::to_string(i) + "].body", "there is no such body",
+                         "numbers of the list bodies, from 0 to " + std::to_string(bodies_->count() - 1));
+}
+
+/// dV/dt = rate (target - V) of the mass of the body and of the water in its place, V at the end of the step: stable for any step. What
+/// depends on V counts as mass (staggered/bodies_in_flow.cpp does the same on a grid).
+template <int D>
+void BodiesInLiquid<D>::be_held(real time, real dt) {
+    const auto brush = hand_->at<D>(time);
+    hold_.body = brush.kind == HandKind::grab ? brush.body : -1;
+    if (hold_.body < 0) return;
+    const rigid::Body<D>& body = start_[static_cast<std::size_t>(hold_.body)];
+    const real water = (*bodies_)[static_cast<std::size_t>(hold_.body)].wet > 0 ? rho0_ * body.moments.volume : 0;
+    hold_.weight = dt * hand_->rate * (body.mass + water);
+    hold_.target = 0.25 * hand_->rate * (brush.centre - body.at);
+    const real most = spacing_ / dt;
+    for (int a = 0; a < D; ++a) hold_.target[a] = std::clamp(hold_.target[a], -most, most);
+}
+
+/// What the hand gave in an exchange: all that it pulls in the first of a step, in those after it what their changes take of that.
+template <int D>
+void BodiesInLiquid<D>::tell_hand(bool heavy) {
+    for (std::size_t a = 0; a < D && hold_.body >= 0; ++a) {
+        const std::size_t at = static_cast<std::size_t>(hold_.body) * n + a;
+        if ((*bodies_)[static_cast<std::size_t>(hold_.body)].held[a]) continue;
+        hand_->impulse[static_cast<int>(a)] += hold_.weight * (heavy ? hold_.target[static_cast<int>(a)] - velocity_[at] : -change_[at]);
+    }
 }
 
 template <int D>
@@ -115,6 +150,10 @@ void BodiesInLiquid<D>::solve_for_velocities(real dt, bool heavy) {
     before_ = velocity_;
     for (std::size_t b = 0; b < count; ++b) {
         const rigid::Body<D>& body = (*bodies_)[b];
+        for (std::size_t a = 0; a < D && hold_.body == static_cast<int>(b); ++a) {
+            matrix_[b][a][a] += hold_.weight;
+            if (heavy) impulse_[b][a] += hold_.weight * (hold_.target[static_cast<int>(a)] - velocity_[n * b + a]);
+        }
         for (std::size_t k = 0; k < n; ++k) {
             free_[k] = !body.held[k];
             for (std::size_t l = 0; l < n; ++l) own_(k, l) = matrix_[b][k][l];
@@ -148,10 +187,10 @@ void BodiesInLiquid<D>::count_forces() {
 }
 
 template <int D>
-void BodiesInLiquid<D>::fall(Domain<D>& domain, real end, real dt) {
-    begin(domain, dt);
+void BodiesInLiquid<D>::fall(Domain<D>& domain, real time, real dt) {
+    begin(domain, time, dt);
     exchange(domain, dt, true);
-    domain.solids.set_time(end);
+    domain.solids.set_time(time + dt);
     move(domain, dt);
 }
 
@@ -160,6 +199,7 @@ void BodiesInLiquid<D>::exchange(Domain<D>& domain, real dt, bool heavy) {
     sum_up();
     solve_for_velocities(dt, heavy);
     count_forces();
+    tell_hand(heavy);
     for (std::size_t b = 0; b < bodies_->count(); ++b)
         for (std::size_t k = 0; k < n; ++k) {
             (*bodies_)[b].velocity[k] += change_[n * b + k];

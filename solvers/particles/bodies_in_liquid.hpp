@@ -11,6 +11,7 @@
 // and each particle is given k w (w.dV) back. K is the added mass of that water which learns of the body's motion in the step, so nothing
 // has to be guessed, no force is delayed, and the sum of all momenta is what it was.
 #pragma once
+#include "core/hand.hpp"
 #include "particles/fluid.hpp"
 #include "rigid/bodies.hpp"
 
@@ -49,10 +50,12 @@ public:
 
     /// A time over the length of the last step; 0 before the first.
     real over_last(real dt) const { return last_dt_ > 0 ? dt / last_dt_ : 0; }
-    /// A step starts: remembers where bodies are, and what they may touch in a step.
-    void begin(const Domain<D>& domain, real dt);
-    /// Then they fall by their weight, and go where their velocities take them; `end`: the time at the end of the step.
-    void fall(Domain<D>& domain, real end, real dt);
+    /// The hand may take hold of them; refuses keyframes of bodies that there are not.
+    void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
+    /// A step from `time` on: remembers where bodies are, what they may touch in it, and which of them the hand holds.
+    void begin(const Domain<D>& domain, real time, real dt);
+    /// That, and they fall by their weight, and go where their velocities take them in dt.
+    void fall(Domain<D>& domain, real time, real dt);
     /// New velocities of bodies from all meetings, from their weight where `heavy`, and from what they touch. Meetings then say what
     /// particles have been given in all.
     void exchange(Domain<D>& domain, real dt, bool heavy);
@@ -82,10 +85,12 @@ private:
     void sum_up();
     void solve_for_velocities(real dt, bool heavy);
     void count_forces();
+    void be_held(real time, real dt);
+    void tell_hand(bool heavy);
 
     std::shared_ptr<rigid::Bodies<D>> bodies_;
     Vec<D> gravity_{};
-    real mass_ = 0, spacing_ = 0;  // of a particle [kg], and between particles [m]
+    real mass_ = 0, spacing_ = 0, rho0_ = 0;  // of a particle [kg], between particles [m], and of the liquid [kg/m^3]
     std::vector<Meeting<D>> meetings_;
     std::vector<rigid::Body<D>> start_;            // bodies where the step began, none lighter than can be carried
     std::vector<char> dry_, wet_;                  // no fluid and nothing else touched it in the step before; fluid does now
@@ -93,6 +98,13 @@ private:
     std::vector<Twist> impulse_, force_, gained_;  // of one exchange; of the step, from the fluid; velocity, from the fluid
     std::vector<Matrix> matrix_;
     real last_dt_ = 0;
+    std::shared_ptr<Hand> hand_;  // none: nobody takes hold
+    /// Of the body that it holds in this step: the impulse is weight (target - V).
+    struct {
+        int body = -1;
+        real weight = 0;
+        Vec<D> target{};
+    } hold_;
     rigid::Mobility own_, inverse_, mobility_;
     std::vector<char> free_;
     std::vector<real> velocity_, before_, change_;

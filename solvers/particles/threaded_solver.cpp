@@ -12,8 +12,9 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
     this->take_heat(scene);
-    this->hand_ = geometry::make_hand(scene, this->heat_ ? geometry::warming_kinds : geometry::moving_kinds);
+    this->hand_ = geometry::make_hand(scene, geometry::kinds_of_hand(this->heat_ != nullptr, this->bodies_ != nullptr));
     if (!this->hand_) return;
+    if (this->bodies_) this->bodies_->follow(this->hand_, scene);
     auto hand = std::make_unique<HandOnParticles<D>>(this->hand_);
     sources_ = hand.get();
     effects_.add("hand", std::move(hand));

@@ -124,10 +124,7 @@ template <int D>
 void DevicePbfSolver<D>::start_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     carried_dt_ = dt;
-    bodies_->begin(fluid_.domain(), dt);
-    bodies_->exchange(fluid_.domain(), dt, true);
-    fluid_.domain().solids.set_time(fluid_.time() + dt);
-    bodies_->move(fluid_.domain(), dt);
+    bodies_->fall(fluid_.domain(), fluid_.time(), dt);
 }
 
 template <int D>

@@ -141,7 +141,7 @@ void ReferencePbfSolver<D>::correct() {
 template <int D>
 void ReferencePbfSolver<D>::start_bodies(real dt) {
     carried_dt_ = dt;
-    bodies_->fall(fluid_.domain, fluid_.time + dt, dt);
+    bodies_->fall(fluid_.domain, fluid_.time, dt);
 }
 
 /// Particles whose prediction would be inside a body push it.

@@ -202,7 +202,7 @@ template <int D>
 void PbfSolver<D>::start_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     carried_dt_ = dt;
-    bodies_->fall(fluid_.domain, fluid_.time + dt, dt);
+    bodies_->fall(fluid_.domain, fluid_.time, dt);
 }
 
 template <int D>

@@ -33,8 +33,8 @@ const FieldView* particles_of(const FieldSet& fields) {
     return markers ? markers : fields.find(particle_set_name, "position");
 }
 
-/// A component of a velocity on faces or in cells, trilinear.
-real velocity_at(const FieldView& field, const GridView& grid, std::size_t component, const Vec<3>& x) {
+/// A component of a velocity on faces or in cells, or a number in cells, trilinear.
+real value_at(const FieldView& field, const GridView& grid, std::size_t component, const Vec<3>& x) {
     const auto dim = static_cast<std::size_t>(grid.dim);
     std::array<std::size_t, 3> low{}, n{1, 1, 1};
     std::array<real, 3> part{};
@@ -143,6 +143,7 @@ void Reconstruction::from_particles(const FieldSet& fields) {
         const auto timed = passes_.time("field");
         lay_samples();
         field_.compute(cloud_, samples_);
+        if (markers) fill_holes(fields);
     }
     make_contour();
     add_velocity(fields);
@@ -185,6 +186,21 @@ void Reconstruction::add_layers() {
             cloud_.x[2].push_back(layer * cloud_.spacing);
             cloud_.source.push_back(cloud_.particle(i));
         }
+}
+
+/// Markers part by chance, and leave holes of a spacing or two inside the liquid. A level set beside them, which sees no holes smaller than
+/// a cell, tells that there is liquid: what lies a cell deep is inside.
+void Reconstruction::fill_holes(const FieldSet& fields) {
+    const FieldView* phi = fields.find(level_set_name);
+    if (!phi) return;
+    const real deep = *std::min_element(fields.grid.spacing.begin(), fields.grid.spacing.begin() + fields.grid.dim);
+    parallel_for(0, samples_.n[2], [&](int k) {
+        for (int j = 0; j < samples_.n[1]; ++j)
+            for (int i = 0; i < samples_.n[0]; ++i) {
+                float& depth = samples_.depth[samples_.linear(i, j, k)];
+                if (depth < 1 && value_at(*phi, fields.grid, 0, samples_.position(i, j, k)) < -deep) depth = 1;
+            }
+    });
 }
 
 void Reconstruction::lay_plane() {
@@ -255,7 +271,7 @@ void Reconstruction::add_velocity(const FieldSet& fields) {
     parallel_for(0, static_cast<int>(mesh_.points.size()), [&](int p) {
         const auto at = static_cast<std::size_t>(p);
         if (on_grid)
-            for (std::size_t a = 0; a < dim; ++a) mesh_.velocity[at][a] = velocity_at(*v, fields.grid, a, mesh_.points[at]);
+            for (std::size_t a = 0; a < dim; ++a) mesh_.velocity[at][a] = value_at(*v, fields.grid, a, mesh_.points[at]);
         else
             mesh_.velocity[at] = field_.velocity_at(mesh_.points[at], {v->data[0], v->data[1], flat_ ? across_ : v->data[2]});
     });

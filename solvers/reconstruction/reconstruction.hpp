@@ -34,6 +34,7 @@ private:
     void add_images(std::size_t axis);
     void add_layers();
     void lay_samples();
+    void fill_holes(const FieldSet& fields);
     void lay_plane();
     void make_contour();
     void smooth_by_crowding();

@@ -117,7 +117,7 @@ void DeviceSphSolver<D>::meet_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     Fluid<D>& state = fluid_.borrow();
     for (std::size_t i = 0; i < rise_.size(); ++i) rise_[i] = state.carried[i] - rise_[i];
-    bodies_->begin(state.domain, dt);
+    bodies_->begin(state.domain, state.time, dt);
     beside_->find_near();
     beside_->meet(fluid_.a);
     fluid_.read(acceleration_, accelerations_, 4);

@@ -149,7 +149,7 @@ void ReferenceSphSolver<D>::kick(real dt) {
 /// What particles feel of bodies, and what accelerations leave out of it.
 template <int D>
 void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
-    bodies_->begin(fluid_.domain, dt);
+    bodies_->begin(fluid_.domain, fluid_.time, dt);
     particles::meet_bodies(reference_, fluid_.domain, x_, bodies_->meetings());
     beside_bodies_.clear();
     for (auto& m : bodies_->meetings()) {

@@ -200,7 +200,7 @@ void SphSolver<D>::drag_at_solids() {
 template <int D>
 void SphSolver<D>::meet_bodies(real dt) {
     const auto timed = passes_.time("bodies");
-    bodies_->begin(fluid_.domain, dt);
+    bodies_->begin(fluid_.domain, fluid_.time, dt);
     solids_.meet(pairs_.a(), bodies_->meetings());
     sph::meet_bodies(
         options_, exact_, fluid_, *bodies_, [&](int k) { return pairs_.owner(k); }, rise_, dt, beside_bodies_, acceleration_.data());

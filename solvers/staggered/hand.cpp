@@ -78,11 +78,7 @@ private:
 }  // namespace
 
 std::initializer_list<HandKind> kinds_of_hand(const scene::Scene& scene) {
-    using enum HandKind;
-    static constexpr auto on_fluid = {push, pull, pour, drain}, heating = {push, pull, pour, drain, heat},
-                          holding = {push, pull, pour, drain, grab}, both = {push, pull, pour, drain, heat, grab};
-    const bool heats = scene.has("substance"), holds = !scene.root().tables("bodies").empty();
-    return heats && holds ? both : heats ? heating : holds ? holding : on_fluid;
+    return geometry::kinds_of_hand(scene.has("substance"), !scene.root().tables("bodies").empty());
 }
 
 template <int D>

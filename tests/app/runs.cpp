@@ -1,5 +1,6 @@
 // weir run as users meet it: interrupted, killed, restarted, on one thread and on two, on a full disk.
 #include "app/process.hpp"
+#include "output/read_frame.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 #include "support/vtk_files.hpp"
@@ -105,6 +106,52 @@ TEST("a film has its poster beside it, MP4 and WebM; without ffmpeg and with ano
         EXPECT_TRUE(fs::exists(folder.path() / "film.png"));
         EXPECT_FALSE(fs::exists(folder.path() / (name + ".frames")));  // the pictures are gone
         fs::remove(folder.path() / "film.png");
+    }
+}
+
+TEST("a film of a scene is made by one command, with what --set changes of its run") {
+    if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
+    TemporaryFolder folder;
+    drop_run();
+    const fs::path here = fs::current_path(), scene_file = drop_run().parent_path() / "drop.toml";
+    fs::current_path(folder.path());
+    run({"movie", scene_file, "--size", "64", "--set", "time.end=0.01", "--quiet"}, "log");
+    Process mixed({"movie", "out/drop", "--set", "time.end=1"}, "log2");
+    EXPECT_EQ(mixed.wait(), 2);
+    EXPECT_NE(mixed.said().find("--set goes with a scene"), std::string::npos) << mixed.said();
+    fs::current_path(here);
+    EXPECT_TRUE(fs::exists(folder.path() / "out/drop/movie.mp4"));
+    EXPECT_TRUE(fs::exists(folder.path() / "out/drop/movie.png"));
+    EXPECT_EQ(weir::output::frame_times(folder.path() / "out/drop").back(), 0.01);
+}
+
+TEST("--range names both ends of the colours, or the upper one; what is no range is refused") {
+    TemporaryFolder folder;
+    std::ofstream(folder.path() / "even.toml")
+        << "solver = \"mac\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 0.01, dt = 0.01 }\n"
+           "initial.temperature = { name = \"constant\", value = 300.0 }\n";
+    run({"run", folder.path() / "even.toml", "--out", folder.path() / "even"}, folder.path() / "log");
+    const auto picture = [&](const std::string& range) {
+        const fs::path file = folder.path() / "a.png";
+        std::vector<std::string> words{"picture", folder.path() / "even", "--field", "temperature", "--size", "32", "--out", file};
+        if (!range.empty()) words.push_back("--range=" + range);
+        run(words, folder.path() / "log");
+        return text_of(file);
+    };
+    const std::string lowest = picture("");
+    EXPECT_TRUE(picture("350") == lowest);      // the upper end alone: the lower is the frame's own
+    EXPECT_TRUE(picture("300,400") == lowest);  // 300 is the lowest
+    const std::string middle = picture("250,350");
+    EXPECT_FALSE(middle == lowest);
+    EXPECT_TRUE(picture("200,400") == middle);
+    EXPECT_TRUE(picture("-300,900") == middle);
+    for (const auto& [range, why] : {std::pair{"400,300", "the lower end is not below the upper one"},
+                                     {"warm", "is no number"},
+                                     {"1,2,3", "is too much"},
+                                     {"-5", "the highest colour alone has a value above 0"}}) {
+        Process refused({"picture", folder.path() / "even", std::string("--range=") + range}, folder.path() / "log");
+        EXPECT_EQ(refused.wait(), 2);
+        EXPECT_NE(refused.said().find(why), std::string::npos) << refused.said();
     }
 }
 

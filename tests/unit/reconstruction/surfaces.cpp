@@ -170,6 +170,32 @@ TEST("a level set's surface is its zero, closed at the walls") {
     for (const Vec<3>& v : mesh.velocity) EXPECT_NEAR(norm(v - Vec<3>{{2, 2, 2}}), 0, 1e-14);  // weights sum to 1 but for rounding
 }
 
+TEST("markers that part inside a liquid leave no hole where a level set tells that there is none, and one where it does not") {
+    const int cells = 12;
+    const Vec<3> hole{{12, 12, 12}};
+    const Liquid tank = fill(2 * cells, [&](const Vec<3>& x) { return x[1] < 20 && norm(x - hole) > 2; });
+    for (const bool known : {false, true}) {
+        std::vector<real> phi;
+        for (int k = 0; k < cells; ++k)
+            for (int j = 0; j < cells; ++j)
+                for (int i = 0; i < cells; ++i) {
+                    const Vec<3> x{{2 * i + 1.0, 2 * j + 1.0, 2 * k + 1.0}};
+                    phi.push_back(std::max(x[1] - 20, known ? 2 - norm(x - hole) : -infinity));
+                }
+        FieldSet fields;
+        fields.grid = {3, {cells, cells, cells}, {0, 0, 0}, {2, 2, 2}};
+        fields.fields = {{"position", "m", Where::particle, marker_set_name, {tank.x[0], tank.x[1], tank.x[2]}},
+                         {level_set_name, "m", Where::cell, "", {phi}}};
+        const scene::Scene scene =
+            scene::parse("solver = \"mac_water\"\ndim = 3\ngrid = { cells = [12, 12, 12], size = [24, 24, 24] }\ntime = { end = 1.0 }\n",
+                         "test", sim::schemas());
+        for (const Method method : of_particles) {
+            Reconstruction made(usual(method), scene);
+            EXPECT_EQ(topology(made.make(fields, 0)).euler, known ? 4 : 2) << static_cast<int>(method);  // two for each closed surface
+        }
+    }
+}
+
 TEST("a liquid that is gone has no surface, and one that comes back has") {
     Reconstruction made(usual(Method::zhu_bridson), scene_of(48));
     EXPECT_GT(made.make(ball(6).fields(), 0).corners.size(), 0U);

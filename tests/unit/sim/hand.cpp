@@ -206,25 +206,27 @@ TEST_IN_2D_AND_3D("a body in the air follows the hand as a damped spring does, a
         "liquid = [ {{ shape = \"box\", min = {}, max = {} }} ]\n"
         "bodies = [ {{ shape = \"sphere\", centre = {}, radius = 0.1, density = 500.0 }} ]\n",
         list<D>(0, 0, 0), list<D>(1, 0.2, 1), list<D>(0.4, 0.7, 0.5));
-    std::string text = box<D>("mac_water", 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")) + scene);
-    text.erase(text.find("liquid"), text.find('\n', text.find("liquid")) - text.find("liquid") + 1);
-    auto simulation = start(text);
-    const auto at = [&](int a) { return simulation.fields().find("bodies", "position")->data[static_cast<std::size_t>(a)][0]; };
-    for (int s = 0; s < 50; ++s) simulation.step();
-    const real mass = 500 * (D == 2 ? pi * 0.01 : 4 * pi / 3 * 1e-3);
-    const FieldSet fields = simulation.fields();
-    for (int a = 0; a < D; ++a)
-        EXPECT_NEAR(integral(simulation, std::string("hand_impulse_") + "xyz"[a]),
-                    mass * fields.find("bodies", "velocity")->data[static_cast<std::size_t>(a)][0], 1e-9);
-    // omega = rate/2 = 20 / s: what is left of the way is (1 + omega t) exp(-omega t), 0.406 at 0.1 s; backward Euler is late by a step or
-    // so, omega^2 t dt / (1 + omega t) = 2.7% of what is left.
-    const real left = (1 + 20 * 0.1) * std::exp(-20 * 0.1);
-    EXPECT_NEAR((0.6 - at(0)) / 0.2, left, 0.05 * left);
-    EXPECT_NEAR((at(1) - 0.6) / 0.1, left, 0.05 * left);
-    for (int s = 0; s < 200; ++s) simulation.step();
-    EXPECT_NEAR(at(0), 0.6, 0.2 * 0.02);  // (1 + 10) exp(-10) = 5e-4 of the way
-    EXPECT_THROW(start(box<D>("mac_water", 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 1")) + scene)), BadInput);
-    EXPECT_THROW(start(box<D>("mac_water", 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")))), BadInput);
+    for (const std::string solver : {"mac_water", "pbf", "sph"}) {
+        std::string text = box<D>(solver, 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")) + scene);
+        text.erase(text.find("liquid"), text.find('\n', text.find("liquid")) - text.find("liquid") + 1);
+        auto simulation = start(text);
+        const auto at = [&](int a) { return simulation.fields().find("bodies", "position")->data[static_cast<std::size_t>(a)][0]; };
+        for (int s = 0; s < 50; ++s) simulation.step();
+        const real mass = 500 * (D == 2 ? pi * 0.01 : 4 * pi / 3 * 1e-3);
+        const FieldSet fields = simulation.fields();
+        for (int a = 0; a < D; ++a)
+            EXPECT_NEAR(integral(simulation, std::string("hand_impulse_") + "xyz"[a]),
+                        mass * fields.find("bodies", "velocity")->data[static_cast<std::size_t>(a)][0], 1e-9);
+        // omega = rate/2 = 20 / s: what is left of the way is (1 + omega t) exp(-omega t), 0.406 at 0.1 s; backward Euler is late by a step
+        // or so, omega^2 t dt / (1 + omega t) = 2.7% of what is left.
+        const real left = (1 + 20 * 0.1) * std::exp(-20 * 0.1);
+        EXPECT_NEAR((0.6 - at(0)) / 0.2, left, 0.05 * left);
+        EXPECT_NEAR((at(1) - 0.6) / 0.1, left, 0.05 * left);
+        for (int s = 0; s < 200; ++s) simulation.step();
+        EXPECT_NEAR(at(0), 0.6, 0.2 * 0.02);  // (1 + 10) exp(-10) = 5e-4 of the way
+        EXPECT_THROW(start(box<D>(solver, 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 1")) + scene)), BadInput);
+        EXPECT_THROW(start(box<D>(solver, 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")))), BadInput);
+    }
 }
 
 TEST_IN_2D_AND_3D("a hand that covers no fluid, or is off, changes no bit") {
