@@ -27,6 +27,7 @@ protected:
     }
     const Fluid<D>& state() const final { return fluid_.host(); }
     const Fluid<D>& setting() const final { return fluid_.setting(); }
+    Fluid<D>& writable() final { return fluid_.change(); }
     real speed() const final { return fluid_.speed(); }
     Pairs::NeighbourCounts neighbour_counts() const final { return fluid_.neighbour_counts(); }
     real max_dt() const final { return fluid_.max_dt(); }
