@@ -88,6 +88,13 @@ ends)
     says "last good state"
     [ "$(grep -c "step 1" log)" -eq 1 ] || fail "said more than once"
     [ -e failed/last_good.weir ] || fail "no last good state"
+    # what the first cannot write nobody goes on without
+    mkdir blocked && touch blocked/probes
+    ends 2 over 3 "$weir" run "$flat" --quiet --out blocked
+    says probes
+    # one alone: its scene is another, as on a machine with another disk
+    ends 2 over 1 "$weir" run "$flat" --quiet --out alone : -n 1 "$weir" run "$flat" --quiet --out alone --set grid.cell=2
+    says "rank 1 alone: .*unknown key"
     ;;
 signals)
     long=(--set time.end=100 --set output.every=0.02 --set grid.cells=[48,64] --checkpoint-every 1)
