@@ -72,8 +72,8 @@ int flushed(int exit_code) {
 }
 
 /// Threads that wait spin for a while, which is quicker than sleeping and starves whoever they wait for where the machine is busy: at most
-/// so long as a pass between two waits takes. Ranks of one machine share its processors. libgomp reads its environment before main; what a user
-/// has set stays.
+/// so long as a pass between two waits takes. Ranks of one machine share its processors. libgomp reads its environment before main; what a
+/// user has set stays.
 void bound_spinning(char** argv) {
     const int threads = std::getenv("OMP_NUM_THREADS") ? 0 : weir::distributed::threads_of_rank();
     const bool bounded = std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT");

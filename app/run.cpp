@@ -64,9 +64,7 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
 }
 
-Cut cut_of_run(const scene::Scene& scene) {
-    return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks());
-}
+Cut cut_of_run(const scene::Scene& scene) { return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks()); }
 
 std::string explain_ranks(const scene::Scene& scene) {
     if (!slabs().several()) return {};

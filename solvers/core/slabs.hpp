@@ -14,7 +14,8 @@
 
 namespace weir {
 
-/// The planes of an array over the slowest axis, neighbours in memory: plane 0 stands at `first`, `margin` more before it and after the last.
+/// The planes of an array over the slowest axis, neighbours in memory: plane 0 stands at `first`, `margin` more before it and after the
+/// last.
 struct Planes {
     void* first;
     std::size_t bytes;  // of a plane
@@ -48,7 +49,8 @@ public:
     virtual void gather_parts(void* /*entries*/, std::size_t /*bytes*/, std::span<const std::size_t> /*begins*/) {}
     /// The largest of the values that the ranks give.
     virtual int largest(int value) { return value; }
-    /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never come.
+    /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never
+    /// come.
     virtual bool all_arrive(double /*seconds*/) { return true; }
     /// Ends all ranks at once, with this exit code.
     virtual void abort(int /*exit_code*/) {}

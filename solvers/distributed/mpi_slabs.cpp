@@ -50,7 +50,7 @@ public:
                 MPI_Irecv(at, count, plane.type, message.peer, 0, MPI_COMM_WORLD, &requests_.back());
             if (message.sends) count_message(planes.bytes * static_cast<std::size_t>(count));
         }
-        MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+        wait_for_requests();
         if (poisons_) poison(plan, planes);
     }
 
@@ -61,7 +61,7 @@ public:
             begins_.push_back(cut.begin(r));
             counts_.push_back(cut.end(r, planes.count) - cut.begin(r));
         }
-        MPI_Allgatherv(MPI_IN_PLACE, 0, plane.type, planes.first, counts_.data(), begins_.data(), plane.type, MPI_COMM_WORLD);
+        gather_counted(planes.first, plane);
         count_message(planes.bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
     }
 
@@ -72,12 +72,14 @@ public:
             begins_.push_back(static_cast<int>(begins[r]));
             counts_.push_back(static_cast<int>(begins[r + 1] - begins[r]));
         }
-        MPI_Allgatherv(MPI_IN_PLACE, 0, entry.type, entries, counts_.data(), begins_.data(), entry.type, MPI_COMM_WORLD);
+        gather_counted(entries, entry);
         count_message(bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
     }
 
     int largest(int value) override {
-        MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+        requests_.assign(1, MPI_REQUEST_NULL);
+        MPI_Iallreduce(MPI_IN_PLACE, &value, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, requests_.data());
+        wait_for_requests();
         count_message(sizeof value);
         return value;
     }
@@ -109,6 +111,24 @@ private:
         PlaneType(const PlaneType&) = delete;
         PlaneType& operator=(const PlaneType&) = delete;
     };
+
+    void gather_counted(void* entries, const PlaneType& entry) {
+        requests_.assign(1, MPI_REQUEST_NULL);
+        MPI_Iallgatherv(MPI_IN_PLACE, 0, entry.type, entries, counts_.data(), begins_.data(), entry.type, MPI_COMM_WORLD, requests_.data());
+        wait_for_requests();
+    }
+
+    /// MPI's own waits never sleep: on a machine that others use too, whoever is waited for then does not get to run. Ours spin for longer
+    /// than a message takes, and sleep for less than a pass does.
+    void wait_for_requests() {
+        constexpr int spins = 2000;
+        int done = 0;
+        for (int tried = 0;; ++tried) {
+            MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &done, MPI_STATUSES_IGNORE);
+            if (done) return;
+            if (tried > spins) std::this_thread::sleep_for(std::chrono::microseconds(20));
+        }
+    }
 
     static unsigned char* plane_at(const Planes& planes, int plane) {
         return static_cast<unsigned char*>(planes.first) + static_cast<std::ptrdiff_t>(planes.bytes) * plane;

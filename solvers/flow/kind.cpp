@@ -35,15 +35,16 @@ Key sides_key() {
 
 /// What of a scene is not cut into slabs yet.
 void over_ranks(const scene::Scene& scene) {
-    const auto refuse = [&](const std::string& key, const std::string& what) { scene.refuse(key, what + " in one process only"); };
+    const auto refuse = [&](const std::string& key, const std::string& what) {
+        scene.refuse(key, key + ": " + what + " in one process only");
+    };
     if (!scene.root().tables("bodies").empty()) refuse("bodies", "bodies move");
     if (Heat<2>::named(scene)) refuse("substance", "a substance melts");
     if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
     for (std::size_t i = 0; scene.has("solids") && i < scene.root().tables("solids").size(); ++i)
         if (const auto& solid = scene.root().tables("solids")[i]; solid.has("motion") && solid.text("motion.kind") != "none")
             refuse("solids[" + std::to_string(i) + "].motion", "solids move");
-    if (scene.root().text("scheme.poisson.method").starts_with("petsc"))
-        refuse("scheme.poisson.method", "PETSc's methods are");
+    if (scene.root().text("scheme.poisson.method").starts_with("petsc")) refuse("scheme.poisson.method", "PETSc's methods are");
 }
 
 }  // namespace

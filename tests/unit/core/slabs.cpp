@@ -49,7 +49,8 @@ TEST("what all ranks together send to one are the planes beyond its cuts, each o
                                         EXPECT_TRUE(plane >= cut.begin(from) && plane < cut.end(from, n + faces));
                                         EXPECT_TRUE(sent.insert(plane).second) << "twice";
                                     }
-                            EXPECT_EQ(sent, wanted(cut, to, n + faces, std::min(deep, n), ring)) << n << ' ' << ranks << ' ' << deep << ' ' << ring;
+                            EXPECT_EQ(sent, wanted(cut, to, n + faces, std::min(deep, n), ring))
+                                << n << ' ' << ranks << ' ' << deep << ' ' << ring;
                         }
                     }
 }
