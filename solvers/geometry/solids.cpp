@@ -56,8 +56,8 @@ void Solids<D>::set_time(real t) {
 }
 
 template <int D>
-real Solids<D>::distance(const Vec<D>& x, real most) const {
-    real d = most;
+real Solids<D>::distance(const Vec<D>& x) const {
+    real d = infinity;
     for (std::size_t i = 0; i < solids_.size(); ++i)
         if (may_be_nearer(i, x, d)) d = std::min(d, distance(i, x));
     return d;
@@ -75,11 +75,11 @@ std::size_t Solids<D>::nearest(const Vec<D>& x) const {
 }
 
 template <int D>
-Vec<D> Solids<D>::normal(const Vec<D>& x, real eps, real most) const {
+Vec<D> Solids<D>::normal(const Vec<D>& x, real eps) const {
     Vec<D> n;
     for (int a = 0; a < D; ++a) {
         const Vec<D> step = eps * Vec<D>::unit(a);
-        n[a] = distance(x + step, most) - distance(x - step, most);
+        n[a] = distance(x + step) - distance(x - step);
     }
     const real length = norm(n);
     return length > 0 ? n / length : Vec<D>::unit(D - 1);
@@ -89,9 +89,9 @@ template <int D>
 Vec<D> Solids<D>::push_out(const Vec<D>& x, real margin, real eps) const {
     Vec<D> y = x;
     for (int newton = 0; newton < 2; ++newton) {
-        const real d = distance(y, margin);
+        const real d = distance(y);
         if (d >= margin) break;
-        y += (margin - d) * normal(y, eps, margin + 2 * eps);
+        y += (margin - d) * normal(y, eps);
     }
     return y;
 }

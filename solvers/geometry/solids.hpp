@@ -45,15 +45,15 @@ public:
     const Ball<D>& ball(std::size_t solid) const { return balls_[solid]; }
     const Solid<D>& operator[](std::size_t i) const { return solids_[i]; }
 
-    /// Signed distance to the nearest solid [m], negative inside; `most` where none is nearer than that.
-    real distance(const Vec<D>& x, real most = infinity) const;
+    /// Signed distance to the nearest solid [m], negative inside; +infinity without solids.
+    real distance(const Vec<D>& x) const;
     real distance(std::size_t solid, const Vec<D>& x) const { return solids_[solid].shape->distance(poses_[solid].to_rest(x)); }
     /// The solid whose surface is nearest (deepest inside wins); needs at least one.
     std::size_t nearest(const Vec<D>& x) const;
     /// Velocity of the nearest solid's material at x [m/s].
     Vec<D> velocity(const Vec<D>& x) const { return poses_[nearest(x)].velocity_at(x); }
-    /// Outward unit normal of the distance field, by central differences over ± eps [m]. `most`: nothing further than that is asked for.
-    Vec<D> normal(const Vec<D>& x, real eps, real most = infinity) const;
+    /// Outward unit normal of the distance field, by central differences over ± eps [m].
+    Vec<D> normal(const Vec<D>& x, real eps) const;
     /// x, or the nearest point at distance `margin` outside when x is closer than that (two Newton steps along the gradient).
     Vec<D> push_out(const Vec<D>& x, real margin, real eps) const;
     const Pose<D>& pose(std::size_t solid) const { return poses_[solid]; }

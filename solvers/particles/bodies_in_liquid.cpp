@@ -222,7 +222,7 @@ void BodiesInLiquid<D>::move(Domain<D>& domain, real dt) {
 template <int D>
 void BodiesInLiquid<D>::push_out(const Domain<D>& domain, int particle, const Vec<D>& free, real dt) {
     const auto& solids = domain.solids;
-    if (solids.distance(free, domain.margin) >= domain.margin) return;
+    if (solids.distance(free) >= domain.margin) return;
     const std::size_t solid = solids.nearest(free);
     if (!solids[solid].free) return;
     const Vec<D> out = solids.push_out(free, domain.margin, 1e-3 * domain.spacing), by = out - free;

@@ -19,7 +19,7 @@ void SolidTerms<D>::mark(Pairs& pairs) {
     flag_.resize(static_cast<std::size_t>(pairs.size()));
     pairs.fit(terms_, 4);
     std::fill(terms_.begin(), terms_.end(), 0.0f);
-    pairs.each([&](int k) { flag_[static_cast<std::size_t>(k)] = domain_.solids.distance(world(pairs.a() + 4 * k), reach) < reach; });
+    pairs.each([&](int k) { flag_[static_cast<std::size_t>(k)] = domain_.solids.distance(world(pairs.a() + 4 * k)) < reach; });
     near_.clear();
     near_.reserve(flag_.size());
     for (int k = 0; k < pairs.size(); ++k)
@@ -29,15 +29,14 @@ void SolidTerms<D>::mark(Pairs& pairs) {
 template <int D>
 const float* SolidTerms<D>::at(const Pairs&, const float* positions) {
     if (domain_.solids.empty()) return nullptr;
-    const real far = 2 / walls_.inv_h;
     parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
         const int k = near_[static_cast<std::size_t>(i)];
         const Vec<D> x = world(positions + 4 * k);
-        const real phi = std::max<real>(0, domain_.solids.distance(x, far));
+        const real phi = std::max<real>(0, domain_.solids.distance(x));
         float* term = terms_.data() + 4 * k;
         std::fill(term, term + 4, 0.0f);
         if (phi * walls_.inv_h >= 1) return;
-        const Vec<D> n = domain_.solids.normal(x, 1e-3 * domain_.spacing, far);
+        const Vec<D> n = domain_.solids.normal(x, 1e-3 * domain_.spacing);
         const real pull = wall_series(phi, walls_.slope, walls_.inv_h);
         for (int a = 0; a < D; ++a) term[a] = static_cast<float>(-pull * n[a]);
         term[3] = static_cast<float>(wall_series(phi, walls_.fraction, walls_.inv_h));
@@ -72,7 +71,7 @@ void SolidTerms<D>::push_out(const Pairs& pairs, float* positions, Clamps& clamp
     parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
         const int k = near_[static_cast<std::size_t>(i)];
         const Vec<D> x = world(positions + 4 * k);
-        if (domain_.solids.distance(x, domain_.margin) >= domain_.margin) return;
+        if (domain_.solids.distance(x) >= domain_.margin) return;
         const Vec<D> y = pairs.is_image(k) ? domain_.kept(x) : domain_.kept(x, clamps);
         for (int a = 0; a < D; ++a) positions[4 * k + a] = pairs.local(y[a], a);
     });

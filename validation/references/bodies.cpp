@@ -45,6 +45,13 @@ REFERENCE(afloat) {
     return ref;
 }
 
+/// The height of the middle of a disc or a ball that is as dense as the water: where it is put.
+REFERENCE(stays) {
+    Reference ref{.source = "Archimedes"};
+    ref.numbers["height"] = first_body(scene).numbers("centre").at(1);
+    return ref;
+}
+
 /// Added mass over displaced mass of a disc or a ball in the middle of a round vessel: exact, from the potentials r + b²/r and r + b³/(2
 /// r²).
 REFERENCE(round_vessel) {
