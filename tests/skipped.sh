@@ -11,13 +11,14 @@ has_embree() { # its header, where compilers look; INCLUDES: other folders
     for folder in ${INCLUDES:-/usr/include /usr/local/include}; do [ -e "$folder/embree3/rtcore.h" ] && return 0; done
     return 1
 }
+has_petsc() { [ -n "$(compgen -G "${PETSC:-/usr/lib/petscdir}/petsc*/*real/include/petsc.h")" ]; }
 has_opencl() { "$weir" list devices >/dev/null 2>&1; }
 
 # name, a tab, the reason: the line of a skipped test's output that begins with "skipped: ", or says that there is no OpenCL device
 skips=$(awk '
     /<testcase /      { name = $0; sub(/.*<testcase name="/, "", name); sub(/".*/, "", name); skipped = 0; why = "" }
     /<skipped /       { skipped = 1 }
-    why == "" && match($0, /skipped: [^<]*|no OpenCL device here|built without OpenCL|built without Embree|no ffmpeg/) { why = substr($0, RSTART, RLENGTH) }
+    why == "" && match($0, /skipped: [^<]*|no OpenCL device here|built without OpenCL/) { why = substr($0, RSTART, RLENGTH) }
     /<\/testcase>/    { if (skipped) print name "\t" why }' "$junit")
 [ -n "$skips" ] || { echo "0 tests skipped"; exit 0; }
 
@@ -36,6 +37,7 @@ explained() { # REASON
         *"valgrind does not know this build's instructions"*) grep -q avx512f /proc/cpuinfo ;;
         *"no ffmpeg"*) ! has ffmpeg ;;
         *"built without Embree"*) ! has_embree ;;
+        *"built without PETSc"*) ! has_petsc ;;
         *"oclgrind is not installed"*) ! has oclgrind ;;
         *"built without OpenCL"* | *"no OpenCL device here"*) ! has_opencl ;;
         *) false ;;

@@ -215,9 +215,12 @@ real Columns::sum(F&& f) const {
            });
 }
 
+real Columns::volume() const {
+    return sum([&](std::size_t c) { return surface_[c] - state_.bed[c]; }) + floats_.missing(surface_);
+}
+
 std::vector<Integral> Columns::integrals() const {
-    const real columns = sum([&](std::size_t c) { return surface_[c] - state_.bed[c]; });
-    const real volume = columns + floats_.missing(surface_);
+    const real volume = this->volume();
     if (!floats_.empty()) floats_.displaced(surface_, displaced_);
     // of the water's top over its level at rest; below objects it is lower than the height that its pressure stands for
     const real raised = sum([&](std::size_t c) {
@@ -240,6 +243,26 @@ std::vector<Integral> Columns::integrals() const {
         if (state_.plane.dim == 3) list.push_back({name + "force_z", "N", p.along_z});
     }
     return list;
+}
+
+/// The height of the surface, and its rate as the velocity's part upwards. Not around floats, whose columns stand for their weight.
+std::vector<EditableField> Columns::editable() {
+    if (!floats_.empty()) return {};
+    volume_before_ = volume();
+    EditableField velocity{"", "velocity", {nothing_, rate_}}, surface{"", "surface", {surface_}};
+    velocity.min[0] = velocity.max[0] = 0;
+    if (state_.plane.dim == 3) velocity.data.emplace_back(nothing_), velocity.min[2] = velocity.max[2] = 0;
+    return {std::move(velocity), std::move(surface)};
+}
+
+/// What was raised is poured, what was lowered is drained. The still depth stays.
+void Columns::edited(const EditableField& field) {
+    for (std::size_t c = 0; c < surface_.size(); ++c) {
+        if (is_wet(c) ? surface_[c] <= state_.bed[c] : surface_[c] != state_.bed[c] || rate_[c] != 0)
+            throw BadInput(fmt::format("\"{}\" at {}: the bed lies at {} m, and columns that pull their neighbours {}", field.name, c,
+                                       state_.bed[c], is_wet(c) ? "do not run dry" : "wet no dry ground"));
+    }
+    state_.poured += volume() - volume_before_;
 }
 
 void Columns::save(Checkpoint& to) const {

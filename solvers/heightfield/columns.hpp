@@ -21,6 +21,8 @@ public:
     real time() const override { return state_.time; }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
+    std::vector<EditableField> editable() override;
+    void edited(const EditableField& field) override;
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override;
@@ -30,11 +32,14 @@ private:
     void make_stiffness();
     void let_out(real dt);
     void check() const;
+    real volume() const;
+    bool is_wet(std::size_t c) const { return state_.h[c] > 0; }
     template <class F>
     real sum(F&& f) const;
 
     State state_;  // h is the still depth
     Field surface_, rate_;
+    real volume_before_ = 0;  // an edit [m^3]
     bool periodic_x_, periodic_z_;
     Stiffness k_;
     Sweep sweep_;

@@ -35,6 +35,7 @@ protected:
     real speed() const final { return this->bodies_ ? std::max(fluid_.speed(), this->bodies_->speed()) : fluid_.speed(); }
     /// The same, after a step.
     real find_speed() { return fluid_.max_speed(), speed(); }
+    Fluid<D>& writable() final { return fluid_.change(); }
     Pairs::NeighbourCounts neighbour_counts() const final { return fluid_.neighbour_counts(); }
     real max_dt() const final { return fluid_.max_dt(); }
     void save_state(Checkpoint& to) const final { fluid_.save(to); }

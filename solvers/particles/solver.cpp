@@ -101,52 +101,59 @@ void HostSolver<D>::hold_again() {
     });
 }
 
+namespace {
+
+template <int D>
+void refuse_outside(const Fluid<D>& fluid, int first) {
+    for (int i = first; i < fluid.count(); ++i)
+        if (fluid.domain.outside(fluid.position(i)))
+            throw BadInput("particle " + std::to_string(i - first) + " would stand beyond a wall or inside a solid");
+}
+
+}  // namespace
+
 /// Neighbours and densities are found anew in every step: there is nothing else that would have to follow.
 template <int D>
-std::vector<EditableField> HostSolver<D>::editable() {
+std::vector<EditableField> ParticleSolver<D>::editable() {
+    Fluid<D>& fluid = writable();
     EditableField position{particle_set_name, "position", {}}, velocity{particle_set_name, "velocity", {}};
-    for (std::size_t a = 0; a < D; ++a) position.data.emplace_back(fluid_.x[a]), velocity.data.emplace_back(fluid_.v[a]);
+    for (std::size_t a = 0; a < D; ++a) position.data.emplace_back(fluid.x[a]), velocity.data.emplace_back(fluid.v[a]);
     for (int a = 0; a < D; ++a)
-        position.min[static_cast<std::size_t>(a)] = fluid_.domain.lo[a], position.max[static_cast<std::size_t>(a)] = fluid_.domain.hi[a];
+        position.min[static_cast<std::size_t>(a)] = fluid.domain.lo[a], position.max[static_cast<std::size_t>(a)] = fluid.domain.hi[a];
     return {std::move(position), std::move(velocity)};
 }
 
 /// What a particle carried from its last place is forgotten.
 template <int D>
-void HostSolver<D>::edited(const EditableField& field) {
+void ParticleSolver<D>::edited(const EditableField& field) {
+    Fluid<D>& fluid = writable();
     if (field.name == "position") {
-        refuse_outside(0);
-        std::fill(fluid_.carried.begin(), fluid_.carried.end(), 0.0);
+        refuse_outside(fluid, 0);
+        std::fill(fluid.carried.begin(), fluid.carried.end(), 0.0);
     }
-    speed_ = speed();
+    written();
 }
 
 template <int D>
-bool HostSolver<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) {
-    if (set != particle_set_name || fluid_.warm) return false;
-    const int before = fluid_.count();
+bool ParticleSolver<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) {
+    Fluid<D>& fluid = writable();
+    if (set != particle_set_name || fluid.warm) return false;
+    const int before = fluid.count();
     for (std::size_t i = 0; i < at.size(); ++i) {
         Vec<D> x, u;
         for (int a = 0; a < D; ++a) x[a] = at[i][a], u[a] = velocity[i][a];
-        fluid_.add(x, u);
+        fluid.add(x, u);
     }
-    refuse_outside(before);
-    speed_ = speed();
+    refuse_outside(fluid, before);
+    written();
     return true;
 }
 
 template <int D>
-bool HostSolver<D>::remove_particles(std::string_view set, std::span<const unsigned char> gone) {
+bool ParticleSolver<D>::remove_particles(std::string_view set, std::span<const unsigned char> gone) {
     if (set != particle_set_name) return false;
-    fluid_.remove_if([&](int i) { return gone[static_cast<std::size_t>(i)] != 0; });
+    writable().remove_if([&](int i) { return gone[static_cast<std::size_t>(i)] != 0; });
     return true;
-}
-
-template <int D>
-void HostSolver<D>::refuse_outside(int first) const {
-    for (int i = first; i < fluid_.count(); ++i)
-        if (fluid_.domain.outside(fluid_.position(i)))
-            throw BadInput("particle " + std::to_string(i - first) + " would stand beyond a wall or inside a solid");
 }
 
 template Compression compression_of(const Fluid<2>&, real, const Vapour<2>*);

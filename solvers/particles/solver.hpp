@@ -31,6 +31,10 @@ public:
     void restore(const Checkpoint& from) final;
     const Passes& passes() const final { return passes_; }
     Passes& passes() final { return passes_; }
+    std::vector<EditableField> editable() final;
+    void edited(const EditableField& field) final;
+    bool add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) final;
+    bool remove_particles(std::string_view set, std::span<const unsigned char> gone) final;
     /// Bodies in the liquid; nullptr where the scene names none.
     const BodiesInLiquid<D>* carried() const { return bodies_.get(); }
 
@@ -39,6 +43,9 @@ protected:
     /// The state as it is now, and as far as it is known without asking for particles (its box, its constants).
     virtual const Fluid<D>& state() const = 0;
     virtual const Fluid<D>& setting() const = 0;
+    /// The state to be written between two steps; what follows from it is known again after written().
+    virtual Fluid<D>& writable() = 0;
+    virtual void written() {}
     /// Of the fastest particle [m/s].
     virtual real speed() const = 0;
     virtual Pairs::NeighbourCounts neighbour_counts() const = 0;
@@ -81,15 +88,13 @@ public:
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
     Hand* hand() const final { return hand_.get(); }
-    std::vector<EditableField> editable() final;
-    void edited(const EditableField& field) final;
-    bool add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) final;
-    bool remove_particles(std::string_view set, std::span<const unsigned char> gone) final;
 
 protected:
     explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) { this->bodies_ = BodiesInLiquid<D>::make(fluid_); }
     const Fluid<D>& state() const final { return fluid_; }
     const Fluid<D>& setting() const final { return fluid_; }
+    Fluid<D>& writable() final { return fluid_; }
+    void written() final { speed_ = speed(); }
     /// Of bodies too.
     real speed() const final {
         const real fastest = fluid_.max_speed();
@@ -111,7 +116,6 @@ protected:
     bool ice_moves() const { return this->ice_ && this->heat_->frozen() > 0; }
     /// The rest density of particle i over the liquid's where what is frozen moves; else 1.
     real ice_rest(int i) const { return this->ice_ ? this->heat_->rest(fluid_.enthalpy[static_cast<std::size_t>(i)]) : 1; }
-    void refuse_outside(int first) const;
 
     Fluid<D> fluid_;
     Emitters<D> emitters_;

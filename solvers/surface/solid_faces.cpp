@@ -63,7 +63,7 @@ namespace {
 /// The mean of the other components' four faces around a face; 0 for those that are not known.
 template <int D>
 Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, const Frame<D>& frame, int a, const Index<D>& I) {
-    Vec<D> v;
+    Vec<D> v{};
     v[a] = u[a](I);
     for (int b = 0; b < D; ++b) {
         if (b == a) continue;

@@ -1,4 +1,4 @@
-// What water on tall cells shows of itself: fields, integrals, checkpoints.
+// What water on tall cells shows of itself, and a hand in it: fields, integrals, checkpoints, a velocity that is written.
 #include "geometry/hand.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
@@ -54,6 +54,28 @@ void TallCells<D>::restore(const Checkpoint& from) {
 }
 
 template <int D>
+std::vector<EditableField> TallCells<D>::editable() {
+    EditableField velocity{"", "velocity", {}};
+    for (int a = 0; a < D; ++a) velocity.data.emplace_back(state_.u[a].values());
+    return {std::move(velocity)};
+}
+
+/// A velocity that tall cells can have (linear within each), that walls and ∇·u = 0 allow, known throughout the band. The pressure that the
+/// next step begins with is that of before.
+template <int D>
+void TallCells<D>::edited(const EditableField&) {
+    set_fixed_faces();
+    const Grid<real, D> pressure = state_.p;
+    state_.p.fill(0);
+    pressure_.restrict_velocity(state_);
+    pressure_.project(surface_.phi, state_, 1);
+    pressure_.spread(state_, 1);
+    sync_periodic(state_.u, state_.sides);
+    state_.p = pressure;
+    extend_velocity();
+}
+
+template <int D>
 std::size_t TallCells<D>::bytes() const {
     std::size_t total = state_.bytes() + surface_.bytes() + pressure_.bytes() + transport_.bytes() + extrapolate_.bytes() + closed_.size() +
                         in_solids_.bytes() + solids_.bytes() + tall_.size() * sizeof(real);
@@ -66,6 +88,8 @@ std::size_t TallCells<D>::bytes() const {
     template std::vector<Integral> TallCells<D>::integrals() const; \
     template void TallCells<D>::save(Checkpoint&) const;            \
     template void TallCells<D>::restore(const Checkpoint&);         \
+    template std::vector<EditableField> TallCells<D>::editable();   \
+    template void TallCells<D>::edited(const EditableField&);       \
     template std::size_t TallCells<D>::bytes() const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -41,6 +41,8 @@ public:
     bool checks_itself() const override { return true; }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
+    std::vector<EditableField> editable() override;
+    void edited(const EditableField& field) override;
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override;

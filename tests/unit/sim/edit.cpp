@@ -1,4 +1,5 @@
 // A hand in a run between two steps: what is written is checked and made good, what comes and goes is counted, who looks on is called.
+#include "shared/device.hpp"
 #include "sim/registry.hpp"
 #include "support/fake_solver.hpp"
 #include "support/temporary_folder.hpp"
@@ -135,6 +136,41 @@ TEST("what cannot be written is refused, and not a bit changes") {
     expect_in(refusal([&] { waves.edit("velocity", [](FieldEdit&) {}); }), "it has none");
 }
 
+/// Of the cells of a square grid that are liquid all around.
+real deep_divergence(const FieldSet& fields, int n, real h) {
+    const std::vector<real> div = divergence(fields.find("velocity")->data, n, h);
+    const auto phi = component(fields, "", "level_set", 0);
+    real sum = 0;
+    for (std::size_t c = 0; c < div.size(); ++c) sum += phi[c] < -1.5 * h ? div[c] * div[c] : 0;
+    return std::sqrt(sum);
+}
+
+TEST("a velocity that is written into tall cells becomes one that they can have, free of divergence") {
+    constexpr int n = 32;
+    Simulation simulation = made(square("tallcell", n)
+                                     .set("effects.gravity.g", {0, -9.81})
+                                     .add("liquid", Builder().set("shape", "box").set("min", {0, 0}).set("max", {1, 0.75})));
+    simulation.step();
+    ASSERT_EQ(simulation.editable(), (std::vector<std::string>{"velocity"}));
+    ASSERT_GT(component(simulation.fields(), "", "cell_height", 0)[0], 1.5 / n);  // there are tall cells
+    real before = 0;
+    simulation.edit("velocity", [&](FieldEdit& u) {
+        for (std::size_t i = 0; i < u.data[0].size(); ++i) u.data[0][i] = std::sin(static_cast<real>(7 * i));
+        before = l2(divergence({u.data[0], u.data[1]}, n, 1.0 / n));
+    });
+    // the residual of the unknowns, in the same norm; a column that stands for eight rows has their sum
+    const real tolerance = simulation.scene().number("scheme.poisson.tolerance");
+    EXPECT_LE(deep_divergence(simulation.fields(), n, 1.0 / n), 8 * tolerance * before);
+    EXPECT_GT(before, 1);
+    real energy = integral(simulation, "kinetic_energy");
+    EXPECT_GT(energy, 1e-3);
+    simulation.edit("velocity", [](FieldEdit&) {});  // it is such a velocity already: a projection is idempotent
+    EXPECT_NEAR(integral(simulation, "kinetic_energy"), energy, 2 * tolerance * before / n * energy);
+    simulation.edit("velocity", [](FieldEdit& u) { fill(u, {0, 0}); });
+    EXPECT_EQ(integral(simulation, "kinetic_energy"), 0);
+    simulation.step();
+}
+
 TEST("a drop that is given a velocity flies with it, markers and all, whatever carries its momentum") {
     for (const char* transfer : {"grid", "pic", "flip", "apic"}) {
         Simulation simulation = made(drop("mac_water").set("scheme.transfer", transfer).set("scheme.reseed", false).set("time.dt", 0.005));
@@ -180,9 +216,13 @@ TEST("markers that come bring liquid with their velocity, and are counted; those
     }
 }
 
-TEST("particles are moved, pushed, added and taken out; the walls hold") {
-    for (const char* solver : {"pbf", "sph"}) {
-        Simulation simulation = made(drop(solver, 20));
+/// A solver and, where it has several, a backend.
+using Runs = std::vector<std::pair<const char*, const char*>>;
+const Runs on_device{{"pbf", "opencl"}, {"sph", "opencl"}};
+
+void move_push_add_and_take_out(const Runs& runs) {
+    for (const auto& [solver, backend] : runs) {
+        Simulation simulation = made(drop(solver, 20).set("scheme.backend", backend));
         simulation.step();
         const auto count = [&] { return component(simulation.fields(), "particles", "id", 0).size(); };
         const std::size_t before = count();
@@ -207,6 +247,14 @@ TEST("particles are moved, pushed, added and taken out; the walls hold") {
     }
 }
 
+TEST("particles are moved, pushed, added and taken out; the walls hold") {
+    move_push_add_and_take_out({{"pbf", "threads"}, {"sph", "threads"}, {"pbf", "reference"}});
+}
+TEST("particles on a device are moved, pushed, added and taken out; the walls hold") {
+    if (const std::string why = test::missing_device(); !why.empty()) GTEST_SKIP() << why;
+    move_push_add_and_take_out(on_device);
+}
+
 TEST("a depth that is raised keeps its velocity and is counted as poured") {
     Simulation simulation = made(square("heightfield", 16)
                                      .set("effects.gravity.g", {0, -9.81})
@@ -226,9 +274,29 @@ TEST("a depth that is raised keeps its velocity and is counted as poured") {
     simulation.run_until(0.1);
 }
 
-TEST("from a checkpoint that was made after an edit the run goes on bit for bit") {
-    for (const char* solver : {"mac_water", "pbf", "sph"}) {
-        Simulation simulation = made(drop(solver, 20));
+TEST("columns that are raised are counted as poured, and neither run dry nor wet dry ground") {
+    Simulation simulation = made(square("heightfield", 16)
+                                     .set("scheme.model", "columns")
+                                     .set("effects.gravity.g", {0, -9.81})
+                                     .add("liquid", Builder().set("shape", "box").set("min", {0, 0}).set("max", {0.5, 0.5})));
+    simulation.run_until(0.05);
+    const real balance = integral(simulation, "volume_balance"), volume = integral(simulation, "volume");
+    simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][3] += 0.16; });
+    EXPECT_NEAR(integral(simulation, "volume"), volume + 0.01, 1e-15);
+    EXPECT_NEAR(integral(simulation, "volume_balance"), balance, 1e-15);
+    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][2] = -0.1; }); }), "do not run dry");
+    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][12] = 0.1; }); }), "wet no dry ground");
+    expect_in(refusal([&] { simulation.edit("velocity", [](FieldEdit& u) { u.data[0][2] = 1; }); }), "must lie in [0, 0]");
+    simulation.edit("velocity", [](FieldEdit& u) { u.data[1][1] = -0.1; });
+    simulation.run_until(0.1);
+}
+
+void go_on_from_an_edit(const Runs& runs) {
+    for (const auto& [solver, backend] : runs) {
+        Builder scene = drop(solver, 20);
+        if (*backend) scene.set("scheme.backend", backend);
+        if (std::string(solver) == "tallcell") scene.set("effects.gravity.g", {0, -9.81});
+        Simulation simulation = made(scene);
         simulation.step();
         simulation.edit("velocity", [](FieldEdit& u) { fill(u, {1, 0.5}); });
         Checkpoint checkpoint;
@@ -238,6 +306,14 @@ TEST("from a checkpoint that was made after an edit the run goes on bit for bit"
         for (int i = 0; i < 3; ++i) simulation.step(), again.step();
         EXPECT_EQ(state_of(simulation), state_of(again)) << solver;
     }
+}
+
+TEST("from a checkpoint that was made after an edit the run goes on bit for bit") {
+    go_on_from_an_edit({{"mac_water", ""}, {"tallcell", ""}, {"pbf", "threads"}, {"sph", "threads"}});
+}
+TEST("from a checkpoint that was made after an edit the run goes on bit for bit on a device") {
+    if (const std::string why = test::missing_device(); !why.empty()) GTEST_SKIP() << why;
+    go_on_from_an_edit(on_device);
 }
 
 TEST("observers are called at frames and every so many steps, may steer, and what they throw comes out of the step") {

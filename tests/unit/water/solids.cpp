@@ -1,6 +1,7 @@
 // Water beside solids that cut its cells: it slides along them without losing or gaining speed, and no transfer feeds on what stands
 // inside them.
 #include "support.hpp"
+#include "surface/solid_faces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +82,49 @@ real fastest_marker(const water::Water<D>& water) {
     return fastest;
 }
 
+/// Leaves numbers on the stack where the next function has its own.
+[[gnu::noinline]] void litter() {
+    volatile real stack[4096];
+    for (volatile real& value : stack) value = 1e9;
+}
+
 }  // namespace
+
+// What is left differs from thread to thread and from call to call: nothing may be made of it.
+TEST_IN_2D_AND_3D("inside a solid a component of which nothing is known beside a face counts as none, whatever is left in memory") {
+    const Vec<D> centre = Vec<D>::constant(0.5);
+    const auto scene =
+        water_scene(fmt::format(R"(solver = "mac_water"
+dim = {}
+grid = {{ cells = {}, size = {} }}
+time = {{ end = 1.0 }}
+liquid = [ {{ shape = "box", min = {}, max = {} }} ]
+solids = [ {{ shape = "sphere", centre = {}, radius = 0.23 }} ]
+)",
+                                D, list({"16", "16", "16"}, D), list({"1.0", "1.0", "1.0"}, D), list({"0.0", "0.0", "0.0"}, D),
+                                list({"0.1", "1.0", "1.0"}, D), list({"0.5", "0.5", "0.5"}, D)));
+    staggered::MacState<D> state(scene, FieldPlan{});
+    const surface::Frame<D> frame(state.u, state.sides);
+    staggered::SolidPlacement<D> placement(geometry::Solids<D>(scene.root().tables("solids")), state);
+    surface::FacesInSolids<D> in_solids;
+    in_solids.find(placement, state, frame, true);
+    surface::FaceMarks<D> known;
+    for (int a = 0; a < D; ++a) {
+        known[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state.u[a].extent());
+        known[static_cast<std::size_t>(a)].fill(a == 1 ? 1 : 0);
+        state.u[a].fill(1);
+    }
+    litter();
+    in_solids.constrain(state.u, known, frame);
+    for (const Index<D>& I : in_solids.faces()[1]) {
+        const Vec<D> away = state.u.face_centre(1, I) - centre;
+        const real ny = norm(away) > 0 ? away[1] / norm(away) : 0;
+        if (norm(away) > 0.1) {
+            EXPECT_NEAR(state.u[1](I), 1 - ny * ny, 1e-5);  // n by differences over h/1000
+        }
+    }
+    EXPECT_GT(in_solids.faces()[1].size(), 10u);
+}
 
 TEST_IN_2D_AND_3D("a layer that slides over a solid without friction keeps its speed, with every transfer") {
     // Exact for all of them: the velocity is constant, and the continued one inside the solid is the same constant.
