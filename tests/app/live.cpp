@@ -108,21 +108,22 @@ struct Fingers {
         event.xkey.same_screen = True;
         send(event, KeyPressMask);
     }
-    void button(int type, const std::array<int, 2>& at) {
+    void button(int type, const std::array<int, 2>& at, unsigned which = Button1) {
         XEvent event{};
         event.type = type;
-        event.xbutton.button = 1, event.xbutton.x = at[0], event.xbutton.y = height - 1 - at[1], event.xbutton.same_screen = True;
+        event.xbutton.button = which, event.xbutton.x = at[0], event.xbutton.y = height - 1 - at[1], event.xbutton.same_screen = True;
         send(event, type == ButtonPress ? ButtonPressMask : ButtonReleaseMask);
     }
+    /// The pointer itself goes there: a window asks where it is between the events, too.
+    void move(const std::array<int, 2>& to) {
+        XWarpPointer(display, None, window, 0, 0, 0, 0, to[0], height - 1 - to[1]);
+        XFlush(display);
+        wait(15);
+    }
     void drag(const std::array<int, 2>& from, const std::array<int, 2>& to) {
+        move(from);
         button(ButtonPress, from);
-        for (int i = 1; i <= 10; ++i) {
-            XEvent event{};
-            event.type = MotionNotify;
-            event.xmotion.x = from[0] + i * (to[0] - from[0]) / 10, event.xmotion.y = height - 1 - from[1] - i * (to[1] - from[1]) / 10;
-            event.xmotion.same_screen = True;
-            send(event, PointerMotionMask);
-        }
+        for (int i = 1; i <= 10; ++i) move({from[0] + i * (to[0] - from[0]) / 10, from[1] + i * (to[1] - from[1]) / 10});
         button(ButtonRelease, to);
     }
 };
@@ -283,8 +284,10 @@ TEST(
     const auto a = pixel(0.1, 0.15), b = pixel(0.35, 0.2), high = pixel(0.6, 0.6), beside = pixel(0.65, 0.6);
     auto* shown = play.window.interactor()->GetRenderWindow();
     std::thread someone([&, id = reinterpret_cast<::Window>(shown->GetGenericWindowId())] {
-        Fingers fingers(id, 360, full ? 12 : 1);
+        Fingers fingers(id, 360, full ? 4 : 1);
         fingers.wait(300);
+        if (full)
+            for (int i = 0; i < 5; ++i) fingers.button(ButtonPress, a, Button4);  // the wheel: twice as wide a brush
         fingers.drag(a, b);
         fingers.key(XK_space), fingers.wait(100), fingers.key(XK_p), fingers.key(XK_space);
         fingers.key(XK_r);
