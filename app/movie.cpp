@@ -69,9 +69,17 @@ std::vector<std::string> encoder(const std::filesystem::path& pictures, int rate
                                    "-i",
                                    (pictures / "%06d.png").string(),
                                    "-vf",
-                                   "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                   "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
                                    "-pix_fmt",
-                                   "yuv420p"};
+                                   "yuv420p",
+                                   "-colorspace",  // said, and not left to players to guess by the size
+                                   "bt709",
+                                   "-color_primaries",
+                                   "bt709",
+                                   "-color_trc",
+                                   "iec61966-2-1",
+                                   "-color_range",
+                                   "tv"};
     const std::vector<std::string> vp9{"-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0"};
     const std::vector<std::string> h264{"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"};
     const auto& codec = film.extension() == ".webm" ? vp9 : h264;
