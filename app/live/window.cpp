@@ -19,6 +19,8 @@ namespace weir::live {
 namespace {
 
 constexpr double told_every = 0.25;  // [s]: text is dear to draw
+/// Where the water has not moved a brush or a text may wait so long: what is drawn for them is time that steps do not get.
+constexpr double patience = 1.0 / 40;  // [s]
 
 /// A brush that heats is so much warmer than the warmest fluid, or colder than the coldest.
 constexpr real warmer = 40;  // [K]
@@ -94,7 +96,7 @@ bool Window::refresh() {
     const bool fresh = runner_->take(shown_);
     if (fresh) scenery_.show(*shown_);
     if (fresh) costs_.step_ms += shown_->step_ms, costs_.transfer_ms += shown_->transfer_ms;
-    if (fresh || stale_) draw();
+    if (fresh || (stale_ && seconds(clock::now() - drawn_) > patience)) draw();
     return fresh;
 }
 
@@ -103,7 +105,8 @@ void Window::draw() {
     stale_ = false;
     tell();
     window_->Render();
-    drawing_ms_ = 1e3 * seconds(clock::now() - start);
+    drawn_ = clock::now();
+    drawing_ms_ = 1e3 * seconds(drawn_ - start);
     ++frames_counted_;
     ++costs_.frames;
     costs_.drawing_ms += drawing_ms_;

@@ -103,7 +103,7 @@ private:
     bool cools_ = false;
     Vec<3> at_{}, velocity_{};
     std::array<int, 2> mouse_{};
-    clock::time_point moved_, told_, began_, ends_;
+    clock::time_point moved_, told_, drawn_, began_, ends_;
     bool has_end_ = false, warming_ = false;
     FrameCosts costs_, at_start_;
     double frames_a_second_ = 0, drawing_ms_ = 0;
