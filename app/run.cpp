@@ -22,7 +22,6 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -64,24 +63,20 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
 }
 
-Cut cut_of_run(const scene::Scene& scene) { return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks()); }
+/// Empty where particles are shared, whose cut moves with them.
+Cut cut_of_run(const scene::Scene& scene) {
+    if (sim::kind_named(scene.solver()).shared == scene::Shared::by_particles) return {};
+    return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks());
+}
 
 std::string explain_ranks(const scene::Scene& scene) {
     if (!slabs().several()) return {};
     const Cut cut = cut_of_run(scene);
-    std::string text = "over " + std::to_string(cut.ranks()) + " ranks, cut along " + (scene.dim() == 2 ? "y" : "z") + " before planes";
+    std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, cut along " + (scene.dim() == 2 ? "y" : "z");
+    if (cut.empty()) return text + " into as many particles each; every rank holds all particles and moves its own\n";
+    text += " before planes";
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
     return text + "; every rank holds the whole grids and computes its own planes of them\n";
-}
-
-/// What each rank has sent.
-std::vector<Traffic> traffic_of_all() {
-    std::vector<Traffic> list(static_cast<std::size_t>(slabs().ranks()));
-    std::vector<std::size_t> begins(list.size() + 1);
-    std::iota(begins.begin(), begins.end(), std::size_t{0});
-    list[static_cast<std::size_t>(slabs().rank())] = slabs().traffic();
-    slabs().gather_parts(list.data(), sizeof(Traffic), begins);
-    return list;
 }
 
 /// Writes everything that a run leaves behind, and shows how it goes. Over ranks the first writes; what is looked at all look at.
@@ -92,7 +87,7 @@ public:
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
         by_first_rank([&] { frames_ = open_frames(simulation, folder, restarted); });
-        if (slabs().several()) log_.set_ranks(cut_of_run(simulation.scene()), {});
+        if (slabs().several()) log_.set_ranks(slabs().ranks(), cut_of_run(simulation.scene()), {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
         if (restarted) log_.resume(simulation.steps());
@@ -116,7 +111,7 @@ public:
     }
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
-        if (slabs().several()) log_.set_ranks(cut_of_run(simulation.scene()), traffic_of_all());
+        if (slabs().several()) log_.set_ranks(slabs().ranks(), cut_of_run(simulation.scene()), of_ranks(slabs().traffic()));
         if (measured_) log_.set_measured(measured_->values());
         by_first_rank([&] {
             probes_.update(simulation.probes());

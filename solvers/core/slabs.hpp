@@ -10,7 +10,9 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <numeric>
 #include <span>
+#include <vector>
 
 namespace weir {
 
@@ -21,6 +23,15 @@ struct Planes {
     std::size_t bytes;  // of a plane
     int count;
     int margin = 0;
+};
+
+/// What goes to another rank and what comes from it; both know how much beforehand. Of 0 bytes there is no message.
+struct Parcel {
+    int peer;
+    const void* sent;
+    std::size_t sent_bytes;
+    void* received;
+    std::size_t received_bytes;
 };
 
 /// What this rank has sent so far.
@@ -41,12 +52,18 @@ public:
     bool several() const { return ranks_ > 1; }
     const Traffic& traffic() const { return traffic_; }
 
-    /// Brings the `deep` planes beyond both cuts of this rank from whoever owns them; `ring`: around the ends of the axis too.
-    virtual void refresh(const Cut&, const Planes&, int /*deep*/, bool /*ring*/) {}
+    /// Brings the `deep` planes of each array beyond both cuts of this rank from whoever owns them, in one message from each rank; `ring`:
+    /// around the ends of the axis too.
+    virtual void refresh(const Cut&, std::span<const Planes>, int /*deep*/, bool /*ring*/) {}
+    void refresh(const Cut& cut, const Planes& planes, int deep, bool ring) { refresh(cut, std::span(&planes, 1), deep, ring); }
     /// Brings every plane that this rank does not own.
     virtual void gather(const Cut&, const Planes&) {}
     /// The same of pieces that are no planes: rank r owns the entries [begins[r], begins[r + 1]), of `bytes` each.
     virtual void gather_parts(void* /*entries*/, std::size_t /*bytes*/, std::span<const std::size_t> /*begins*/) {}
+    /// Pieces that are no planes to and from other ranks, one parcel a rank at most.
+    virtual void trade(std::span<const Parcel>) {}
+    /// Whether what a rank has not been brought is to be made NaN, for a test: nothing may read it.
+    virtual bool poisons() const { return false; }
     /// The largest of the values that the ranks give.
     virtual int largest(int value) { return value; }
     /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never
@@ -66,6 +83,16 @@ private:
 Slabs& slabs();
 /// Back to one rank with nullptr.
 void set_slabs(std::unique_ptr<Slabs> several);
+
+/// What each rank gives, in their order.
+template <class T>
+std::vector<T> of_ranks(const T& own) {
+    std::vector<T> list(static_cast<std::size_t>(slabs().ranks()), own);
+    std::vector<std::size_t> begins(list.size() + 1);
+    std::iota(begins.begin(), begins.end(), std::size_t{0});
+    slabs().gather_parts(list.data(), sizeof(T), begins);
+    return list;
+}
 
 /// What one rank does for all, the first: writing. One fails, all fail, with the same exit code; its own words are shown.
 template <class F>

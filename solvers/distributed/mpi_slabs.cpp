@@ -1,5 +1,5 @@
-// Slabs over MPI. What travels is known to both ends beforehand (core/halo.hpp), so that there is a message for each run of planes and none
-// that says how many. Only the thread that joined may call.
+// Slabs over MPI. What travels is known to both ends beforehand (core/halo.hpp), so that there is one message from each rank to each and
+// none that says how much. Only the thread that joined may call.
 #include "core/slabs.hpp"
 #include "distributed/mpi_entry.hpp"
 
@@ -36,22 +36,23 @@ public:
     }
     ~MpiSlabs() override { MPI_Finalize(); }
 
-    void refresh(const Cut& cut, const Planes& planes, int deep, bool ring) override {
-        const Plan& plan = plan_of(cut, planes.count, deep, ring);
-        const PlaneType plane(planes.bytes);
+    void refresh(const Cut& cut, std::span<const Planes> arrays, int deep, bool ring) override {
         requests_.clear();
-        for (const auto& message : plan.messages) {
-            void* at = plane_at(planes, message.planes.begin);
-            const int count = message.planes.end - message.planes.begin;
-            requests_.emplace_back();
-            if (message.sends)
-                MPI_Isend(at, count, plane.type, message.peer, 0, MPI_COMM_WORLD, &requests_.back());
-            else
-                MPI_Irecv(at, count, plane.type, message.peer, 0, MPI_COMM_WORLD, &requests_.back());
-            if (message.sends) count_message(planes.bytes * static_cast<std::size_t>(count));
-        }
+        for (int peer = 0; peer < ranks(); ++peer)
+            for (const bool sends : {false, true}) {
+                const std::size_t bytes = collect(cut, arrays, deep, ring, peer, sends);
+                if (bytes == 0) continue;
+                const Scattered all(lengths_, places_);
+                requests_.emplace_back();
+                if (sends)
+                    MPI_Isend(MPI_BOTTOM, 1, all.type, peer, 0, MPI_COMM_WORLD, &requests_.back());
+                else
+                    MPI_Irecv(MPI_BOTTOM, 1, all.type, peer, 0, MPI_COMM_WORLD, &requests_.back());
+                if (sends) count_message(bytes);
+            }
         wait_for_requests();
-        if (poisons_) poison(plan, planes);
+        if (!poisons_) return;
+        for (const Planes& planes : arrays) poison(plan_of(cut, planes.count, deep, ring), planes);
     }
 
     void gather(const Cut& cut, const Planes& planes) override {
@@ -75,6 +76,26 @@ public:
         gather_counted(entries, entry);
         count_message(bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
     }
+
+    void trade(std::span<const Parcel> parcels) override {
+        requests_.clear();
+        for (const Parcel& parcel : parcels) {
+            if (parcel.received_bytes > 0) {
+                const PlaneType all(parcel.received_bytes);
+                requests_.emplace_back();
+                MPI_Irecv(parcel.received, 1, all.type, parcel.peer, 0, MPI_COMM_WORLD, &requests_.back());
+            }
+            if (parcel.sent_bytes > 0) {
+                const PlaneType all(parcel.sent_bytes);
+                requests_.emplace_back();
+                MPI_Isend(parcel.sent, 1, all.type, parcel.peer, 0, MPI_COMM_WORLD, &requests_.back());
+                count_message(parcel.sent_bytes);
+            }
+        }
+        wait_for_requests();
+    }
+
+    bool poisons() const override { return poisons_; }
 
     int largest(int value) override {
         requests_.assign(1, MPI_REQUEST_NULL);
@@ -102,7 +123,7 @@ public:
 private:
     /// A plane may be of any size, and a message of more than 2 GB: counts are of planes.
     struct PlaneType {
-        MPI_Datatype type;
+        MPI_Datatype type{};
         explicit PlaneType(std::size_t bytes) {
             MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type);
             MPI_Type_commit(&type);
@@ -111,6 +132,35 @@ private:
         PlaneType(const PlaneType&) = delete;
         PlaneType& operator=(const PlaneType&) = delete;
     };
+
+    /// What lies in several places of memory, as one message.
+    struct Scattered {
+        MPI_Datatype type{};
+        Scattered(const std::vector<int>& lengths, const std::vector<MPI_Aint>& places) {
+            MPI_Type_create_hindexed(static_cast<int>(lengths.size()), lengths.data(), places.data(), MPI_BYTE, &type);
+            MPI_Type_commit(&type);
+        }
+        ~Scattered() { MPI_Type_free(&type); }
+        Scattered(const Scattered&) = delete;
+        Scattered& operator=(const Scattered&) = delete;
+    };
+
+    /// The planes of all arrays that go to a rank, or come from it, to lengths_ and places_, and how many bytes they are.
+    std::size_t collect(const Cut& cut, std::span<const Planes> arrays, int deep, bool ring, int peer, bool sends) {
+        lengths_.clear(), places_.clear();
+        std::size_t bytes = 0;
+        for (const Planes& planes : arrays)
+            for (const auto& message : plan_of(cut, planes.count, deep, ring).messages) {
+                if (message.peer != peer || message.sends != sends) continue;
+                for (int plane = message.planes.begin; plane < message.planes.end; ++plane) {  // one alone is of less than 2 GB
+                    lengths_.push_back(static_cast<int>(planes.bytes));
+                    places_.emplace_back();
+                    MPI_Get_address(plane_at(planes, plane), &places_.back());
+                    bytes += planes.bytes;
+                }
+            }
+        return bytes;
+    }
 
     void gather_counted(void* entries, const PlaneType& entry) {
         requests_.assign(1, MPI_REQUEST_NULL);
@@ -168,7 +218,8 @@ private:
     MPI_Comm farewell_{};
     std::vector<Plan> plans_;
     std::vector<MPI_Request> requests_;
-    std::vector<int> counts_, begins_;
+    std::vector<int> counts_, begins_, lengths_;
+    std::vector<MPI_Aint> places_;
 };
 
 }  // namespace

@@ -154,8 +154,17 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         bodies_->start(state_, solids_);
         if (hand_) bodies_->follow(hand_, scene);
     }
-    for (auto& field : state_.fields)
-        if (!field.derived) carried_fields_.push_back({&field.before, &field.boundary, &field.values});
+    for (auto& field : state_.fields) {
+        if (field.derived) continue;
+        carried_fields_.push_back({&field.before, &field.boundary, &field.values});
+        remembered_fields_.push_back({&field.before, &field.boundary});
+    }
+    for (int a = 0; a < D; ++a) {
+        remembered_velocity_.push_back({&state_.before[a], &state_.boundary[static_cast<std::size_t>(a)]});
+        carried_velocity_.push_back({&carried_[a], &state_.boundary[static_cast<std::size_t>(a)]});
+    }
+    remembered_ = remembered_velocity_;
+    remembered_.insert(remembered_.end(), remembered_fields_.begin(), remembered_fields_.end());
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
     clear_solids();
@@ -183,35 +192,46 @@ void FlowSolver<D>::remember(real dt) {
     const real fastest = rate(fluid);
     trace_.set_max_rate(fastest);
     set_reach(planes_reached(dt * fastest, state_.extent()[D - 1]));
-    for (int a = 0; a < D; ++a) fill_end_planes(state_.before[a], state_.boundary[static_cast<std::size_t>(a)]);
+    fill_field_planes();
+    fill_end_planes(remembered_);
     extend_velocity();
-    remember_fields();
+    extend_fields();
 }
 
 /// What is continued into solids is of the neighbours' values, which other ranks may own, and is wanted beyond the cuts too.
 template <int D>
 void FlowSolver<D>::extend_velocity() {
     if (!solids_.any()) return;
-    for (int a = 0; a < D; ++a) refresh(state_.u[a], state_.sides.periodic(D - 1), ghost_layers);
+    if (over_ranks()) {
+        shared_.clear();
+        for (int a = 0; a < D; ++a) shared_.push_back(planes_of(state_.u[a]));
+        slabs().refresh(cut_, shared_, ghost_layers, state_.sides.periodic(D - 1));
+    }
     solids_.extend_velocity(state_);
-    for (int a = 0; a < D; ++a) refresh(state_.before[a], state_.boundary[static_cast<std::size_t>(a)]);
+    refresh(remembered_velocity_);
 }
 
 template <int D>
-void FlowSolver<D>::remember_fields() {
-    for (auto& field : state_.fields) {
-        if (field.derived) continue;
-        fill(field.before, field.values, field.boundary);
-        if (!solids_.any()) continue;
-        solids_.extend_field(state_, field.before);
-        refresh(field.before, field.boundary);
-    }
+void FlowSolver<D>::fill_field_planes() {
+    for (auto& field : state_.fields)
+        if (!field.derived) fill_planes(field.before, field.values, field.boundary);
+}
+
+template <int D>
+void FlowSolver<D>::extend_fields() {
+    if (!solids_.any()) return;
+    for (auto& field : state_.fields)
+        if (!field.derived) solids_.extend_field(state_, field.before);
+    refresh(remembered_fields_);
 }
 
 /// A force on a face is of the cells on both its sides.
 template <int D>
 void FlowSolver<D>::refresh_fields() {
-    for (auto& field : state_.fields) refresh(field.values, state_.sides.periodic(D - 1));
+    if (!over_ranks() || state_.fields.empty()) return;
+    shared_.clear();
+    for (auto& field : state_.fields) shared_.push_back(planes_of(field.values));
+    slabs().refresh(cut_, shared_, 1, state_.sides.periodic(D - 1));
 }
 
 /// With fluxes all explicit rates are of the fields of before. The trapezoidal rule along paths takes half of every term where they begin:
@@ -233,7 +253,9 @@ void FlowSolver<D>::depart(real dt) {
     if (effects_.empty(Stage::carried)) return;
     const auto timed = passes_.time("ghosts");
     for (auto& field : state_.fields) field.hold();
-    remember_fields();
+    fill_field_planes();
+    fill_end_planes(remembered_fields_);
+    extend_fields();
 }
 
 /// The fields are whole here, so that a force is of the temperature that the step ends with.
@@ -270,6 +292,17 @@ void FlowSolver<D>::advect_velocity(real dt) {
     const auto timed = passes_.time("advect velocity");
     const bool second_order = options_.scheme == Scheme::maccormack;
     const PressurePush<D> taken(state_, -0.5 * dt / state_.rho), given_back(state_, 0.5 * dt / state_.rho);
+    if (second_order) {
+        for (int a = 0; a < D; ++a)
+            for_each_plane(0, carried_[a].extent()[D - 1], [&](int plane) {
+                fill_plane(carried_[a], state_.boundary[static_cast<std::size_t>(a)], plane,
+                           [&](const Index<D>& first, int count, real* row) {
+                               std::copy_n(&state_.u[a](first), count, row);
+                               taken.add(a, first, count, row);
+                           });
+            });
+        fill_end_planes(carried_velocity_);
+    }
     for (int a = 0; a < D; ++a) {
         const auto& boundary = state_.boundary[static_cast<std::size_t>(a)];
         const auto faces = free_faces(state_.u, state_.sides, a);
@@ -281,10 +314,6 @@ void FlowSolver<D>::advect_velocity(real dt) {
             characteristics_.advect(state_.before[a], boundary, faces, trace_, dt, state_.u[a]);
             continue;
         }
-        fill_rows(carried_[a], boundary, [&](const Index<D>& first, int count, real* row) {
-            std::copy_n(&state_.u[a](first), count, row);
-            taken.add(a, first, count, row);
-        });
         characteristics_.advect(carried_[a], boundary, faces, trace_, dt, state_.u[a], &given_back);
     }
     sync_periodic(state_.u, state_.sides);

@@ -55,7 +55,8 @@ private:
     void apply(Stage stage, real dt);
     void remember(real dt);
     void extend_velocity();
-    void remember_fields();
+    void fill_field_planes();
+    void extend_fields();
     void depart(real dt);
     void arrive(real dt);
     void advect_fields(real dt);
@@ -101,8 +102,11 @@ private:
     mutable Grid<real, D> divergence_;
     std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
-    Cut cut_;                    // none in one process
-    mutable bool whole_ = true;  // all planes stand here, not this rank's alone
+    std::vector<WithBoundary<D>> remembered_velocity_, remembered_fields_, remembered_;  // uⁿ, qⁿ and both
+    std::vector<WithBoundary<D>> carried_velocity_;
+    std::vector<Planes> shared_;  // scratch: what travels together
+    Cut cut_;                     // none in one process
+    mutable bool whole_ = true;   // all planes stand here, not this rank's alone
 };
 
 }  // namespace weir::flow

@@ -78,8 +78,9 @@ void RunLog::add_step(std::int64_t step, real t, const StepReport& report, const
     steps_.push_back(j.dump());
 }
 
-void RunLog::set_ranks(const Cut& cut, const std::vector<Traffic>& sent) {
-    json ranks = {{"count", cut.ranks()}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
+void RunLog::set_ranks(int count, const Cut& cut, const std::vector<Traffic>& sent) {
+    json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
+    if (cut.empty()) ranks["cut"] = "as many particles to each", ranks["storage"] = "every rank holds all particles";
     for (const Traffic& rank : sent) {
         ranks["messages"].push_back(rank.messages);
         ranks["bytes"].push_back(rank.bytes);

@@ -75,7 +75,8 @@ struct Confinement final : Effect<Flow<D>> {
         const auto& table = f.pairs.table().finish[f.kernel];
         const FinishPass curl = f.pass(f.velocity, omega);
         f.pairs.list().each_chunk([&](const ListChunk& chunk) { table.curl(curl, chunk); });
-        f.pairs.refresh_images(omega.data(), false);
+        f.pairs.refresh(omega.data(), false);
+        f.pairs.clear_dummies(omega);
         const FinishPass confine = f.pass(omega, f.change);
         f.pairs.list().each_chunk([&](const ListChunk& chunk) { table.confine(confine, chunk); });
         f.add_change(dt * epsilon);

@@ -11,15 +11,24 @@ using scene::Key;
 using scene::Type;
 
 template <int D>
+void Flow<D>::share_velocity() {
+    std::array<std::vector<real>*, D> all;
+    for (std::size_t a = 0; a < D; ++a) all[a] = &fluid.v[a];
+    pairs.share(all);
+}
+
+template <int D>
 void Flow<D>::load_velocity() {
     pairs.fit(velocity, 4);
     pairs.fit(change, 4);
-    pairs.each([&](int k) {
+    share_velocity();
+    pairs.each_read([&](int k) {
         const Vec<D> u = fluid.velocity(pairs.owner(k));
         float* four = velocity.data() + 4 * k;
         four[2] = four[3] = 0;
         for (int a = 0; a < D; ++a) four[a] = static_cast<float>(u[a]);
     });
+    pairs.clear_dummies(velocity);
 }
 
 template <int D>

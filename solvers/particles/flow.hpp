@@ -17,6 +17,8 @@ struct Flow {
     std::vector<float> velocity, change;  // float4 of sorted particles, scratch of the finish effects
     int kernel = 0;                       // of the passes: Müller's, cubic, Wendland
 
+    /// Over ranks, the velocities of particles that this one reads.
+    void share_velocity();
     /// Velocities as the passes read them, images included.
     void load_velocity();
     FinishPass pass(const std::vector<float>& values, std::vector<float>& to);

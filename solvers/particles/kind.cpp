@@ -25,6 +25,16 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
     return own;
 }
 
+void refuse_over_ranks(const scene::Scene& scene) {
+    const auto refuse = [&](const std::string& key, const std::string& what) {
+        scene.refuse(key, key + ": " + what + " in one process only");
+    };
+    if (scene.has("bodies") && !scene.root().tables("bodies").empty()) refuse("bodies", "bodies move");
+    if (heat_is_named(scene)) refuse("substance", "a substance is heated");
+    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
+    if (backend_of(scene).kind != backend::Choice::Kind::threads) refuse("scheme.backend", "this backend runs");
+}
+
 scene::PlainStep plain_step(std::vector<std::string> more_fields, std::vector<std::string> passes) {
     std::vector<std::string> fields{"position", "velocity", "density", "id"};
     fields.insert(fields.end(), more_fields.begin(), more_fields.end());

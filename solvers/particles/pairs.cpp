@@ -3,8 +3,15 @@
 #include "particles/fluid.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace weir::particles {
+
+namespace {
+
+constexpr float not_brought = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
 
 /// An image of each particle near a periodic side; corners follow because an axis also copies the images of the axes before it.
 void Pairs::make_images(const Coordinates& x, int count, const Box& particles, real radius) {
@@ -58,13 +65,24 @@ void Pairs::find(const Coordinates& x, int count, real radius) {
             if (x[a]) all[a] = with_images_[a].data();
     }
     cells_.sort(all, total, frame_.cover(box, count, radius));
-    owner_.resize(static_cast<std::size_t>(total));
+    shares_.cut(cells_, table_.lanes);
+    place(all);
+    link_images();
+    shares_.find_halos(cells_, particles_, links_);
+    list_.build(table_, {axis_[0].data(), axis_[1].data(), axis_[2].data()}, cells_, static_cast<float>(radius), shares_.own());
+}
+
+/// What is sorted, to where the passes read it.
+void Pairs::place(const Coordinates& all) {
+    owner_.resize(static_cast<std::size_t>(size()));
     fit(a_, 4);
     fit(b_, 4);
     for (auto& axis : axis_) fit(axis, 1);
-    each([&](int k) {
+    if (slabs().poisons()) std::fill(a_.begin(), a_.end(), not_brought), std::fill(axis_[0].begin(), axis_[0].end(), not_brought);
+    each_anywhere([&](int k) {
         const int i = cells_.order()[static_cast<std::size_t>(k)];
-        owner_[static_cast<std::size_t>(k)] = i < count ? i : image_owner_[static_cast<std::size_t>(i - count)];
+        owner_[static_cast<std::size_t>(k)] = i < particles_ ? i : image_owner_[static_cast<std::size_t>(i - particles_)];
+        if (!shares_.read().has(k)) return;
         for (int a = 0; a < 3; ++a) {
             const real* axis = all[static_cast<std::size_t>(a)];
             const float here = axis ? local(axis[i], a) : 0;
@@ -75,24 +93,68 @@ void Pairs::find(const Coordinates& x, int count, real radius) {
     });
     place_dummies(a_.data());
     place_dummies(b_.data());
-    links_.clear();
-    if (total > count) {
-        sorted_.resize(static_cast<std::size_t>(count));
-        for (int k = 0; k < total; ++k)
-            if (!is_image(k)) sorted_[static_cast<std::size_t>(owner(k))] = k;
-        for (int k = 0; k < total; ++k)
-            if (is_image(k))
-                links_.push_back({k, sorted_[static_cast<std::size_t>(owner(k))], cells_.order()[static_cast<std::size_t>(k)] - count});
-    }
-    list_.build(table_, {axis_[0].data(), axis_[1].data(), axis_[2].data()}, cells_, static_cast<float>(radius));
 }
 
-void Pairs::refresh_images(float* four, bool moves) const {
+void Pairs::link_images() {
+    links_.clear();
+    if (images() == 0) return;
+    sorted_.resize(static_cast<std::size_t>(particles_));
+    for (int k = 0; k < size(); ++k)
+        if (!is_image(k)) sorted_[static_cast<std::size_t>(owner(k))] = k;
+    for (int k = 0; k < size(); ++k)
+        if (is_image(k))
+            links_.push_back({k, sorted_[static_cast<std::size_t>(owner(k))], cells_.order()[static_cast<std::size_t>(k)] - particles_});
+}
+
+void Pairs::refresh(float* four, bool moves) {
+    shares_.trade<float>(
+        4, [&](int k, float* to) { std::copy_n(four + 4 * k, 4, to); },
+        [&](int k, const float* from) { std::copy_n(from, 4, four + 4 * k); }, [&](int k) { std::fill_n(four + 4 * k, 4, not_brought); });
     for (const auto& [image, from, which] : links_)
         for (int c = 0; c < 4; ++c) {
             const float shift = moves && c < 3 ? image_shift_[static_cast<std::size_t>(which)][static_cast<std::size_t>(c)] : 0;
             four[4 * image + c] = four[4 * from + c] + shift;
         }
+}
+
+void Pairs::share(StateArrays state) {
+    shares_.trade<real>(
+        static_cast<int>(state.size()),
+        [&](int k, real* to) {
+            for (const auto* f : state) *to++ = (*f)[static_cast<std::size_t>(owner(k))];
+        },
+        [&](int k, const real* from) {
+            for (auto* f : state) (*f)[static_cast<std::size_t>(owner(k))] = *from++;
+        },
+        [](int) {});
+    poison(state);
+}
+
+void Pairs::gather(StateArrays state) {
+    shares_.gather(
+        static_cast<int>(state.size()),
+        [&](int k, real* to) {
+            for (const auto* f : state) *to++ = (*f)[static_cast<std::size_t>(owner(k))];
+        },
+        [&](int k, const real* from) {
+            if (is_image(k)) return;
+            for (auto* f : state) (*f)[static_cast<std::size_t>(owner(k))] = *from++;
+        });
+}
+
+void Pairs::gather(std::vector<float>& sorted) const {
+    if (shares_.several()) slabs().gather_parts(sorted.data(), sizeof(float), shares_.begins());
+}
+
+real Pairs::largest(real own) const { return shares_.several() ? detail::largest_of(of_ranks(own), slabs().ranks()) : own; }
+
+/// Images are known by their particles.
+void Pairs::poison(StateArrays state) const {
+    if (!shares_.several() || !slabs().poisons()) return;
+    shares_.poison([&](int k) {
+        if (is_image(k)) return;
+        for (auto* f : state) (*f)[static_cast<std::size_t>(owner(k))] = not_applicable;
+    });
 }
 
 const std::vector<int>& Pairs::particle_order() {
@@ -106,13 +168,17 @@ const std::vector<int>& Pairs::particle_order() {
 Pairs::NeighbourCounts Pairs::neighbour_counts() const {
     const auto& counts = list_.neighbours();
     if (counts.empty() || particles_ == 0) return {};
-    const auto count = [&](int k) { return is_image(k) ? 0.0 : static_cast<real>(counts[static_cast<std::size_t>(k)]); };
-    const int n = static_cast<int>(counts.size());
-    return {block_sum(n, count) / particles_, block_max(n, count)};
+    const auto& own = shares_.own();
+    const auto count = [&](int k) {
+        return is_image(own.begin + k) ? 0.0 : static_cast<real>(counts[static_cast<std::size_t>(own.begin + k)]);
+    };
+    std::vector<real> sums{block_sum(own.count(), count)};  // of whole numbers, which no order of adding changes
+    if (shares_.several()) sums = of_ranks(sums[0]);
+    return {detail::sum_in_order(sums, static_cast<int>(sums.size())) / particles_, largest(block_max(own.count(), count))};
 }
 
 std::size_t Pairs::bytes() const {
-    return cells_.bytes() + list_.bytes() + (a_.capacity() + b_.capacity() + 3 * axis_[0].capacity()) * sizeof(float) +
+    return cells_.bytes() + list_.bytes() + shares_.bytes() + (a_.capacity() + b_.capacity() + 3 * axis_[0].capacity()) * sizeof(float) +
            owner_.capacity() * sizeof(int);
 }
 

@@ -1,11 +1,14 @@
 // Particles as the fast path sees them during one step: sorted by cell, as float4 around the centre of the domain, with images beyond
 // periodic sides and a sliced neighbour list. The state in double precision stays where it is; position k here is state particle owner(k).
+// Over ranks each has the neighbours of its own share of them (shares.hpp), and what others compute is brought.
 #pragma once
 #include "core/types.hpp"
 #include "particles/frame.hpp"
 #include "particles/isa.hpp"
+#include "particles/shares.hpp"
 #include "particles/sliced_list.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -32,21 +35,42 @@ public:
     float* b() { return b_.data(); }
     /// Grows an array of float4 (or of single floats) to this step's size, dummies included.
     void fit(std::vector<float>& numbers, int per_particle) const;
+    /// Zeros for the dummies in an array of float4, where they may have been particles before: no number times a weight of 0 is wanted
+    /// there.
+    void clear_dummies(std::vector<float>& four) const { std::fill_n(four.begin() + 4 * size(), 4 * table_.lanes, 0.0f); }
     /// The fast path's coordinate of a state position along an axis.
     float local(real x, int axis) const { return static_cast<float>(x - frame_.centre[static_cast<std::size_t>(axis)]); }
     /// Where find() saw sorted particle k: the coordinate that the passes started from.
     float found_at(int k, int axis) const { return axis_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(k)]; }
-    /// Copies owners to their images in an array of float4; `moves`: the first three numbers are positions.
-    void refresh_images(float* four, bool moves) const;
+    /// What was computed of own particles comes to where others read it, in an array of float4: over ranks to those beside them, and from
+    /// owners to their images; `moves`: the first three numbers are positions.
+    void refresh(float* four, bool moves);
+    /// Over ranks, the same of arrays of the state.
+    using StateArrays = std::span<std::vector<real>* const>;
+    void share(StateArrays state);
+    /// Over ranks, everybody's own particles of arrays of the state, or of one that is sorted.
+    void gather(StateArrays state);
+    void gather(std::vector<float>& sorted) const;
+    /// Of what each rank gives; NaN if any is.
+    real largest(real own) const;
+    /// Makes NaN of what this rank does not know of the state, where halos are poisoned.
+    void poison(StateArrays state) const;
+    const Shares& shares() const { return shares_; }
     const SlicedList& list() const { return list_; }
     SlicedList& list() { return list_; }
     const CellSort& cells() const { return cells_; }
-    /// f(k) for all particles and images.
+    /// f(k) for all particles and images; over ranks those of this one, those that its passes read, or all.
     template <class F>
     void each(F&& f) const {
-        for_chunks(size(), [&](int, int begin, int end) {
-            for (int k = begin; k < end; ++k) f(k);
-        });
+        each_of(shares_.own(), f);
+    }
+    template <class F>
+    void each_read(F&& f) const {
+        each_of(shares_.read(), f);
+    }
+    template <class F>
+    void each_anywhere(F&& f) const {
+        each_of({0, size()}, f);
     }
     /// Mean and largest number of neighbours of the particles; those of images are not counted.
     struct NeighbourCounts {
@@ -56,6 +80,14 @@ public:
     std::size_t bytes() const;
 
 private:
+    template <class F>
+    static void each_of(const Entries& entries, F&& f) {
+        for_chunks(entries.count(), [&](int, int begin, int end) {
+            for (int k = entries.begin + begin; k < entries.begin + end; ++k) f(k);
+        });
+    }
+    void place(const Coordinates& all);
+    void link_images();
     void make_images(const Coordinates& x, int count, const Box& particles, real radius);
     void place_dummies(float* four) const;
 
@@ -63,6 +95,7 @@ private:
     Frame frame_;
     int particles_ = 0;
     CellSort cells_;
+    Shares shares_;
     SlicedList list_;
     std::vector<float> a_, b_;
     std::array<std::vector<float>, 3> axis_;  // positions as the list is built from them
@@ -71,8 +104,8 @@ private:
     std::array<std::vector<real>, 3> with_images_;   // coordinates of particles and images before sorting
     std::vector<int> image_owner_;                   // state particle of each image
     std::vector<std::array<float, 3>> image_shift_;  // and where it stands from there
-    std::vector<std::array<int, 3>> links_;          // (sorted image, sorted owner, image)
-    std::vector<int> sorted_;                        // scratch: where each particle went
+    std::vector<Link> links_;
+    std::vector<int> sorted_;  // scratch: where each particle went
 };
 
 }  // namespace weir::particles

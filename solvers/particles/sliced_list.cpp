@@ -18,11 +18,11 @@ void resize_exactly(std::vector<T>& v, std::size_t count) {
 
 }  // namespace
 
-void SlicedList::prepare(Chunk& chunk, int t, int slices, int lanes) {
+void SlicedList::prepare(Chunk& chunk, int t, const Entries& slices, int lanes) {
     const int chunks = static_cast<int>(chunks_.size());
     ListChunk& v = chunk.view;
-    v.begin = v.next = chunk_begin(slices, t, chunks);
-    v.end = chunk_begin(slices, t + 1, chunks);
+    v.begin = v.next = slices.begin + chunk_begin(slices.count(), t, chunks);
+    v.end = slices.begin + chunk_begin(slices.count(), t + 1, chunks);
     v.used = 0;
     v.packed_cell = -1;
     if (chunk.entries.empty()) {
@@ -66,8 +66,10 @@ void SlicedList::make_room_ahead(Chunk& chunk) const {
     v.capacity = chunk.entries.size();
 }
 
-void SlicedList::build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius) {
+void SlicedList::build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius,
+                       const Entries& own) {
     const int count = cells.count(), lanes = table.lanes, slices = (count + lanes - 1) / lanes;
+    const Entries own_slices{own.begin / lanes, (own.end + lanes - 1) / lanes};
     chunks_.resize(static_cast<std::size_t>(threads()));
     first_.resize(static_cast<std::size_t>(slices));
     rows_.resize(static_cast<std::size_t>(slices));
@@ -79,7 +81,7 @@ void SlicedList::build(const PassTable& table, const std::array<const float*, 3>
         Chunk& chunk = chunks_[static_cast<std::size_t>(t)];
         chunk.failure.clear();
         try {
-            prepare(chunk, t, slices, lanes);
+            prepare(chunk, t, own_slices, lanes);
             for (Built built = table.build(job, chunk.view); built != Built::done; built = table.build(job, chunk.view))
                 grow(chunk, built, lanes);
             make_room_ahead(chunk);

@@ -3,6 +3,7 @@
 #pragma once
 #include "particles/cell_sort.hpp"
 #include "particles/passes.hpp"
+#include "particles/shares.hpp"
 
 #include <string>
 #include <vector>
@@ -13,7 +14,11 @@ class SlicedList {
 public:
     /// axis: coordinates of `count` sorted particles, and room for `lanes` more behind them. Pairs closer than `radius` [m].
     /// Throws NumericalFailure when the list would need more than `max_bytes`.
-    void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius);
+    void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius) {
+        build(table, axis, cells, radius, {0, cells.count()});
+    }
+    /// The same of some of them, which begin and end with a slice.
+    void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius, const Entries& own);
 
     /// f(chunk) for every chunk, one a thread.
     template <class F>
@@ -42,7 +47,7 @@ private:
         bool roomy = false;  // has had room made ahead
         std::string failure;
     };
-    void prepare(Chunk& chunk, int t, int slices, int lanes);
+    void prepare(Chunk& chunk, int t, const Entries& slices, int lanes);
     void grow(Chunk& chunk, Built why, int lanes) const;
     void make_room_ahead(Chunk& chunk) const;
 

@@ -21,6 +21,27 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
 }
 
 template <int D>
+void ThreadedSolver<D>::begin_own() {
+    clamps_before_ = fluid_.clamps;
+    if (!slabs().poisons()) return;
+    gathered_.assign({&fluid_.density, &fluid_.carried});
+    for (std::size_t a = 0; a < D; ++a) gathered_.push_back(&fluid_.x[a]), gathered_.push_back(&fluid_.v[a]);
+    pairs_.poison(gathered_);
+}
+
+template <int D>
+void ThreadedSolver<D>::gather_state(std::initializer_list<std::vector<real>*> more) {
+    if (!slabs().several()) return;
+    const auto timed = this->passes_.time("gather");
+    gathered_.assign(more);
+    for (std::size_t a = 0; a < D; ++a) gathered_.push_back(&fluid_.x[a]), gathered_.push_back(&fluid_.v[a]);
+    pairs_.gather(gathered_);
+    const std::vector<Clamps> each = of_ranks(fluid_.clamps);
+    fluid_.clamps = clamps_before_;
+    for (const Clamps& rank : each) fluid_.clamps.add(rank.count - clamps_before_.count, rank.farthest);
+}
+
+template <int D>
 void ThreadedSolver<D>::end_step() {
     if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
     fluid_.cross_sides();

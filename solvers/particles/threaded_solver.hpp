@@ -30,6 +30,10 @@ protected:
         this->emitters_.apply(fluid_, dt);
         if (sources_) sources_->pour_and_drain(fluid_);
     }
+    /// Over ranks a step is of a rank's own particles from here on, where the pairs are found, to gather_state(), which brings everybody's
+    /// positions and velocities, these arrays of the state too, and what walls corrected.
+    void begin_own();
+    void gather_state(std::initializer_list<std::vector<real>*> more);
     /// Counts a step; the state follows the sorted order now and then; what has crossed a side is taken back or out.
     void end_step();
     /// Where the passes of the step were: their positions are the pairs'.
@@ -50,6 +54,8 @@ protected:
 private:
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
     std::vector<float> rest_;
+    std::vector<std::vector<real>*> gathered_;
+    Clamps clamps_before_;  // of begin_own()
 };
 
 }  // namespace weir::particles

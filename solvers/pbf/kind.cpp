@@ -91,7 +91,8 @@ scene::SolverKind kind() {
     const char* doc = "Position Based Fluids (Macklin & Müller 2013): liquid particles kept at rest density by constraints.";
     return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"fluid.viscosity"}}, {}),
             particles::make_solver<PbfSolver, ReferencePbfSolver, DevicePbfSolver>,
-            particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"})};
+            particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"}), particles::refuse_over_ranks,
+            scene::Shared::by_particles};
 }
 
 }  // namespace weir::pbf

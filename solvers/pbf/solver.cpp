@@ -42,6 +42,7 @@ StepReport PbfSolver<D>::step(real dt) {
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
+    gather_state();
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
@@ -84,6 +85,7 @@ void PbfSolver<D>::find_neighbours() {
     const auto timed = passes_.time("neighbours");
     pairs_.find(particles::Fluid<D>::coordinates(x_star_), fluid_.count(), options_.support * fluid_.domain.spacing);
     pairs_.fit(density_, 1);
+    this->begin_own();
     solids_.mark(pairs_);
     this->expand();
     if (!this->ice_) return;
@@ -119,7 +121,7 @@ void PbfSolver<D>::warm_start(real dt) {
     pairs_.fit(multiplier_, 1);
     float* x = pairs_.b();
     const float* from = pairs_.a();
-    pairs_.each([&](int k) {
+    pairs_.each_read([&](int k) {
         const auto before = static_cast<float>(options_.warm_start * dt * dt * fluid_.carried[static_cast<std::size_t>(pairs_.owner(k))]);
         multiplier_[static_cast<std::size_t>(k)] = before;
         for (int a = 0; a < 3; ++a) x[4 * k + a] = from[4 * k + a];
@@ -148,7 +150,8 @@ void PbfSolver<D>::find_lambdas() {
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const PbfPass job = pass(pairs_.a(), pairs_.b(), solids_.at(pairs_, pairs_.a()));
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.lambda(job, chunk); });
-    pairs_.refresh_images(pairs_.b(), true);
+    if (options_.tolerance > 0) pairs_.gather(density_);
+    pairs_.refresh(pairs_.b(), true);
 }
 
 /// x* += Δp, eq. 12 and 14, and the walls of the domain.
@@ -194,7 +197,7 @@ void PbfSolver<D>::collide() {
     else
         solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
     hold_places();
-    pairs_.refresh_images(pairs_.a(), true);
+    pairs_.refresh(pairs_.a(), true);
 }
 
 /// Bodies fall by their weight, and go where their velocities take them.
@@ -260,6 +263,22 @@ void PbfSolver<D>::update(real dt, real slow) {
         fluid_.density[static_cast<std::size_t>(i)] = fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
     });
     if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
+    if (dt == 0) gather_state();  // nothing comes after it
+}
+
+template <int D>
+void PbfSolver<D>::gather_state() {
+    if (!slabs().several()) return;
+    pairs_.gather(density_);
+    pairs_.each_anywhere([&](int k) {
+        if (!pairs_.is_image(k))
+            fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] =
+                fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
+    });
+    if (options_.warm_start > 0)
+        Base::gather_state({&fluid_.carried});
+    else
+        Base::gather_state({});
 }
 
 template <int D>

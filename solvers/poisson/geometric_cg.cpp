@@ -137,10 +137,7 @@ real GeometricCg<D>::iterate_down(real alpha, real beta) {
     const Level<D>& finest = hierarchy_.finest();
     VCycle<D>(hierarchy_)
         .down(
-            0, 2, [&](int stage, int q) { stage == 0 ? turn_plane(q, beta) : advance_plane(q, alpha); },
-            [&](int) {
-                for (float* p : p_) finest.refresh(p);
-            });
+            0, 2, [&](int stage, int q) { stage == 0 ? turn_plane(q, beta) : advance_plane(q, alpha); }, [&](int) { finest.refresh(p_); });
     at_zero_ = false;
     gather_sums();
     return total([](const PlaneSums& s) { return s.rr; });

@@ -114,6 +114,12 @@ struct Level {
     void refresh(T* vector) const {
         if (!cut.empty()) slabs().refresh(cut, planes_of(vector), 1, at.periodic[D - 1]);
     }
+    template <class T>
+    void refresh(const std::array<T*, 2>& vectors) const {
+        if (cut.empty()) return;
+        const std::array<Planes, 2> both{planes_of(vectors[0]), planes_of(vectors[1])};
+        slabs().refresh(cut, both, 1, at.periodic[D - 1]);
+    }
     /// Whether no cell of the row is fluid; known once the spans are.
     bool is_dry(int row) const { return span_start[static_cast<std::size_t>(row)] == span_start[static_cast<std::size_t>(row) + 1]; }
 };

@@ -16,12 +16,16 @@ struct PlainStep {
     std::string scene{};  // what a small scene of its kind says beside its grid, as TOML; "<x>" stands for a list of x for each axis
 };
 
+/// What ranks divide among themselves: the planes of the slowest axis, or the particles in the order of their cells, as many to each.
+enum class Shared { by_planes, by_particles };
+
 struct SolverKind {
     SolverSchema schema;
     std::function<std::unique_ptr<Solver>(const Scene&)> make;
     PlainStep plain{};
     /// Refuses, at its key, what of a scene cannot run over several ranks. None: the solver runs in one process only.
     std::function<void(const Scene&)> over_ranks{};
+    Shared shared = Shared::by_planes;
 };
 
 /// What each may be told.

@@ -52,7 +52,7 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
                      "over ranks: " + able);
     }
     const int planes = static_cast<int>(scene.root().numbers("grid.cells").back());
-    if (planes < ranks)
+    if (kind.shared == scene::Shared::by_planes && planes < ranks)
         scene.refuse("grid.cells", std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") +
                                        " cannot be shared by " + std::to_string(ranks) + " ranks");
     kind.over_ranks(scene);

@@ -99,7 +99,8 @@ scene::SolverKind kind() {
     return {
         particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"time.cfl"}}, {surface()}),
         particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
-        particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"})};
+        particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"}), particles::refuse_over_ranks,
+        scene::Shared::by_particles};
 }
 
 }  // namespace weir::sph

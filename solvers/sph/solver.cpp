@@ -61,6 +61,10 @@ StepReport SphSolver<D>::step(real dt) {
     drift(dt);
     if (bodies_) give_back(*bodies_, fluid_);           // of what pushed
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
+    if (options_.continuity)
+        this->gather_state({&fluid_.carried, &fluid_.density});
+    else
+        this->gather_state({&fluid_.carried});
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
     const real speed = speed_ = this->speed();
@@ -76,6 +80,7 @@ void SphSolver<D>::find_neighbours() {
     pairs_.fit(density_, 1);
     pairs_.fit(velocity_, 4);
     pairs_.fit(acceleration_, 4);
+    this->begin_own();
     solids_.mark(pairs_);
     this->expand();
     rho_rest_ = rest_density_.at(fluid_.time);
@@ -104,7 +109,8 @@ void SphSolver<D>::find_densities() {
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
-    pairs_.each([&](int k) {
+    pairs_.gather(density_);
+    pairs_.each_anywhere([&](int k) {
         if (!pairs_.is_image(k))
             fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] = static_cast<real>(density_[static_cast<std::size_t>(k)]);
     });
@@ -115,6 +121,7 @@ void SphSolver<D>::find_densities() {
 template <int D>
 void SphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");
+    flow_.share_velocity();
     load([&](int, int i) { return fluid_.density[static_cast<std::size_t>(i)] - fluid_.rho0 * this->ice_rest(i); });
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
@@ -141,7 +148,7 @@ template <int D>
 template <class F>
 void SphSolver<D>::load(F&& more) {
     float* x = pairs_.a();
-    pairs_.each([&](int k) {
+    pairs_.each_read([&](int k) {
         const auto at = static_cast<std::size_t>(k);
         const int i = pairs_.owner(k);
         const Vec<D> u = fluid_.velocity(i);
@@ -149,8 +156,7 @@ void SphSolver<D>::load(F&& more) {
         for (std::size_t a = 0; a < 3; ++a) velocity_[4 * at + a] = a < D ? static_cast<float>(u[a]) : 0;
         velocity_[4 * at + 3] = static_cast<float>(more(k, i));
     });
-    for (int k = pairs_.size(); k < pairs_.size() + pairs_.table().lanes; ++k)  // the dummy
-        for (int c = 0; c < 4; ++c) velocity_[static_cast<std::size_t>(4 * k + c)] = 0;
+    pairs_.clear_dummies(velocity_);
 }
 
 template <int D>
@@ -226,7 +232,9 @@ template <int D>
 void SphSolver<D>::kick(real dt) {
     const auto timed = passes_.time("integrate");
     const float* acceleration = acceleration_.data();
-    max_acceleration_ = std::sqrt(particles::block_max(pairs_.size(), [&](int k) {
+    const auto& own = pairs_.shares().own();
+    max_acceleration_ = std::sqrt(pairs_.largest(particles::block_max(own.count(), [&](int at) {
+        const int k = own.begin + at;
         Vec<D> by;
         for (int a = 0; a < D; ++a) by[a] = static_cast<real>(acceleration[4 * k + a]);
         if (!pairs_.is_image(k)) {
@@ -234,13 +242,20 @@ void SphSolver<D>::kick(real dt) {
             Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * by);
         }
         return dot(by, by);
-    }));
+    })));
 }
 
 template <int D>
 void SphSolver<D>::drift(real dt) {
     const auto timed = passes_.time("integrate");
-    sph::drift(fluid_, dt);
+    if (!pairs_.shares().several()) {
+        sph::drift(fluid_, dt);
+    } else {
+        advance_time(fluid_, dt);
+        pairs_.each([&](int k) {
+            if (!pairs_.is_image(k)) sph::drift(fluid_, pairs_.owner(k), dt);
+        });
+    }
     this->carry_ice(dt);
 }
 

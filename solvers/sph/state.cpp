@@ -98,19 +98,26 @@ std::string too_fast(const Options& o, real speed, real time) {
 }
 
 template <int D>
-void drift(particles::Fluid<D>& fluid, real dt) {
-    using particles::Fluid;
+void advance_time(particles::Fluid<D>& fluid, real dt) {
     fluid.time += dt;
-    const auto& domain = fluid.domain;
-    if (!domain.solids.empty()) fluid.domain.solids.set_time(fluid.time);
-    parallel_for(0, fluid.count(), [&](int i) {
-        const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = domain.kept(free, fluid.clamps);
-        Vec<D> kept = u;
-        for (int a = 0; a < D; ++a)
-            if (x[a] != free[a]) kept[a] = (x[a] - fluid.position(i)[a]) / dt;
-        Fluid<D>::put(fluid.v, i, kept);
-        Fluid<D>::put(fluid.x, i, x);
-    });
+    if (!fluid.domain.solids.empty()) fluid.domain.solids.set_time(fluid.time);
+}
+
+template <int D>
+void drift(particles::Fluid<D>& fluid, int i, real dt) {
+    using particles::Fluid;
+    const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = fluid.domain.kept(free, fluid.clamps);
+    Vec<D> kept = u;
+    for (int a = 0; a < D; ++a)
+        if (x[a] != free[a]) kept[a] = (x[a] - fluid.position(i)[a]) / dt;
+    Fluid<D>::put(fluid.v, i, kept);
+    Fluid<D>::put(fluid.x, i, x);
+}
+
+template <int D>
+void drift(particles::Fluid<D>& fluid, real dt) {
+    advance_time(fluid, dt);
+    parallel_for(0, fluid.count(), [&](int i) { drift(fluid, i, dt); });
 }
 
 template <int D>
@@ -179,6 +186,10 @@ template bool sticky(const geometry::Solids<2>&);
 template bool sticky(const geometry::Solids<3>&);
 template StepLimit stable_step(const Options&, const particles::Fluid<2>&, real);
 template StepLimit stable_step(const Options&, const particles::Fluid<3>&, real);
+template void advance_time(particles::Fluid<2>&, real);
+template void advance_time(particles::Fluid<3>&, real);
+template void drift(particles::Fluid<2>&, int, real);
+template void drift(particles::Fluid<3>&, int, real);
 template void drift(particles::Fluid<2>&, real);
 template void drift(particles::Fluid<3>&, real);
 template particles::single::PbfParams smoothing_params(const particles::single::SphParams&, const particles::Fluid<2>&);

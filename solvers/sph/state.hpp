@@ -93,5 +93,10 @@ void move_bodies(particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& flui
 /// x += dt v. What would enter a wall or a solid is put back and loses its speed into it.
 template <int D>
 void drift(particles::Fluid<D>& fluid, real dt);
+/// The same in two parts: time goes on, and a particle moves.
+template <int D>
+void advance_time(particles::Fluid<D>& fluid, real dt);
+template <int D>
+void drift(particles::Fluid<D>& fluid, int i, real dt);
 
 }  // namespace weir::sph

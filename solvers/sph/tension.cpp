@@ -16,9 +16,8 @@ void SurfaceTension<D>::apply(particles::Flow<D>& flow, real dt) {
     job.first = pairs.list().first(), job.rows = pairs.list().rows();
     job.acceleration = normal_.data();
     pairs.list().each_chunk([&](const ListChunk& chunk) { table.normal(job, chunk); });
-    pairs.refresh_images(normal_.data(), false);
-    for (int k = pairs.size(); k < pairs.size() + pairs.table().lanes; ++k)  // the dummy
-        for (int c = 0; c < 4; ++c) normal_[static_cast<std::size_t>(4 * k + c)] = 0;
+    pairs.refresh(normal_.data(), false);
+    pairs.clear_dummies(normal_);
     job.velocities = normal_.data();
     job.acceleration = flow.change.data();
     pairs.list().each_chunk([&](const ListChunk& chunk) { table.tension(job, chunk); });

@@ -85,8 +85,9 @@ void CharacteristicAdvection<D>::advect(const std::vector<Carried<D>>& quantitie
     if (trace.is_near(dt) && options_.interpolation == Interpolation::linear) return follow_planes(motion);
     prepare(motion, quantities[0].source->extent()[D - 1]);
     predict(motion, 0);
-    for (std::size_t i = 0; i < quantities.size(); ++i)
-        fill_ghosts(room_[i].predicted[static_cast<std::size_t>(nodes.axis + 1)], *quantities[i].boundary);
+    for (const auto& [values, boundary] : predicted_)
+        for_each_plane(0, values->extent()[D - 1], [&](int plane) { fill_plane_ghosts(*values, *boundary, plane); });
+    fill_end_planes(predicted_);
     correct(motion, 0);
 }
 
@@ -117,11 +118,13 @@ void CharacteristicAdvection<D>::semi_lagrangian(const Motion& m) const {
 template <int D>
 void CharacteristicAdvection<D>::prepare(const Motion& m, int planes_of_bounds) {
     if (room_.size() < m.quantities.size()) room_.resize(m.quantities.size());
+    predicted_.clear();
     for (std::size_t i = 0; i < m.quantities.size(); ++i) {
         const Padded<D>& source = *m.quantities[i].source;
         Room& room = room_[i];
         auto& predicted = room.predicted[static_cast<std::size_t>(m.nodes.axis + 1)];
         if (predicted.empty()) predicted = Padded<D>(source.extent());
+        predicted_.push_back({&predicted, m.quantities[i].boundary});
         Index<D> planes = source.extent();
         planes[D - 1] = planes_of_bounds;
         if (room.low.size() < product(planes)) room.low = room.high = std::vector<real>(product(planes));
@@ -149,11 +152,9 @@ void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
     const auto begin_of = [&](int share) { return lo + (hi - lo) * share / shares; };
     const auto bounds_from = [&](int k, int share) { return k - (3 * share + (k == begin_of(share) ? 0 : 1 + k % 2)); };
     const auto correct_plane = [&](int k, int share) { correct(m.on_plane(k), bounds_from(k, share)); };
-    const auto each_predicted = [&](auto&& f) {
-        for (std::size_t i = 0; i < m.quantities.size(); ++i)
-            f(room_[i].predicted[static_cast<std::size_t>(m.nodes.axis + 1)], *m.quantities[i].boundary);
+    const auto fill_plane = [&](int k) {
+        for (const auto& [values, boundary] : predicted_) fill_plane_ghosts(*values, *boundary, k);
     };
-    const auto fill_plane = [&](int k) { each_predicted([&](auto& q, const auto& boundary) { fill_plane_ghosts(q, boundary, k); }); };
     parallel_for(0, shares, [&](int share) {
         const int begin = begin_of(share), end = begin_of(share + 1);
         for (int k = begin; k < end; ++k) {
@@ -164,7 +165,7 @@ void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
     });
     for (int k = detail::own_share.lower(0); k < lo; ++k) fill_plane(k);
     for (int k = std::max(lo, hi); k < detail::own_share.upper(planes); ++k) fill_plane(k);
-    each_predicted([](auto& q, const auto& boundary) { fill_end_planes(q, boundary); });
+    fill_end_planes(predicted_, 1);
     parallel_for(0, shares, [&](int share) {
         const int first = begin_of(share), last = begin_of(share + 1) - 1;
         correct_plane(first, share);

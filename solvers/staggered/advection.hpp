@@ -74,6 +74,7 @@ private:
 
     AdvectionOptions options_;
     std::vector<Room> room_;
+    std::vector<WithBoundary<D>> predicted_;  // of the last prepare()
     std::vector<Carried<D>> one_{1};
 };
 

@@ -151,16 +151,20 @@ void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane) {
     fill_lines(q, 1, boundary, I, q.extent()[0] + 2 * ghost_layers);
 }
 
-template <int D>
-void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep) {
-    if (!over_ranks()) return;
+namespace {
+
+void refresh_all(std::span<const Planes> planes, bool ring, int deep) {
     const auto& share = detail::own_share;
-    slabs().refresh(*share.cut, q.planes(), deep > 0 ? deep : share.reach, boundary.end[D - 1][0].kind == Kind::periodic);
+    slabs().refresh(*share.cut, planes, deep > 0 ? deep : share.reach, ring);
+}
+template <int D>
+bool repeats(const Boundary<D>& boundary) {
+    return boundary.end[D - 1][0].kind == Kind::periodic;
 }
 
+/// Beyond both ends of the last axis.
 template <int D>
-void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep) {
-    refresh(q, boundary, deep);
+void fill_ends(Padded<D>& q, const Boundary<D>& boundary) {
     Index<D> rows = q.extent() + Index<D>::constant(2 * ghost_layers);
     parallel_for(0, D == 2 ? 1 : rows[1], [&](int j) {
         Index<D> I = Index<D>::constant(-ghost_layers);
@@ -170,10 +174,48 @@ void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep) {
     });
 }
 
+}  // namespace
+
+template <int D>
+void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep) {
+    if (!over_ranks()) return;
+    const Planes planes = q.planes();
+    refresh_all(std::span(&planes, 1), repeats(boundary), deep);
+}
+
+template <int D>
+void refresh(const std::vector<WithBoundary<D>>& list, int deep) {
+    if (!over_ranks() || list.empty()) return;
+    thread_local std::vector<Planes> planes;
+    planes.clear();
+    for (const auto& one : list) planes.push_back(one.values->planes());
+    refresh_all(planes, repeats(*list[0].boundary), deep);
+}
+
+template <int D>
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep) {
+    refresh(q, boundary, deep);
+    fill_ends(q, boundary);
+}
+
+template <int D>
+void fill_end_planes(const std::vector<WithBoundary<D>>& list, int deep) {
+    refresh(list, deep);
+    for (const auto& one : list) fill_ends(*one.values, *one.boundary);
+}
+
+template <int D>
+void fill_planes(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
+    for_each_plane(0, to.extent()[D - 1], [&](int plane) {
+        fill_plane(to, boundary, plane,
+                   [&](const Index<D>& first, int count, real* row) { std::copy_n(from.data() + from.linear(first), count, row); });
+    });
+}
+
 template <int D>
 void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
-    fill_rows(to, boundary,
-              [&](const Index<D>& first, int count, real* row) { std::copy_n(from.data() + from.linear(first), count, row); });
+    fill_planes(to, from, boundary);
+    fill_end_planes(to, boundary);
 }
 
 template <int D>
@@ -208,6 +250,12 @@ template void fill_plane_ghosts(Padded<2>&, const Boundary<2>&, int);
 template void fill_plane_ghosts(Padded<3>&, const Boundary<3>&, int);
 template void refresh(Padded<2>&, const Boundary<2>&, int);
 template void refresh(Padded<3>&, const Boundary<3>&, int);
+template void refresh(const std::vector<WithBoundary<2>>&, int);
+template void refresh(const std::vector<WithBoundary<3>>&, int);
+template void fill_end_planes(const std::vector<WithBoundary<2>>&, int);
+template void fill_end_planes(const std::vector<WithBoundary<3>>&, int);
+template void fill_planes(Padded<2>&, const Grid<real, 2>&, const Boundary<2>&);
+template void fill_planes(Padded<3>&, const Grid<real, 3>&, const Boundary<3>&);
 template void fill_end_planes(Padded<2>&, const Boundary<2>&, int);
 template void fill_end_planes(Padded<3>&, const Boundary<3>&, int);
 template void fill_ghosts(Padded<2>&, const Boundary<2>&, int);

@@ -90,6 +90,16 @@ template <int D>
 void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane);
 template <int D>
 void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
+/// The same of several arrays, whose planes travel together. Sides repeat for all of them or for none.
+template <int D>
+struct WithBoundary {
+    Padded<D>* values;
+    const Boundary<D>* boundary;
+};
+template <int D>
+void fill_end_planes(const std::vector<WithBoundary<D>>& list, int deep = 0);
+template <int D>
+void refresh(const std::vector<WithBoundary<D>>& list, int deep = 0);
 /// Over ranks, what other ranks own: where their values have changed and those beyond the sides have not.
 template <int D>
 void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
@@ -112,7 +122,10 @@ void fill_rows(Padded<D>& q, const Boundary<D>& boundary, F&& f) {
     for_each_plane(0, q.extent()[D - 1], [&](int plane) { fill_plane(q, boundary, plane, f); });
     fill_end_planes(q, boundary);
 }
-/// As fill, without the planes beyond the ends of the last axis; the largest magnitude of `from`, or NaN, is found on the way.
+/// As fill, without the planes beyond the ends of the last axis.
+template <int D>
+void fill_planes(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
+/// The same; the largest magnitude of `from`, or NaN, is found on the way.
 template <int D>
 real fill_planes_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
 

@@ -37,14 +37,36 @@ compare() {
     done <<<"$list,"
 }
 
-flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml
+flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
+every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
+sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
 2d)
-    compare all "1 2,2 1,2 2,3 1,3 2,4 1,4 2" "$flat"
+    compare all "$every" "$flat"
     grep -q '"count":2,"cut":\[0,72,152\]' all-2-1/run.json || fail "run.json does not tell the ranks"
     ;;
 3d)
     compare all "2 1,2 2,3 1,3 2,4 1,4 2" "$deep"
+    ;;
+particles)
+    compare pbf "$every" "$drops"
+    compare sph "$every" "$drops" $sph
+    grep -q '"count":2,"cut":"as many particles to each"' pbf-2-1/run.json || fail "run.json does not tell the ranks"
+    ;;
+particles_3d)
+    compare pbf "$every" "$drops_deep"
+    compare sph "$every" "$drops_deep" $sph
+    ;;
+particles_schemes)
+    compare tolerant "3 2" "$drops" --set scheme.tolerance=1e-3 --set scheme.warm_start=0.4 --set scheme.kernel=muller --set effects.artificial_pressure.k=1e-4
+    compare summed "3 1" "$drops" $sph --set scheme.density=summation --set scheme.tension=true --set effects.surface_tension.sigma=0.07
+    compare viscous "4 1" "$drops_deep" $sph --set fluid.viscosity=1e-3 --set effects.viscosity={} --set effects.density_diffusion={}
+    compare few "4 1" "$scenes/particles.toml"
+    # saved on three, continued on two
+    ends 0 over 3 "$weir" run "$drops" --checkpoint-every 1000 --quiet --out parts --set time.end=0.04
+    ends 0 "$weir" run "$drops" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.08
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.08
+    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
     ;;
 schemes)
     periodic='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},y_min={kind="periodic"},y_max={kind="periodic"}} --set emitters=[]'
@@ -61,6 +83,12 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     ends 0 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out one_3d
     ends 0 over 2 WEIR_HALO_POISON=1 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out poisoned_3d
     alike one_3d poisoned_3d
+    for case in "$drops" "$drops_deep" "$drops $sph" "$drops_deep $sph" "$drops $sph --set scheme.density=summation"; do
+        rm -rf drops drops_poisoned
+        ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops
+        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops_poisoned
+        alike drops drops_poisoned
+    done
     ;;
 ends)
     # saved on three, continued on two
@@ -76,7 +104,9 @@ ends)
         says "$key"
         [ ! -e refused ] || fail "a refused run has written"
     }
-    refused 'solver "pbf" runs in one process' "$scenes/particles.toml"
+    refused 'solver "mac_water" runs in one process' "$scenes/water.toml"
+    refused "effects.hand: the hand pushes in one process only" "$drops" --set effects.hand={}
+    refused "scheme.backend: this backend runs in one process only" "$drops" --set scheme.backend=reference
     refused 'solids\[0\].motion' "$scenes/smoke.toml"
     refused scheme.poisson.method "$flat" --set scheme.poisson.method=petsc_gamg
     refused "planes of cells" "$flat" --set grid.cells=[16,2]
