@@ -76,6 +76,45 @@ schemes)
     compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
     compare small "4 1" "$flat" --set grid.cells=[16,5]
     ;;
+traffic) # what is sent is what must be: of particles that stand on a lattice, in the steps by which one run is longer than another
+    cat >still.toml <<-END
+	solver = "sph"
+	dim = 2
+	grid = { cells = [16, 40], size = [0.16, 0.4] }
+	time = { end = 0.01, dt = 1e-4 }
+	scheme = { support = 2.0 }
+	liquid = [ { shape = "box", min = [0.0, 0.0], max = [0.16, 0.34] } ]
+	output = { every = 1.0 }
+	END
+    # sent WHAT RANK: in the last 20 steps of 30, over two ranks
+    sent() { echo $(($(told long "$1" "$2") - $(told short "$1" "$2"))); }
+    told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
+    both() { # [--set ...]
+        rm -rf short long
+        ends 0 over 2 "$weir" run still.toml "$@" --quiet --threads 1 --out short --set time.end=0.001
+        ends 0 over 2 "$weir" run still.toml "$@" --quiet --threads 1 --out long --set time.end=0.003
+        [ "$(grep -c '"step":' short/run.json)" -eq 10 ] && [ "$(grep -c '"step":' long/run.json)" -eq 30 ] || fail "not 10 and 30 steps"
+    }
+    expect() { [ "$1" -eq "$2" ] || fail "$3: $1, and $2 by the formula"; }
+    # 34 rows of 16. Cells are two spacings wide and a hair more: the first of an axis holds 3, the others 2, the eighth along x 1. Rank 0
+    # has 17 rows, 8 whole rows of cells; 1 reads the last of these and the cell before it, 0 the first row of 1's and the cell behind it.
+    own=$((17 * 16)) to_1=$((2 * 16 + 2 * 1)) to_0=$((2 * 16 + 2 * 3))
+    # A step: velocities to the neighbour (2 numbers a particle), everybody's largest acceleration, positions, velocities, pressure and
+    # density of all own (6), what walls corrected (2); and the run: whether rank 0 could write, and whether anybody was asked to end.
+    for density in continuity summation; do
+        both --set scheme.density=$density
+        halo=$([ $density = continuity ] && echo 1 || echo 0) # else everybody's densities, single, and no velocities
+        for rank in 0 1; do
+            beside=$([ $rank = 0 ] && echo $to_1 || echo $to_0)
+            expect "$(sent messages $rank)" $((20 * 6)) "messages of rank $rank, $density"
+            expect "$(sent bytes $rank)" $((20 * (halo * beside * 2 * 8 + (1 - halo) * own * 4 + 8 + own * (5 + halo) * 8 + 16 + 2 * 4))) \
+                "bytes of rank $rank, $density"
+        done
+    done
+    # PBF: two halos an iteration, densities, positions and velocities, what walls corrected, and the run
+    both --set solver=pbf --set scheme.iterations=5 --set scheme.warm_start=0
+    for rank in 0 1; do expect "$(sent messages $rank)" $((20 * (2 * 5 + 3 + 2))) "messages of rank $rank, pbf"; done
+    ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
     ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 2 --out poisoned
