@@ -53,6 +53,21 @@ FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& sc
     return plan;
 }
 
+/// While it lives, loops over planes are of as many planes more beyond both cuts: of what each rank finds there for itself.
+class WiderPlanes {
+public:
+    explicit WiderPlanes(int planes) : before_(detail::own_share) {
+        if (before_.begin != INT_MIN) detail::own_share.begin -= planes;
+        if (before_.end != INT_MAX) detail::own_share.end += planes;
+    }
+    ~WiderPlanes() { detail::own_share = before_; }
+    WiderPlanes(const WiderPlanes&) = delete;
+    WiderPlanes& operator=(const WiderPlanes&) = delete;
+
+private:
+    detail::OwnShare before_;
+};
+
 /// Planes beyond a cut that a path of so many cells reads, with the stencil at its end.
 int planes_reached(real cells, int planes) {
     if (!(cells < planes)) return planes;
@@ -160,10 +175,9 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         remembered_fields_.push_back({&field.before, &field.boundary});
     }
     for (int a = 0; a < D; ++a) {
-        remembered_velocity_.push_back({&state_.before[a], &state_.boundary[static_cast<std::size_t>(a)]});
+        remembered_.push_back({&state_.before[a], &state_.boundary[static_cast<std::size_t>(a)]});
         carried_velocity_.push_back({&carried_[a], &state_.boundary[static_cast<std::size_t>(a)]});
     }
-    remembered_ = remembered_velocity_;
     remembered_.insert(remembered_.end(), remembered_fields_.begin(), remembered_fields_.end());
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
@@ -193,22 +207,16 @@ void FlowSolver<D>::remember(real dt) {
     trace_.set_max_rate(fastest);
     set_reach(planes_reached(dt * fastest, state_.extent()[D - 1]));
     fill_field_planes();
-    fill_end_planes(remembered_);
-    extend_velocity();
+    fill_end_planes(remembered_, planes_to_extend());
+    solids_.extend_velocity(state_);
     extend_fields();
 }
 
-/// What is continued into solids is of the neighbours' values, which other ranks may own, and is wanted beyond the cuts too.
+/// Over ranks, planes beyond the cuts from which what is continued into solids is found as deep as the step reads it: of the neighbours'
+/// values, and of what was found beside them. 0 where nothing is: the reach itself.
 template <int D>
-void FlowSolver<D>::extend_velocity() {
-    if (!solids_.any()) return;
-    if (over_ranks()) {
-        shared_.clear();
-        for (int a = 0; a < D; ++a) shared_.push_back(planes_of(state_.u[a]));
-        slabs().refresh(cut_, shared_, ghost_layers, state_.sides.periodic(D - 1));
-    }
-    solids_.extend_velocity(state_);
-    refresh(remembered_velocity_);
+int FlowSolver<D>::planes_to_extend() const {
+    return solids_.any() ? detail::own_share.reach + 2 : 0;
 }
 
 template <int D>
@@ -220,9 +228,11 @@ void FlowSolver<D>::fill_field_planes() {
 template <int D>
 void FlowSolver<D>::extend_fields() {
     if (!solids_.any()) return;
+    const bool ring = state_.sides.periodic(D - 1);
+    const WiderPlanes beyond(ring ? 0 : detail::own_share.reach);
     for (auto& field : state_.fields)
         if (!field.derived) solids_.extend_field(state_, field.before);
-    refresh(remembered_fields_);
+    if (ring) refresh(remembered_fields_);
 }
 
 /// A force on a face is of the cells on both its sides.
@@ -254,7 +264,7 @@ void FlowSolver<D>::depart(real dt) {
     const auto timed = passes_.time("ghosts");
     for (auto& field : state_.fields) field.hold();
     fill_field_planes();
-    fill_end_planes(remembered_fields_);
+    fill_end_planes(remembered_fields_, planes_to_extend());
     extend_fields();
 }
 

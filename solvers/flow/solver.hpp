@@ -54,7 +54,7 @@ public:
 private:
     void apply(Stage stage, real dt);
     void remember(real dt);
-    void extend_velocity();
+    int planes_to_extend() const;
     void fill_field_planes();
     void extend_fields();
     void depart(real dt);
@@ -102,7 +102,7 @@ private:
     mutable Grid<real, D> divergence_;
     std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
-    std::vector<WithBoundary<D>> remembered_velocity_, remembered_fields_, remembered_;  // uⁿ, qⁿ and both
+    std::vector<WithBoundary<D>> remembered_fields_, remembered_;  // uⁿ, qⁿ and both
     std::vector<WithBoundary<D>> carried_velocity_;
     std::vector<Planes> shared_;  // scratch: what travels together
     Cut cut_;                     // none in one process

@@ -164,7 +164,7 @@ void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
         for (int b = 0; b < D; ++b) {
             real pair = 0;  // the two neighbours along an axis are added first, so that a mirror changes nothing
             for (const Index<D>& N : {f.face - e<D>(b), f.face + e<D>(b)})
-                if (open.contains(N) && open(N) > 0) pair += s.u[f.axis](N), ++known;
+                if (open.contains(N) && open(N) > 0) pair += s.before[f.axis](N), ++known;  // open: as it was
             sum += pair;
         }
         s.before[f.axis](f.face) = sum / known;

@@ -76,6 +76,77 @@ schemes)
     compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
     compare small "4 1" "$flat" --set grid.cells=[16,5]
     ;;
+traffic) # what is sent is what must be, in the steps by which one run is longer than another: particles that stand on a lattice, and a flow
+    cat >still.toml <<-END
+	solver = "sph"
+	dim = 2
+	grid = { cells = [16, 40], size = [0.16, 0.4] }
+	time = { end = 0.01, dt = 1e-4 }
+	scheme = { support = 2.0 }
+	liquid = [ { shape = "box", min = [0.0, 0.0], max = [0.16, 0.34] } ]
+	output = { every = 1.0 }
+	END
+    # sent WHAT RANK: in the last 20 steps of 30, over two ranks
+    sent() { echo $(($(told long "$1" "$2") - $(told short "$1" "$2"))); }
+    told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
+    both() { # SCENE [--set ...]: 10 steps and 30, of 1e-4 s
+        rm -rf short long
+        ends 0 over 2 "$weir" run "$@" --quiet --threads 1 --out short --set time.end=0.001
+        ends 0 over 2 "$weir" run "$@" --quiet --threads 1 --out long --set time.end=0.003
+        [ "$(grep -c '"step":' short/run.json)" -eq 10 ] && [ "$(grep -c '"step":' long/run.json)" -eq 30 ] || fail "not 10 and 30 steps"
+    }
+    expect() { [ "$1" -eq "$2" ] || fail "$3: $1, and $2 by the formula"; }
+    # 34 rows of 16. Cells are two spacings wide and a hair more: the first of an axis holds 3, the others 2, the eighth along x 1. Rank 0
+    # has 17 rows, 8 whole rows of cells; 1 reads the last of these and the cell before it, 0 the first row of 1's and the cell behind it.
+    own=$((17 * 16)) to_1=$((2 * 16 + 2 * 1)) to_0=$((2 * 16 + 2 * 3))
+    # A step: velocities to the neighbour (2 numbers a particle), everybody's largest acceleration, positions, velocities, pressure and
+    # density of all own (6), what walls corrected (2); and the run: whether rank 0 could write, and whether anybody was asked to end.
+    for density in continuity summation; do
+        both still.toml --set scheme.density=$density
+        halo=$([ $density = continuity ] && echo 1 || echo 0) # else everybody's densities, single, and no velocities
+        for rank in 0 1; do
+            beside=$([ $rank = 0 ] && echo $to_1 || echo $to_0)
+            expect "$(sent messages $rank)" $((20 * 6)) "messages of rank $rank, $density"
+            expect "$(sent bytes $rank)" $((20 * (halo * beside * 2 * 8 + (1 - halo) * own * 4 + 8 + own * (5 + halo) * 8 + 16 + 2 * 4))) \
+                "bytes of rank $rank, $density"
+        done
+    done
+    # PBF: two halos an iteration, densities, positions and velocities, what walls corrected, and the run
+    both still.toml --set solver=pbf --set scheme.iterations=5 --set scheme.warm_start=0
+    for rank in 0 1; do expect "$(sent messages $rank)" $((20 * (2 * 5 + 3 + 2))) "messages of rank $rank, pbf"; done
+    cat >stirred.toml <<-END
+	solver = "mac"
+	dim = 2
+	grid = { cells = [144, 152], size = [0.045, 0.0475] }
+	time = { end = 0.01, max_dt = 1e-4 }
+	sides.y_max = { kind = "outflow" }
+	initial.velocity = { name = "random", speed = 0.3 }
+	scheme.poisson.tolerance = 0.3
+	output = { every = 1.0 }
+	END
+    both stirred.toml
+    iterations() { echo $(($(grep -o '"iterations":[0-9]*' "$1/run.json" | cut -d: -f2 | paste -sd+))); }
+    [ "$(grep -o '"iterations":[0-9]*' long/run.json | cut -d: -f2 | sort -n | tail -n 1)" -eq 1 ] || fail "a step of more than one iteration"
+    cycles=$(($(iterations long) - $(iterations short)))
+    [ $cycles -gt 0 ] || fail "no iteration"
+    for rank in 0 1; do
+        # Cut before plane 72 of 152, with a plane of faces more at the end. A row with its ghosts, of faces across it and of others; a row of
+        # cells; rows of one colour, padded to 16 single numbers and 16 more, on the grid and on the next coarser one, which all ranks solve.
+        planes=$([ $rank = 0 ] && echo 72 || echo 80) faces=$([ $rank = 0 ] && echo 72 || echo 81)
+        padded=$((8 * (144 + 6 + 1) + 8 * (144 + 6))) row=$((8 * 144)) colour=$((4 * (80 + 16))) coarse=$((4 * (48 + 16)))
+        # A step: velocities 1 + 3 rows deep twice, before and as they are carried; what is predicted, one row of each; faces or pressure
+        # at the cut 5 times; the largest of each velocity at both ends, of the pressure, and of what diverges, whether the pressure is 0,
+        # and the norm of the right-hand side, a number a plane; 4 sums of the first residual; and the run's 2.
+        messages=$((20 * (2 + 2 + 5 + 4 + 4 + 1 + 2)))
+        bytes=$((20 * ((2 * 4 + 1) * padded + 5 * row + 8 * (2 * (planes + faces) + 4 * planes) + 32 * planes + 8)))
+        # An iteration, the only one of its solve: a cycle of 5 stages down and 6 up with a row of one colour after each but the last, the
+        # right-hand side of the coarser grid in two colours, sums; and the end: the pressure at the cut, sums.
+        messages=$((messages + cycles * (4 + 5 + 2 + 1 + 2)))
+        bytes=$((bytes + cycles * (9 * colour + 2 * coarse * planes / 2 + 32 * planes + row + 32 * planes)))
+        expect "$(sent messages $rank)" $messages "messages of rank $rank, mac"
+        expect "$(sent bytes $rank)" $bytes "bytes of rank $rank, mac"
+    done
+    ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
     ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 2 --out poisoned
