@@ -12,6 +12,7 @@
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
 #include "reconstruction/reconstruction.hpp"
+#include "rigid/remark.hpp"
 #include "sim/foretold.hpp"
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
@@ -222,6 +223,8 @@ int simulate(const RunArguments& arguments) {
     for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
         std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it may cost, and does nothing\n", simulation.scene().file().c_str(),
                      effect.c_str());
+    if (const std::string remark = rigid::remark_on_density(simulation.scene()); !remark.empty())
+        std::fprintf(stderr, "%s: %s\n", simulation.scene().file().c_str(), remark.c_str());
     if (arguments.explain) {
         const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
         std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation.scene())).c_str(), stdout);

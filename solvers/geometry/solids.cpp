@@ -4,6 +4,25 @@
 
 namespace weir::geometry {
 
+namespace {
+
+/// How fast a distance may grow with the way: 1 where it is exact, root 3 where it is interpolated between values that are.
+constexpr real steepest = 1.7320508075688772;
+
+/// Outward unit normal of a distance, by central differences.
+template <int D, class Distance>
+Vec<D> slope_of(const Vec<D>& x, real eps, const Distance& distance) {
+    Vec<D> n;
+    for (int a = 0; a < D; ++a) {
+        const Vec<D> step = eps * Vec<D>::unit(a);
+        n[a] = distance(x + step) - distance(x - step);
+    }
+    const real length = norm(n);
+    return length > 0 ? n / length : Vec<D>::unit(D - 1);
+}
+
+}  // namespace
+
 template <int D>
 Solids<D>::Solids(const std::vector<scene::Table>& tables) {
     for (const auto& table : tables) {
@@ -76,13 +95,43 @@ std::size_t Solids<D>::nearest(const Vec<D>& x) const {
 
 template <int D>
 Vec<D> Solids<D>::normal(const Vec<D>& x, real eps) const {
-    Vec<D> n;
-    for (int a = 0; a < D; ++a) {
-        const Vec<D> step = eps * Vec<D>::unit(a);
-        n[a] = distance(x + step) - distance(x - step);
+    return slope_of(x, eps, [&](const Vec<D>& y) { return distance(y); });
+}
+
+template <int D>
+void Solids<D>::find_near(const Ball<D>& where, real than, std::vector<std::size_t>& near) const {
+    near.clear();
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+        const bool held = balls_[i].radius < infinity;
+        const real least = held ? norm(where.middle - balls_[i].middle) - balls_[i].radius - where.radius
+                                : distance(i, where.middle) - steepest * where.radius;
+        if (!(least >= than)) near.push_back(i);
     }
-    const real length = norm(n);
-    return length > 0 ? n / length : Vec<D>::unit(D - 1);
+}
+
+template <int D>
+real Solids<D>::distance(const Vec<D>& x, std::span<const std::size_t> of, real most) const {
+    real d = most;
+    for (const std::size_t i : of)
+        if (may_be_nearer(i, x, d)) d = std::min(d, distance(i, x));
+    return d;
+}
+
+template <int D>
+std::size_t Solids<D>::nearest(const Vec<D>& x, std::span<const std::size_t> of) const {
+    if (of.size() == 1) return of.front();
+    std::size_t best = 0;
+    real d = infinity;
+    for (const std::size_t i : of) {
+        if (!may_be_nearer(i, x, d)) continue;
+        if (const real di = distance(i, x); di < d) d = di, best = i;
+    }
+    return best;
+}
+
+template <int D>
+Vec<D> Solids<D>::normal(const Vec<D>& x, real eps, std::span<const std::size_t> of) const {
+    return slope_of(x, eps, [&](const Vec<D>& y) { return distance(y, of); });
 }
 
 template <int D>

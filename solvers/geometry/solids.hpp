@@ -6,6 +6,7 @@
 #include "scene/scene.hpp"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace weir::geometry {
@@ -50,6 +51,14 @@ public:
     real distance(std::size_t solid, const Vec<D>& x) const { return solids_[solid].shape->distance(poses_[solid].to_rest(x)); }
     /// The solid whose surface is nearest (deepest inside wins); needs at least one.
     std::size_t nearest(const Vec<D>& x) const;
+    /// Those that may be nearer than `than` to some point of a ball, in order. Where one of them is as near as that, the questions below,
+    /// asked of these alone, have the answer of all.
+    void find_near(const Ball<D>& where, real than, std::vector<std::size_t>& near) const;
+    /// `most`, or less.
+    real distance(const Vec<D>& x, std::span<const std::size_t> of, real most = infinity) const;
+    std::size_t nearest(const Vec<D>& x, std::span<const std::size_t> of) const;
+    Vec<D> velocity(const Vec<D>& x, std::span<const std::size_t> of) const { return poses_[nearest(x, of)].velocity_at(x); }
+    Vec<D> normal(const Vec<D>& x, real eps, std::span<const std::size_t> of) const;
     /// Velocity of the nearest solid's material at x [m/s].
     Vec<D> velocity(const Vec<D>& x) const { return poses_[nearest(x)].velocity_at(x); }
     /// Outward unit normal of the distance field, by central differences over ± eps [m].

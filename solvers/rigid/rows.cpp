@@ -100,6 +100,7 @@ void Rows<D>::set(std::vector<Row<D>>& rows, const Mobility& mobility) {
     if (given_.size() != list_.size()) given_.assign(list_.size(), 0.0);
     size_ = mobility.size;
     responses_.assign(list_.size() * size_, 0.0);
+    runs_.clear(), runs_end_.clear();
     for (std::size_t i = 0; i < list_.size(); ++i) {
         Row<D>& row = list_[i];
         real* response = responses_.data() + i * size_;
@@ -112,7 +113,22 @@ void Rows<D>::set(std::vector<Row<D>>& rows, const Mobility& mobility) {
             row.response += row.sees[d] * response[row.body * n + d];
             if (row.other >= 0) row.response += row.sees[n + d] * response[static_cast<std::size_t>(row.other) * n + d];
         }
+        find_runs(response);
     }
+}
+
+template <int D>
+void Rows<D>::find_runs(const real* response) {
+    constexpr std::size_t n = freedoms<D>;
+    const std::size_t first = runs_.size();
+    for (std::size_t at = 0; at < size_; at += n) {
+        if (std::all_of(response + at, response + at + n, [](real v) { return v == 0; })) continue;
+        if (runs_.size() > first && runs_.back().end == at)
+            runs_.back().end = at + n;
+        else
+            runs_.push_back({at, at + n});
+    }
+    runs_end_.push_back(runs_.size());
 }
 
 template <int D>
@@ -130,7 +146,8 @@ real Rows<D>::relative(const Row<D>& row, const std::vector<real>& velocities) c
 template <int D>
 void Rows<D>::push(std::size_t row, real impulse, std::vector<real>& velocities) const {
     const real* response = responses_.data() + row * size_;
-    for (std::size_t v = 0; v < size_; ++v) velocities[v] += impulse * response[v];
+    for (std::size_t r = row == 0 ? 0 : runs_end_[row - 1]; r < runs_end_[row]; ++r)
+        for (std::size_t v = runs_[r].begin; v < runs_[r].end; ++v) velocities[v] += impulse * response[v];
 }
 
 /// One sweep of Gauss-Seidel; gained_ is what it added to each impulse. Answers the largest change of a row's velocity.

@@ -76,12 +76,20 @@ private:
     real limited(const Row<D>& row, real impulse) const;
     void go_on(real beta, std::vector<real>& velocities);
     void push(std::size_t row, real impulse, std::vector<real>& velocities) const;
+    void find_runs(const real* response);
 
     std::vector<Row<D>> list_;
     std::vector<real> impulse_, direction_, gained_;  // of each row
     std::vector<real> given_;                         // that part of each impulse which the velocities have already
     std::vector<real> responses_;                     // of each row, the change of all velocities
-    std::vector<real> free_;                          // velocities without any impulse
+    /// Velocities that a row changes at all: without a fluid between them, or with one that knows nothing of the others, those of its own
+    /// bodies alone.
+    struct Run {
+        std::size_t begin = 0, end = 0;
+    };
+    std::vector<Run> runs_;
+    std::vector<std::size_t> runs_end_;  // of each row, in runs_
+    std::vector<real> free_;             // velocities without any impulse
     std::size_t size_ = 0;
 };
 

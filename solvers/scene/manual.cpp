@@ -113,6 +113,7 @@ entries in 2D and three in 3D.
 Every mistake in a file is reported at once, with its line, what is allowed, and the nearest known name; nothing is run or written then.
 
 Any key can be changed on the command line: `--set grid.cells=[64,64]`, `--set solids[0].radius=0.2`, `--set scheme.poisson.method=cg`.
+Of a list, `--set bodies[:]=3` keeps the first three.
 
 Where a table chooses a `shape`, a `kind` or a `name` and needs nothing else, its name alone will do: `sides.x_max = "outflow"`.
 

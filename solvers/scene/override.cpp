@@ -1,4 +1,5 @@
-// `--set key=value`: a path of keys and list indices, and a TOML value, laid over the scene's tree before it is checked.
+// `--set key=value`: a path of keys and list indices, and a TOML value, laid over the scene's tree before it is checked. Of a list
+// `bodies[:]=12` keeps the first twelve.
 #include "scene/document.hpp"
 #include "scene/names.hpp"
 #include "scene/reader.hpp"
@@ -16,9 +17,12 @@ namespace {
 
 struct Step {
     std::string key;
-    int index = -1;  // of a list; then `key` is empty
+    int index = -1;  // of a list, or how_many; then `key` is empty
     int column = 0;  // in "key=value"
 };
+
+/// "[:]": the value is how many entries of the list stay.
+constexpr int how_many = -2;
 
 bool is_key_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; }
 
@@ -38,6 +42,11 @@ std::string split(std::string_view path, std::vector<Step>& steps, int& column) 
             const auto close = path.find(']', i);
             if (close == std::string_view::npos) return "']' is missing";
             const auto [end, error] = std::from_chars(path.data() + i + 1, path.data() + close, index);
+            if (path.substr(i, close + 1 - i) == "[:]") {
+                if (close + 1 != path.size()) return "[:] ends a key";
+                steps.push_back({"", how_many, static_cast<int>(i) + 1});
+                return "";
+            }
             if (error != std::errc() || end != path.data() + close || index < 0)
                 return fmt::format("[{}] is not an index", path.substr(i + 1, close - i - 1));
             steps.push_back({"", index, static_cast<int>(i) + 1});
@@ -111,6 +120,16 @@ bool override_value(const Override& change, int number, Node& value, std::vector
     return true;
 }
 
+/// Keeps the first entries of a list; what is wrong with that, or nothing.
+std::string cut(Node& list, const std::string& path, const Node& keep) {
+    if (list.kind != Node::Kind::list) return fmt::format("{} is {}, not a list", path, found(list));
+    const auto entries = static_cast<std::int64_t>(list.list.size());
+    if (keep.kind != Node::Kind::integer || keep.integer < 0 || keep.integer > entries)
+        return fmt::format("{}[:] is how many entries of {} stay, from 0 to {}, and this is {}", path, path, entries, found(keep));
+    list.list.resize(static_cast<std::size_t>(keep.integer));
+    return "";
+}
+
 void apply_override(Node& root, const Override& change, int number, std::vector<Problem>& problems) {
     const auto refuse = [&](int column, const std::string& message, const std::string& hint = "") {
         problems.push_back({.place = {0, column, number}, .width = 1, .message = message, .hint = hint});
@@ -127,6 +146,10 @@ void apply_override(Node& root, const Override& change, int number, std::vector<
     std::string path;
     for (const Step& step : steps) {
         const Place place{0, step.column, number};
+        if (step.index == how_many) {
+            if (const auto error = cut(*at, path, value); !error.empty()) refuse(step.column, error);
+            return;
+        }
         if (step.index < 0) {
             if (at->kind != Node::Kind::table) return refuse(step.column, fmt::format("{} is {}, not a table", path, found(*at)));
             Member* member = at->member(step.key);

@@ -164,6 +164,9 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
     const std::size_t own = solids.count() - bodies_.count() + b;
     const Body<D>& body = bodies_[b];
     faces_[b].clear(), cuts_[b].clear();
+    near_.reserve(solids.count());
+    const Vec<D> reach = Vec<D>::constant(body.radius) + 3.0 * h_;  // of the faces that are looked at
+    solids.find_near({body.at, norm(reach)}, norm(h_), near_);      // a solid that cuts one is as near as that
     for (int a = 0; a < D; ++a) {
         const auto& open = s.solid.open[static_cast<std::size_t>(a)];
         Index<D> lo, hi;
@@ -176,7 +179,7 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
         CellBox<D>{lo, hi}.in_order([&](const Index<D>& I) {
             if (open(I) == 1) return;
             const Vec<D> x = s.u.face_centre(a, I), r = x - body.at;
-            if (solids.nearest(x) != own) return;
+            if (solids.nearest(x, near_) != own) return;
             Face f{a, open.linear(I), {}};
             f.moves[static_cast<std::size_t>(a)] = 1;
             if constexpr (D == 2)

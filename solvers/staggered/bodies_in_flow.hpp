@@ -101,7 +101,8 @@ private:
     Vec<D> h_{};
     std::vector<std::vector<Face>> faces_;  // of each body, those that it closes, wholly or in part
     std::vector<std::vector<Cut>> cuts_;
-    Grid<real, D> rhs_, phi_;  // of the added mass where it must be measured; phi_ else zero, for a list's places
+    std::vector<std::size_t> near_;  // solids near the body that is looked at
+    Grid<real, D> rhs_, phi_;        // of the added mass where it must be measured; phi_ else zero, for a list's places
     rigid::AddedMass<D> added_;
     rigid::Mobility mobility_;
     std::vector<rigid::Block<D>> masses_;

@@ -21,7 +21,9 @@ real fraction(const Grid<real, D>& corner, int a, const Index<D>& I) {
         open = geometry::fraction_positive(corner(I), corner(I + eb));
     } else {
         const Index<D> ec = e<D>((a + 2) % D);
-        open = geometry::fraction_positive(std::array<real, 4>{corner(I), corner(I + eb), corner(I + eb + ec), corner(I + ec)});
+        const std::array<real, 4> at{corner(I), corner(I + eb), corner(I + eb + ec), corner(I + ec)};
+        if (std::min(std::min(at[0], at[1]), std::min(at[2], at[3])) >= 0) return 1;  // most of them
+        open = geometry::fraction_positive(at);
     }
     return open < least_open_fraction ? 0 : open;
 }
@@ -50,29 +52,43 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
     solids_.set_time(t);
     find_changed(s);
-    for (const CellBox<D>& box : changed_) {
-        for_each_in(box.lo, box.hi + Index<D>::constant(1), [&](const Index<D>& I) {
-            Vec<D> x;
-            for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
-            corner_(I) = solids_.distance(x);
-        });
-        for (int a = 0; a < D; ++a) {
-            auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
-            for_each_in(box.lo, box.hi + e<D>(a), [&](const Index<D>& I) {
-                open(I) = fraction(corner_, a, I);
-                velocity(I) = open(I) < 1 ? solids_.velocity(s.u.face_centre(a, I))[a] : 0;
-            });
-        }
-        for_each_in(box.lo, box.hi, [&](const Index<D>& I) {
-            real open = 0;
-            for (int a = 0; a < D; ++a) {
-                const auto& w = s.solid.open[static_cast<std::size_t>(a)];
-                open += w(I) + w(I + e<D>(a));
-            }
-            s.cells(I) = open > 0 ? Cell::fluid : Cell::solid;
-        });
+    for (std::size_t box = 0; box < changed_.size(); ++box) {
+        place_corners(s, box);
+        place_faces(s, box);
     }
     extends_ = false;
+}
+
+/// The distances at the corners of a box, as far as anybody asks for them.
+template <int D>
+void SolidPlacement<D>::place_corners(const MacState<D>& s, std::size_t box) {
+    const real far = 2 * norm(s.u.h);
+    solids_.find_near(changed_[box].ball(s.u.origin, s.u.h), far, near_[box]);
+    for_each_in(changed_[box].lo, changed_[box].hi + Index<D>::constant(1), [&](const Index<D>& I) {
+        Vec<D> x;
+        for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
+        corner_(I) = solids_.distance(x, near_[box], far);
+    });
+}
+
+template <int D>
+void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
+    const Index<D>&lo = changed_[box].lo, hi = changed_[box].hi;
+    for (int a = 0; a < D; ++a) {
+        auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
+        for_each_in(lo, hi + e<D>(a), [&](const Index<D>& I) {
+            open(I) = fraction(corner_, a, I);
+            velocity(I) = open(I) < 1 ? solids_.velocity(s.u.face_centre(a, I), near_[box])[a] : 0;
+        });
+    }
+    for_each_in(lo, hi, [&](const Index<D>& I) {
+        real open = 0;
+        for (int a = 0; a < D; ++a) {
+            const auto& w = s.solid.open[static_cast<std::size_t>(a)];
+            open += w(I) + w(I + e<D>(a));
+        }
+        s.cells(I) = open > 0 ? Cell::fluid : Cell::solid;
+    });
 }
 
 template <int D>
@@ -105,6 +121,8 @@ void SolidPlacement<D>::find_changed(const MacState<D>& s) {
         if (!everything) changed_.push_back(both);
     }
     if (everything) changed_.push_back({Index<D>{}, s.extent()});
+    if (near_.size() < changed_.size()) near_.resize(changed_.size());
+    for (auto& list : near_) list.reserve(solids_.count());
     placed_ = true;
 }
 
@@ -206,7 +224,12 @@ real SolidPlacement<D>::max_rate(const MacState<D>& s) const {
         const auto& velocity = s.solid.velocity[static_cast<std::size_t>(a)];
         real fastest = 0;  // of solids that moved: all others stand
         for (const CellBox<D>& box : changed_)
-            box.faces(a).in_order([&](const Index<D>& I) { fastest = larger_or_nan(fastest, std::abs(velocity(I))); });
+            box.faces(a).rows([&](const Index<D>& I, int count) {
+                const real* v = &velocity(I);
+                real most = 0, poison = 0;  // x - x is 0, or NaN where x is not finite
+                for (int i = 0; i < count; ++i) most = std::max(most, std::abs(v[i])), poison += v[i] - v[i];
+                fastest = larger_or_nan(fastest, most + poison);
+            });
         rate = std::max(rate, fastest / s.u.h[a]);
     }
     return rate;

@@ -4,6 +4,7 @@
 #include "geometry/solids.hpp"
 #include "staggered/state.hpp"
 
+#include <span>
 #include <vector>
 
 namespace weir::staggered {
@@ -27,6 +28,23 @@ struct CellBox {
     }
     /// Its faces along an axis, as the cells above them.
     CellBox faces(int a) const { return {lo, hi + e<D>(a)}; }
+    /// Cell middles and corners of it lie in this ball.
+    geometry::Ball<D> ball(const Vec<D>& origin, const Vec<D>& h) const {
+        geometry::Ball<D> b;
+        for (int d = 0; d < D; ++d) b.middle[d] = origin[d] + 0.5 * h[d] * (lo[d] + hi[d]);
+        Vec<D> half;
+        for (int d = 0; d < D; ++d) half[d] = 0.5 * h[d] * (hi[d] - lo[d]);
+        b.radius = norm(half);
+        return b;
+    }
+    /// f(I, count) for its rows along the first axis, one after another.
+    template <class F>
+    void rows(F&& f) const {
+        if (lo[0] >= hi[0]) return;
+        CellBox first = *this;
+        first.hi[0] = lo[0] + 1;
+        first.in_order([&](const Index<D>& I) { f(I, hi[0] - lo[0]); });
+    }
     /// f(I) one after another, in the order of a grid, whatever the threads.
     template <class F>
     void in_order(F&& f) const {
@@ -56,7 +74,9 @@ public:
     void place(MacState<D>& s, real t);
     /// Where that was: boxes of cells that reach further from the solids than a cell's diagonal.
     const std::vector<CellBox<D>>& changed() const { return changed_; }
-    /// Distance from the lower corner of a cell; as it was when solids were near last.
+    /// The solids that are nearer to a box of these than two diagonals of a cell; all that are nearer to it than that.
+    std::span<const std::size_t> near(std::size_t box) const { return near_[box]; }
+    /// Distance from the lower corner of a cell, or two diagonals of a cell if it is more; as it was when solids were near last.
     real corner_distance(const Index<D>& I) const { return corner_(I); }
     /// u·n = u_solid·n on closed faces.
     void set_faces(MacState<D>& s) const;
@@ -78,12 +98,15 @@ private:
         real value;
     };
     void find_changed(const MacState<D>& s);
+    void place_corners(const MacState<D>& s, std::size_t box);
+    void place_faces(MacState<D>& s, std::size_t box) const;
     CellBox<D> box_around(const MacState<D>& s, std::size_t solid) const;
     void find_extended(const MacState<D>& s);
 
     geometry::Solids<D> solids_;
-    Grid<real, D> corner_;                    // signed distance at the corners of cells
-    std::vector<CellBox<D>> changed_, held_;  // held_: around each solid that is free, when placed last
+    Grid<real, D> corner_;                        // signed distance at the corners of cells
+    std::vector<CellBox<D>> changed_, held_;      // held_: around each solid that is free, when placed last
+    std::vector<std::vector<std::size_t>> near_;  // of each box of changed_
     std::vector<Extended> extended_;
     bool placed_ = false, extends_ = false;  // extends_: extended_ is of the solids as they stand
 };

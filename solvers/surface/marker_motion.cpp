@@ -7,10 +7,11 @@ namespace weir::surface {
 
 template <int D>
 void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid) {
-    for (const CellBox<D>& box : placement.changed())
-        for_each_in(box.lo, box.hi, [&](const Index<D>& I) {  // the middle is half a diagonal from the corner
-            near_solid(I) =
-                placement.corner_distance(I) < 2 * norm(frame.h) && placement.solids().distance(frame.centre(I)) < norm(frame.h);
+    for (std::size_t box = 0; box < placement.changed().size(); ++box)
+        for_each_in(placement.changed()[box].lo, placement.changed()[box].hi, [&](const Index<D>& I) {
+            const real corner = placement.corner_distance(I);  // half a diagonal from the middle
+            near_solid(I) = corner < 0 || (corner < 2 * norm(frame.h) &&
+                                           placement.solids().distance(frame.centre(I), placement.near(box)) < norm(frame.h));
         });
 }
 

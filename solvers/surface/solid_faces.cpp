@@ -34,9 +34,17 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
                 for (std::size_t other = 0; other < box; ++other)
                     if (changed[other].faces(a).holds(I)) return;  // found there
                 const Vec<D> x = state.u.face_centre(a, I);
-                if (solids.distance(x) < deepest) return;
+                const std::size_t nearest = solids.nearest(x, placement.near(box));
+                const real distance = solids.distance(nearest, x);
+                if (distance < deepest) return;
+                // No other that is further than this is nearest within eps of x.
+                const bool alone = std::none_of(placement.near(box).begin(), placement.near(box).end(), [&](std::size_t other) {
+                    const geometry::Ball<D>& ball = solids.ball(other);
+                    return other != nearest && norm(x - ball.middle) - ball.radius < distance + 4 * eps;
+                });
+                const auto of = alone ? std::span<const std::size_t>(&nearest, 1) : placement.near(box);
                 faces_[at].push_back(I);
-                solid_[at].push_back({solids.normal(x, eps), solids.velocity(x), solids[solids.nearest(x)].no_slip});
+                solid_[at].push_back({solids.normal(x, eps, of), solids.pose(nearest).velocity_at(x), solids[nearest].no_slip});
             });
         if (!room) continue;
         faces_[at].reserve(2 * faces_[at].size());

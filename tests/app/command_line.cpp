@@ -113,6 +113,31 @@ TEST("--explain tells what was called for, what was built and what was left out,
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
+TEST("bodies in a fluid whose density nobody named are remarked by a run and by --explain, and no others") {
+    TemporaryFolder folder;
+    const std::string water = std::string(WEIR_SOURCE_DIR) + "/cases/floating_bodies/scene.toml";
+    const auto said = [&](const std::string& density, const char* how) {
+        std::ofstream(folder.path() / "scene.toml") << R"(title = "A tank"
+solver = "mac_water"
+dim = 2
+grid = { cells = [10, 8], size = [1.0, 0.8] }
+time = { end = 0.01 }
+liquid = [ { shape = "box", min = [0.0, 0.0], max = [1.0, 0.4] } ]
+bodies = [ { name = "raft", shape = "box", min = [0.2, 0.3], max = [0.6, 0.5], mass = 40.0 },
+           { name = "cork", shape = "sphere", centre = [0.8, 0.4], radius = 0.1, density = 0.5 } ]
+effects = { gravity = { g = [0.0, -9.81] } }
+)" << density;
+        return weir_says({"run", folder.path() / "scene.toml", how, "--out", folder.path() / "out"}).text;
+    };
+    const std::string remark =
+        "fluid.density is not named, so it is 1 kg/m^3, as of air, and body \"raft\" of 500 kg/m^3 sinks in it; of water";
+    for (const char* how : {"--explain", "--quiet"}) {
+        EXPECT_NE(said("", how).find(remark), std::string::npos) << said("", how);
+        EXPECT_EQ(said("fluid = { density = 1.0 }\n", how).find("is not named"), std::string::npos) << how;
+    }
+    EXPECT_EQ(weir_says({"run", water, "--explain"}).text.find("is not named"), std::string::npos);
+}
+
 TEST("an effect of strength zero is remarked: it may cost, and does nothing") {
     TemporaryFolder folder;
     const auto said = [&](const std::string& epsilon) {

@@ -146,6 +146,48 @@ real strays(const Simulation& simulation) {
     });
 }
 
+/// The scene's bodies where the solver shows them.
+template <int D>
+rigid::Bodies<D> bodies_now(const Simulation& simulation) {
+    rigid::Bodies<D> bodies(simulation.scene());
+    const FieldSet fields = simulation.fields();
+    bodies.recall([&](const char* field, std::size_t component, std::size_t body) {
+        return fields.find(rigid::body_set_name, field)->data[component][body];
+    });
+    return bodies;
+}
+
+/// Bodies whose middle is further than a cell from where the scene puts it.
+template <int D>
+real carried(const Simulation& simulation) {
+    const GridView g = simulation.fields().grid;
+    real longest = 0, count = 0;
+    for (int d = 0; d < D; ++d) longest = std::max(longest, side(g, d));
+    const auto bodies = bodies_now<D>(simulation);
+    for (const auto& body : bodies.all()) count += norm(body.at - body.centre) > longest ? 1 : 0;
+    return count;
+}
+
+/// Bodies that another one is nearer to than a hundredth of its size.
+template <int D>
+real touching(const Simulation& simulation) {
+    const auto bodies = bodies_now<D>(simulation);
+    const auto touches = [](const rigid::Body<D>& one, const rigid::Body<D>& other) {
+        if (norm(one.at - other.at) > 1.01 * (one.radius + other.radius)) return false;
+        const auto from = one.pose(), to = other.pose();
+        return std::any_of(one.feelers.begin(), one.feelers.end(), [&](const rigid::Feeler<D>& feeler) {
+            return other.shape->distance(to.to_rest(from.to_world(feeler.at))) - feeler.radius < 0.01 * one.radius;
+        });
+    };
+    real count = 0;
+    for (const auto& one : bodies.all())
+        count += std::any_of(bodies.all().begin(), bodies.all().end(),
+                             [&](const auto& other) { return &one != &other && (touches(one, other) || touches(other, one)); })
+                     ? 1
+                     : 0;
+    return count;
+}
+
 /// The least and the greatest of what the scene's bodies weigh, over the fluid in their place.
 template <int D>
 std::pair<real, real> densities(const Simulation& simulation) {
@@ -185,6 +227,9 @@ std::optional<real> counted_in(const std::string& name, const Simulation& simula
     if (name == "solid_speed") return solid_speed<D>(simulation);
     if (name == "pushed") return pushed(simulation);
     if (name == "strays") return strays(simulation);
+    if (name == "free_bodies") return static_cast<real>(simulation.scene().root().tables("bodies").size());
+    if (name == "carried") return carried<D>(simulation);
+    if (name == "touching") return touching<D>(simulation);
     if (name == "lightest") return densities<D>(simulation).first;
     if (name == "heaviest") return densities<D>(simulation).second;
     if (name == "mass_ratio") return densities<D>(simulation).second / densities<D>(simulation).first;

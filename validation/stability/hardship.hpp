@@ -35,6 +35,9 @@ struct Shown {
 ///   solid_cells          cells whose centre is inside a solid
 ///   solid_speed          of the fastest solid [m/s]
 ///   pushed, strays       free bodies that the fluid pushes; those whose centre of mass is outside the domain
+///   free_bodies          how many there are
+///   carried              free bodies further than a cell from where the scene puts them
+///   touching             free bodies that are nearer to another than a hundredth of their size
 ///   lightest, heaviest   density of a free body over the fluid's
 ///   mass_ratio           of the densest free body to the lightest
 ///   viscous_number       viscosity times step over the square of a cell's side

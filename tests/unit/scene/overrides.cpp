@@ -56,6 +56,25 @@ TEST("a bare word is a text, and later overrides win") {
     EXPECT_EQ(with({{"time.cfl", "2"}, {"time.cfl", "3"}}).number("time.cfl"), 3);
 }
 
+TEST("[:] of a list says how many of its entries stay") {
+    const std::string three =
+        "[{ shape = \"sphere\", centre = [0, 0], radius = 1 }, { shape = \"sphere\", centre = [0, 0], radius = 2 }, "
+        "{ shape = \"sphere\", centre = [0, 0], radius = 3 }]";
+    const auto left = with({{"solids", three}, {"solids[:]", "2"}});
+    EXPECT_EQ(left.root().tables("solids").size(), 2U);
+    EXPECT_EQ(left.root().tables("solids")[1].number("radius"), 2);
+    EXPECT_TRUE(with({{"solids[:]", "0"}}).root().tables("solids").empty());
+    EXPECT_EQ(refusal({"solids[:]", "2"}),
+              "--set solids[:]=2: solids[:] is how many entries of solids stay, from 0 to 1, and this is the integer 2\n"
+              "      | solids[:]=2\n"
+              "      |       ^");
+    EXPECT_EQ(refusal({"solids[:].radius", "1"}),
+              "--set solids[:].radius=1: [:] ends a key\n"
+              "      | solids[:].radius=1\n"
+              "      |       ^   a key looks like grid.cells or solids[0].centre");
+    EXPECT_EQ(refusal({"grid[:]", "1"}).substr(0, 46), "--set grid[:]=1: grid is a table, not a list\n ");
+}
+
 TEST("what is wrong with an override is shown in the override") {
     EXPECT_EQ(refusal({"grid.cels", "[8, 4]"}),
               "--set grid.cels=[8, 4]: unknown key \"cels\" in grid; did you mean \"cells\"?\n"
