@@ -25,6 +25,10 @@ struct LatticeSums {
 };
 template <int D>
 LatticeSums lattice_sums(const Scheme& scheme, real spacing);
+/// The height above a wall of a temperature below which a particle is taken to stand there, so that no step of conduction which is allowed
+/// makes it warmer than the wall: 0 of kernels that are smooth and wide [m].
+template <int D>
+real closest_to_wall(const Scheme& scheme, real spacing);
 
 /// Solid, liquid and vapour of a curve that has a liquid; conductivities by thermo::State.
 HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>& conductivity);

@@ -231,7 +231,6 @@ template <int D>
 void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
     const auto fill = [&](auto& w) {
         for (int a = 0; a < 3; ++a) w.lo[a] = -1e15F, w.hi[a] = 1e15F, w.lo_theta[a] = w.hi_theta[a] = 0, w.lo_held[a] = w.hi_held[a] = 0;
-        w.closest = static_cast<std::remove_reference_t<decltype(w.closest)>>(0.25 * spacing_);
     };
     fill(single_walls_), fill(plain_walls_);
     for (int a = 0; a < D; ++a)

@@ -2,6 +2,7 @@
 #include "particles/heat.hpp"
 #include "matter/substance.hpp"
 #include "particles/flow.hpp"
+#include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
 #include "support/test.hpp"
 
@@ -53,6 +54,56 @@ TEST("the step in which no particle of a lattice becomes warmer than its neighbo
         EXPECT_LT(1 / ours.diagonal, row.most * ours.moment);
         EXPECT_GT(1 / ours.diagonal, 0.4 * row.most * ours.moment);
     }
+}
+
+/// Conducts as a solid as it does as a liquid.
+const std::string wax =
+    "substance = { name = \"own\", triple = [280.0, 1000.0], critical = [800.0, 5e6], fusion = 3e5, vaporisation = 2e6, "
+    "solid = { density = 1000.0, heat_capacity = 4000.0, conductivity = 0.6 }, "
+    "liquid = { density = 1000.0, heat_capacity = 4000.0, conductivity = 0.6 }, vapour = { heat_capacity = 2000.0 } }\n";
+
+/// A column of a liquid whose lowest row stands at the wall, all as warm as each other, and the wall warmer by one.
+template <int D>
+real first_step_at_a_wall(Smoothing kernel, real support, real height) {
+    const std::string cells = D == 2 ? "[6, 6]" : "[6, 6, 6]", size = D == 2 ? "[0.6, 0.6]" : "[0.6, 0.6, 0.6]";
+    const auto scene = scene::parse(
+        fmt::format(
+            "solver = \"sph\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime.end = 1.0\nfluid.density = 1000.0\n"
+            "liquid = [{{ shape = \"box\", min = {}, max = {} }}]\nscheme = {{ backend = \"reference\", density = "
+            "\"summation\", kernel = \"{}\", support = {}, sound_speed = 1e-9 }}\n"
+            "initial.temperature = {{ name = \"constant\", value = 300.0 }}\nsides.x_min = {{ kind = \"wall\", temperature = 301.0 }}\n{}",
+            D, cells, size, D == 2 ? "[0, 0]" : "[0, 0, 0]", size,
+            kernel == Smoothing::muller  ? "muller"
+            : kernel == Smoothing::cubic ? "cubic"
+                                         : "wendland",
+            support, wax),
+        "test.toml", {sph::kind().schema});
+    sph::ReferenceSphSolver<D> solver(scene);
+    particles::Fluid<D>& fluid = solver.fluid();
+    for (int i = 0; i < fluid.count(); ++i) {
+        Vec<D> x = fluid.position(i);
+        x[0] += height - 0.05;
+        particles::Fluid<D>::put(fluid.x, i, x);
+    }
+    const particles::Heat<D> heat(scene, fluid.domain);
+    solver.step(heat.stable_dt());
+    real warmest = 0;
+    for (const real h : fluid.enthalpy) warmest = std::max(warmest, particles::heat_temperature(h, 0, &heat.states()));
+    return warmest - 300;
+}
+
+TEST("particles at a wall become as warm as it in the longest step, where it lets them, and no warmer") {
+    const std::pair<Smoothing, real> schemes[] = {
+        {Smoothing::muller, 3}, {Smoothing::cubic, 2}, {Smoothing::wendland, 2}, {Smoothing::wendland, 3}, {Smoothing::cubic, 3}};
+    for (const auto& [kernel, support] : schemes)
+        for (const real height : {1e-7, 0.01, 0.05}) {
+            EXPECT_LE(first_step_at_a_wall<2>(kernel, support, height), 1 + 1e-6) << support << height;
+            EXPECT_LE(first_step_at_a_wall<3>(kernel, support, height), 1 + 1e-6) << support << height;
+            // a quarter of a spacing above, where all once stood, cubic splines of support 3 reach 0.66
+            if (height < 0.01) {
+                EXPECT_GT(first_step_at_a_wall<2>(kernel, support, height), 0.75) << support;
+            }
+        }
 }
 
 TEST("temperatures and shares are those of the substance's curve, through both latent heats and back") {
