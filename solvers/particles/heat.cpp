@@ -160,6 +160,22 @@ void Heat<D>::feed(Fluid<D>& fluid, real dt) {
 }
 
 template <int D>
+void Heat<D>::exchange(Fluid<D>& fluid, real outside, real part) {
+    for (const Exchange& wall : exchanges_) {
+        const Flux place{wall.axis, wall.end, 0};
+        const real given = block_sum(fluid.count(), [&](int i) -> real {
+            const real up = height(place, fluid.position(i)), share = weight(up);
+            if (share == 0) return 0;
+            real& h = fluid.enthalpy[static_cast<std::size_t>(i)];
+            const real gain = part / rho0_ * share * heat_exchanged(h, shift(i), up, outside, wall.coefficient, spacing_, &states_);
+            h += gain;
+            return gain;
+        });
+        added_ += fluid.mass * given;
+    }
+}
+
+template <int D>
 void Heat<D>::check(const Fluid<D>& fluid) const {
     check(fluid.count() ? block_max(fluid.count(), [&](int i) { return fluid.enthalpy[static_cast<std::size_t>(i)]; }) : 0);
 }

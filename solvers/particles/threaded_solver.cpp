@@ -55,7 +55,9 @@ void ThreadedSolver<D>::conduct(real dt) {
     const auto pass = pairs_.table().heat[flow_.kernel];
     const int parts = heat.parts(dt);
     const real part = dt / parts;
+    const real outside = heat.exchanges().empty() ? 0 : heat.surroundings(fluid_.time - 0.5 * dt);
     for (int p = 0; p < parts; ++p) {
+        heat.exchange(fluid_, outside, part);
         float* x = pairs_.a();
         pairs_.each([&](int k) {
             const int i = pairs_.owner(k);

@@ -237,6 +237,10 @@ std::map<std::string, Said> everything() {
                   wax + "heat.frozen = \"free\"",
                   wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }",
                   wax + "sides.x_min = { kind = \"wall\", temperature = 320 }",
+                  wax + "heat.ambient = { temperature = 310 }\nsides.x_min = { kind = \"wall\", exchange = 5 }",
+                  wax +
+                      "heat.ambient.keyframes = [ { t = 0, temperature = 310 }, { t = 1, temperature = 320 } ]\nsides.x_min = { kind = "
+                      "\"wall\", exchange = 5 }",
                   wax + emitter + ", temperature = 310 } ]",
                   wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"};
     for (const char* function :

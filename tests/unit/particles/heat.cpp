@@ -247,5 +247,33 @@ TEST("no heat passes between two that are as warm as each other, in whatever sta
     }
 }
 
+/// Steady between surroundings and a wall that is held: how far from the straight line of an exchange and a slab one after the other [K].
+real off_the_line(int cells) {
+    const auto scene = scene::parse(
+        fmt::format(
+            "solver = \"sph\"\ndim = 2\ngrid = {{ cells = [{}, 4], size = [1.0, {}] }}\ntime.end = 1e9\nfluid.density = 1000.0\n"
+            "liquid = [{{ shape = \"box\", min = [0, 0], max = [1, 1] }}]\nscheme = {{ density = \"summation\", sound_speed = 1e-12 }}\n"
+            "initial.temperature = {{ name = \"constant\", value = 310.0 }}\nsides.x_max = {{ kind = \"wall\", temperature = 310.0 }}\n"
+            "sides.x_min = {{ kind = \"wall\", exchange = 2.0 }}\nheat.ambient.temperature = 330.0\n{}",
+            cells, 4.0 / cells, wax),
+        "test.toml", {sph::kind().schema});
+    sph::SphSolver<2> solver(scene);
+    for (int i = 0; i < 40; ++i) solver.step(1e6);  // six times L^2 rho c/k
+    const particles::Heat<2> heat(scene, solver.fluid().domain);
+    const real flux = 20 / (1 / 2.0 + 1 / 0.6);
+    real worst = 0;
+    for (int i = 0; i < solver.fluid().count(); ++i) {
+        const real T = particles::heat_temperature(solver.fluid().enthalpy[static_cast<std::size_t>(i)], 0, &heat.states());
+        worst = std::max(worst, std::abs(T - 310 - flux * (1 - solver.fluid().position(i)[0]) / 0.6));
+    }
+    return worst;
+}
+
+TEST("a wall that exchanges heat and the slab behind it resist one after the other, at first order in the spacing") {
+    const real coarse = off_the_line(16), fine = off_the_line(32);
+    EXPECT_LT(fine, 0.25 / 32 * 20) << "two rows take up the flux, of which the upper one's quarter skips a spacing";
+    EXPECT_LT(fine, 0.6 * coarse);  // 0.5, less what is of higher order
+}
+
 }  // namespace
 }  // namespace weir
