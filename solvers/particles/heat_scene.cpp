@@ -62,10 +62,7 @@ std::function<real(const Vec<D>&)> temperature_function(const scene::Scene& scen
         return [T = table.number("value"), slope = table.vec<D>("gradient"), at = table.vec<D>("at")](const Vec<D>& x) {
             return T + dot(slope, x - at);
         };
-    if (name == "formula")
-        return [f = scene::formula_at(scene, "initial.temperature.value",
-                                      D == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"})](
-                   const Vec<D>& x) { return f(std::span<const real>(&x[0], D)); };
+    if (name == "formula") return scene::formula_of_place<D>(scene, "initial.temperature.value");
     const auto centre = table.vec<D>("centre");
     if (name == "gaussian")
         return [centre, base = table.number("base"), height = table.number("amplitude"), w = table.number("width")](const Vec<D>& x) {
@@ -120,9 +117,7 @@ Key initial_temperature_key() {
                       number("radius", "Radius.", "m"),
                       number("value", "Inside.", "K"),
                       number("outside", "Outside.", "K")}},
-                    {"formula",
-                     "A formula of x and y, and of z in 3D: numbers, pi, + - * / ^ ( ), functions such as sin, exp, max.",
-                     {{.name = "value", .type = Type::text, .doc = "The formula.", .unit = "K", .required = true}}}};
+                    scene::formula_variant("K")};
     return key;
 }
 
