@@ -27,43 +27,32 @@ bool all_say(const scene::Scene& scene, const std::vector<scene::Table>& frames,
     return true;
 }
 
-}  // namespace
-
-Key ambient_key() {
-    return {.name = "ambient",
-            .type = Type::table,
-            .doc = "The surroundings.",
-            .keys = {temperature_key("Of the surroundings: what walls with an `exchange` see."),
-                     {.name = "keyframes",
-                      .type = Type::tables,
-                      .doc = "Temperature and pressure in the course of time, on straight lines between these moments.",
-                      .keys = {{.name = "t", .type = Type::number, .doc = "The moment.", .unit = "s", .required = true},
-                               temperature_key("Of the surroundings."),
-                               {.name = "pressure",
-                                .type = Type::number,
-                                .doc = "At which it melts and boils, in place of heat.pressure.",
-                                .unit = "Pa",
-                                .min = 0,
-                                .min_open = true}}}}};
-}
-
-Key ambient_pressure_key() {
+Key ambient_key(const char* doc, const char* pressure_doc) {
     return {
         .name = "ambient",
         .type = Type::table,
         .doc = "The surroundings.",
-        .keys = {{.name = "keyframes",
+        .keys = {temperature_key("Of the surroundings: what walls with an `exchange` see."),
+                 {.name = "keyframes",
                   .type = Type::tables,
-                  .doc = "Pressure in the course of time, on straight lines between these moments. Only with heat.vapour, which boils at "
-                         "it; latent heats, heat capacities and where it melts are those of the lowest.",
+                  .doc = doc,
                   .keys = {{.name = "t", .type = Type::number, .doc = "The moment.", .unit = "s", .required = true},
-                           {.name = "pressure",
-                            .type = Type::number,
-                            .doc = "At which it boils, in place of heat.pressure.",
-                            .unit = "Pa",
-                            .required = true,
-                            .min = 0,
-                            .min_open = true}}}}};
+                           temperature_key("Of the surroundings."),
+                           {.name = "pressure", .type = Type::number, .doc = pressure_doc, .unit = "Pa", .min = 0, .min_open = true}}}}};
+}
+
+}  // namespace
+
+Key ambient_key() {
+    return ambient_key("Temperature and pressure in the course of time, on straight lines between these moments.",
+                       "At which it melts and boils, in place of heat.pressure.");
+}
+
+Key ambient_key_of_particles() {
+    return ambient_key(
+        "Temperature and pressure in the course of time, on straight lines between these moments.",
+        "At which it boils, in place of heat.pressure. Only with heat.vapour; latent heats, heat capacities and where it melts "
+        "are those of the lowest.");
 }
 
 Ambient::Ambient(const scene::Scene& scene) {

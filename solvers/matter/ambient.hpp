@@ -9,8 +9,8 @@ namespace weir::matter {
 
 /// The key "ambient" of the table "heat".
 scene::Key ambient_key();
-/// The same where nothing but what boils sees the surroundings: their pressure in the course of time.
-scene::Key ambient_pressure_key();
+/// The same of particles, whose pressure is seen by what boils alone.
+scene::Key ambient_key_of_particles();
 
 class Ambient {
 public:

@@ -57,25 +57,19 @@ std::vector<Key> keys_on_a_grid(const std::string& lets, std::vector<Key> own, c
             heaters_key("Regions that give off heat, evenly over " + over + " Only where `substance` is named.")};
 }
 
-scene::Variant wall_with_heat_flux() {
+scene::Variant wall_with_exchange() {
     return {"wall",
             "",
             {{.name = "heat_flux",
               .type = Type::number,
               .doc = "Heat that passes into the fluid. Only where `substance` is named.",
-              .unit = "W/m^2"}}};
-}
-
-scene::Variant wall_with_exchange() {
-    scene::Variant wall = wall_with_heat_flux();
-    wall.keys.push_back(
-        {.name = "exchange",
-         .type = Type::number,
-         .doc = "Heat that comes in for each kelvin by which the surroundings, heat.ambient, are warmer than the wall's inner face.",
-         .unit = "W/(m^2 K)",
-         .min = 0,
-         .min_open = true});
-    return wall;
+              .unit = "W/m^2"},
+             {.name = "exchange",
+              .type = Type::number,
+              .doc = "Heat that comes in for each kelvin by which the surroundings, heat.ambient, are warmer than the wall's inner face.",
+              .unit = "W/(m^2 K)",
+              .min = 0,
+              .min_open = true}}};
 }
 
 thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance) {

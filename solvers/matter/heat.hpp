@@ -18,8 +18,6 @@ scene::Key heaters_key(const std::string& doc);
 /// and "heaters". `lets`: what naming a substance lets it do; `over`: what a heater's power is spread over.
 std::vector<scene::Key> keys_on_a_grid(const std::string& lets, std::vector<scene::Key> own, const std::string& over);
 /// What a side of kind "wall" says beside its temperature.
-scene::Variant wall_with_heat_flux();
-/// And of a solver that knows its surroundings, heat.ambient.
 scene::Variant wall_with_exchange();
 
 /// Enthalpy against temperature at the scene's heat.pressure, at which it is refused where the substance is not known there.

@@ -202,6 +202,7 @@ private:
     void append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities,
                 const std::vector<real>& enthalpies);
     void feed(Heat<D>& heat, real dt);
+    void exchange(Heat<D>& heat, real outside, real part);
     void find_ice();
     void predict_ice(real dt);
     void place_ice();

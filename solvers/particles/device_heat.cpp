@@ -32,6 +32,17 @@ void DeviceFluid<D>::feed(Heat<D>& heat, real dt) {
 }
 
 template <int D>
+void DeviceFluid<D>::exchange(Heat<D>& heat, real outside, real part) {
+    const real spacing = host_.domain.spacing;
+    for (const auto& wall : heat.exchanges()) {
+        const real plane = (wall.end ? host_.domain.hi : host_.domain.lo)[wall.axis], sign = wall.end ? -1 : 1;
+        run("exchange_at_wall", {count(), stride_, heat_states_, wall.axis, plane, sign, spacing, wall.coefficient, outside,
+                                 part / host_.rho0, x, shift_, enthalpy, by_walls_});
+        heat.add(host_.mass * reduce("sum_numbers", {count(), by_walls_, parts_}).sum);
+    }
+}
+
+template <int D>
 void DeviceFluid<D>::expand() {
     if (ice_ && count() > 0) run("rests_of_ice", {count(), heat_states_, order, enthalpy, rests});
     if (!effects_.heat || !effects_.heat->vapour() || count() == 0) return;
@@ -74,7 +85,9 @@ void DeviceFluid<D>::conduct(Heat<D>& heat, real dt) {
     feed(heat, dt);
     const int parts = heat.parts(dt);
     const real part = dt / parts;
+    const real outside = heat.exchanges().empty() ? 0 : heat.surroundings(host_.time - 0.5 * dt);
     for (int p = 0; p < parts; ++p) {
+        exchange(heat, outside, part);
         run("load_theta", {count(), heat_states_, order, enthalpy, shift_, a});
         run("conduct", {count(), stride_, heat_pairs_, heat_walls_, a, neighbours, list, warming_, by_walls_});
         run("warm", {count(), part, order, warming_, enthalpy});
@@ -87,6 +100,8 @@ template std::string text_of<2>(const std::vector<Heat<2>::Heater>&);
 template std::string text_of<3>(const std::vector<Heat<3>::Heater>&);
 template void DeviceFluid<2>::feed(Heat<2>&, real);
 template void DeviceFluid<3>::feed(Heat<3>&, real);
+template void DeviceFluid<2>::exchange(Heat<2>&, real, real);
+template void DeviceFluid<3>::exchange(Heat<3>&, real, real);
 template void DeviceFluid<2>::expand();
 template void DeviceFluid<3>::expand();
 template void DeviceFluid<2>::hold();

@@ -35,6 +35,49 @@ LatticeSums lattice_sums(const Scheme& scheme, real spacing) {
     return sums;
 }
 
+namespace {
+
+/// What a particle of the lowest row of a lattice is multiplied by, `height` above a wall of a temperature: by its own image, which is as
+/// far from the wall's temperature on the other side, twice.
+template <int D>
+real diagonal_at_wall(const Kernel<D>& w, real spacing, int reach, real height) {
+    const auto weight = [&](real r) {
+        r = std::max(r, 1e-5 * w.support());  // as HeatParams::guard
+        return -2 * cell_volume<D>(spacing) * w.derivative(r) / r;
+    };
+    real sum = 0;
+    const int last = D == 3 ? reach : 0;
+    for (int z = -last; z <= last; ++z)
+        for (int y = -reach; y <= reach; ++y)
+            for (int x = 0; x <= reach; ++x) {
+                const real along = spacing * std::sqrt(static_cast<real>(y * y + z * z));
+                const bool own = x == 0 && along == 0;
+                sum += own ? 2 * weight(2 * height)
+                           : weight(std::hypot(along, x * spacing)) + weight(std::hypot(along, x * spacing + 2 * height));
+            }
+    return sum;
+}
+
+}  // namespace
+
+/// At most 1 / stable_part times the diagonal within a lattice.
+template <int D>
+real closest_to_wall(const Scheme& scheme, real spacing) {
+    const Kernel<D> w = gradient_kernel<D>(scheme, spacing);
+    const LatticeSums sums = lattice_sums<D>(scheme, spacing);
+    const auto too_close = [&](real height) {
+        return diagonal_at_wall<D>(w, spacing, static_cast<int>(std::ceil(scheme.support)), height) >
+               sums.diagonal * sums.moment / stable_part;
+    };
+    if (!too_close(0)) return 0;
+    real close = 0, far = 0.5 * spacing;
+    for (int i = 0; i < 30; ++i) {
+        const real middle = 0.5 * (close + far);
+        (too_close(middle) ? close : far) = middle;
+    }
+    return far;
+}
+
 HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>& conductivity) {
     constexpr real far = 1e300;
     HeatStates s{far, far, far, far, {0, 0, 0}, {0, 0, 0}, 0, {conductivity[0], conductivity[1], conductivity[2]}, far, 0};
@@ -63,6 +106,8 @@ void Heat<D>::set_pairs(const Scheme& scheme) {
         p.conduct = static_cast<Number>(conduct);
     };
     fill(single_pairs_), fill(plain_pairs_);
+    const real closest = closest_to_wall<D>(scheme, spacing_);
+    single_walls_.closest = static_cast<float>(closest), plain_walls_.closest = closest;
     real fastest = *std::max_element(std::begin(states_.k_c), std::end(states_.k_c)) / rho0_;  // [m²/s]
     if (vapour_) fastest = std::max(fastest, states_.k[1] * states_.per_c[2] / rho0_);         // it boils below T_vapour here and there
     stable_dt_ = fastest > 0 ? stable_part / (fastest * sums.diagonal) : infinity;
@@ -111,6 +156,22 @@ void Heat<D>::feed(Fluid<D>& fluid, real dt) {
         const auto weight_of = [&](int i) { return weight(height(wall, fluid.position(i))); };
         parallel_for(0, fluid.count(), [&](int i) { fluid.enthalpy[static_cast<std::size_t>(i)] += each * weight_of(i); });
         added_ += fluid.mass * each * block_sum(fluid.count(), weight_of);
+    }
+}
+
+template <int D>
+void Heat<D>::exchange(Fluid<D>& fluid, real outside, real part) {
+    for (const Exchange& wall : exchanges_) {
+        const Flux place{wall.axis, wall.end, 0};
+        const real given = block_sum(fluid.count(), [&](int i) -> real {
+            const real up = height(place, fluid.position(i)), share = weight(up);
+            if (share == 0) return 0;
+            real& h = fluid.enthalpy[static_cast<std::size_t>(i)];
+            const real gain = part / rho0_ * share * heat_exchanged(h, shift(i), up, outside, wall.coefficient, spacing_, &states_);
+            h += gain;
+            return gain;
+        });
+        added_ += fluid.mass * given;
     }
 }
 
@@ -167,6 +228,8 @@ void Heat<D>::sum_up(const Fluid<D>& fluid, std::vector<Integral>& list) const {
 
 template LatticeSums lattice_sums<2>(const Scheme&, real);
 template LatticeSums lattice_sums<3>(const Scheme&, real);
+template real closest_to_wall<2>(const Scheme&, real);
+template real closest_to_wall<3>(const Scheme&, real);
 template class Heat<2>;
 template class Heat<3>;
 

@@ -5,6 +5,7 @@
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/solver.hpp"
+#include "matter/ambient.hpp"
 #include "particles/fluid.hpp"
 #include "particles/passes.hpp"
 #include "particles/scheme.hpp"
@@ -25,6 +26,10 @@ struct LatticeSums {
 };
 template <int D>
 LatticeSums lattice_sums(const Scheme& scheme, real spacing);
+/// The height above a wall of a temperature below which a particle is taken to stand there, so that no step of conduction which is allowed
+/// makes it warmer than the wall: 0 of kernels that are smooth and wide [m].
+template <int D>
+real closest_to_wall(const Scheme& scheme, real spacing);
 
 /// Solid, liquid and vapour of a curve that has a liquid; conductivities by thermo::State.
 HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>& conductivity);
@@ -110,6 +115,16 @@ public:
     real weight(real height) const { return std::max<real>(0, 1 - height / (2 * spacing_)) / spacing_; }
     /// What heaters and walls with a flux give in the step that ended at fluid.time.
     void feed(Fluid<D>& fluid, real dt);
+    /// A wall through which the surroundings give α = `coefficient` for each kelvin by which they are warmer than its inner face
+    /// [W/(m² K)]. Each particle that takes a part of the flux sees the wall through the liquid between: 1/(1/α + height/k).
+    struct Exchange {
+        int axis = 0, end = 0;
+        real coefficient = 0;
+    };
+    const std::vector<Exchange>& exchanges() const { return exchanges_; }
+    real surroundings(real t) const { return ambient_.temperature(t); }
+    /// What the surroundings of this temperature give in a part of a step.
+    void exchange(Fluid<D>& fluid, real outside, real part);
     /// Heat that has come from walls or heaters [J].
     void add(real joules) { added_ += joules; }
 
@@ -132,6 +147,8 @@ private:
     void set_pairs(const Scheme& scheme);
     void set_ice(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance);
     void read_sides(const scene::Scene& scene, const Domain<D>& domain);
+    void read_exchange(const scene::Scene& scene, int axis, int end, const std::string& path);
+    void limit_exchange();
     void read_heaters(const scene::Scene& scene, const Domain<D>& domain);
 
     thermo::HeatCurve curve_;
@@ -149,6 +166,8 @@ private:
     int frozen_ = 0;  // particles
     std::vector<Heater> heaters_;
     std::vector<Flux> fluxes_;
+    matter::Ambient ambient_;
+    std::vector<Exchange> exchanges_;
     std::unique_ptr<Vapour<D>> vapour_;
     real added_ = 0;                                               // [J]; in 2D a metre
     mutable std::vector<real> temperature_, liquid_, evaporated_;  // of show()

@@ -62,10 +62,7 @@ std::function<real(const Vec<D>&)> temperature_function(const scene::Scene& scen
         return [T = table.number("value"), slope = table.vec<D>("gradient"), at = table.vec<D>("at")](const Vec<D>& x) {
             return T + dot(slope, x - at);
         };
-    if (name == "formula")
-        return [f = scene::formula_at(scene, "initial.temperature.value",
-                                      D == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"})](
-                   const Vec<D>& x) { return f(std::span<const real>(&x[0], D)); };
+    if (name == "formula") return scene::formula_of_place<D>(scene, "initial.temperature.value");
     const auto centre = table.vec<D>("centre");
     if (name == "gaussian")
         return [centre, base = table.number("base"), height = table.number("amplitude"), w = table.number("width")](const Vec<D>& x) {
@@ -95,14 +92,14 @@ std::vector<Key> heat_keys() {
     Key sides{.name = "sides", .type = Type::table};
     for (const char* axis : {"x", "y", "z"})
         for (const char* end : {"_min", "_max"})
-            sides.keys.push_back({.name = std::string(axis) + end, .type = Type::table, .variants = {matter::wall_with_heat_flux()}});
+            sides.keys.push_back({.name = std::string(axis) + end, .type = Type::table, .variants = {matter::wall_with_exchange()}});
     return {
         matter::substance_key_of_heat("Naming it lets particles carry heat, melt and freeze; `fluid.density` is the liquid's, and the "
                                       "solid's too where `heat.frozen` does not say otherwise."),
         {.name = "heat",
          .type = Type::table,
          .doc = "How a substance takes up heat. Only where `substance` is named.",
-         .keys = {matter::pressure_key(), matter::ambient_pressure_key(), frozen_key(), vapour_key()}},
+         .keys = {matter::pressure_key(), matter::ambient_key_of_particles(), frozen_key(), vapour_key()}},
         matter::heaters_key(
             "Regions that give off heat, evenly over the particles inside; while there is none, nothing. Only where `substance` is named."),
         sides};
@@ -120,9 +117,7 @@ Key initial_temperature_key() {
                       number("radius", "Radius.", "m"),
                       number("value", "Inside.", "K"),
                       number("outside", "Outside.", "K")}},
-                    {"formula",
-                     "A formula of x and y, and of z in 3D: numbers, pi, + - * / ^ ( ), functions such as sin, exp, max.",
-                     {{.name = "value", .type = Type::text, .doc = "The formula.", .unit = "K", .required = true}}}};
+                    scene::formula_variant("K")};
     return key;
 }
 
@@ -145,7 +140,8 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
       lo_(domain.lo),
       hi_(domain.hi),
       spacing_(domain.spacing),
-      rho0_(scene.number("fluid.density")) {
+      rho0_(scene.number("fluid.density")),
+      ambient_(scene) {
     const auto substance = matter::substance_of(scene);
     std::array<real, 3> k{};
     for (int i = 0; i < curve_.states(); ++i)
@@ -159,7 +155,8 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
         const real highest = vapour_->highest_shift();
         states_.T_vapour = heat_temperature(states_.liquid_end + highest, highest, &states_);
     }
-    if (!vapour_ && !scene.root().tables("heat.ambient.keyframes").empty())
+    const auto& frames = scene.root().tables("heat.ambient.keyframes");
+    if (!vapour_ && std::any_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.has("pressure"); }))
         scene.refuse("heat.ambient.keyframes", "the surroundings' pressure is where the liquid boils, and here none does", "heat.vapour");
     Scheme scheme;
     scheme.read(scene);
@@ -231,7 +228,6 @@ template <int D>
 void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
     const auto fill = [&](auto& w) {
         for (int a = 0; a < 3; ++a) w.lo[a] = -1e15F, w.hi[a] = 1e15F, w.lo_theta[a] = w.hi_theta[a] = 0, w.lo_held[a] = w.hi_held[a] = 0;
-        w.closest = static_cast<std::remove_reference_t<decltype(w.closest)>>(0.25 * spacing_);
     };
     fill(single_walls_), fill(plain_walls_);
     for (int a = 0; a < D; ++a)
@@ -259,10 +255,34 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
                 freezing_[static_cast<std::size_t>(2 * a + end)] = *T < states_.T;
             }
             place(single_walls_), place(plain_walls_);
-            if (!scene.has(path + ".heat_flux")) continue;
-            if (T) scene.refuse(path + ".heat_flux", "the wall has a temperature: how much heat passes follows from it");
-            fluxes_.push_back({a, end, scene.number(path + ".heat_flux")});
+            for (const char* key : {".heat_flux", ".exchange"})
+                if (T && scene.has(path + key))
+                    scene.refuse(path + key, "the wall has a temperature: how much heat passes follows from it");
+            if (scene.has(path + ".heat_flux")) fluxes_.push_back({a, end, scene.number(path + ".heat_flux")});
+            if (scene.has(path + ".exchange")) read_exchange(scene, a, end, path);
         }
+    limit_exchange();
+}
+
+template <int D>
+void Heat<D>::read_exchange(const scene::Scene& scene, int axis, int end, const std::string& path) {
+    if (!ambient_.has_temperature())
+        scene.refuse(path + ".exchange", "the wall exchanges heat with surroundings of which nothing is said",
+                     "heat.ambient with a temperature or keyframes");
+    exchanges_.push_back({axis, end, scene.number(path + ".exchange")});
+}
+
+/// In a part of a step no particle, even one in a corner, becomes warmer than the surroundings.
+template <int D>
+void Heat<D>::limit_exchange() {
+    real fastest = 0;  // [1/s]
+    for (const Exchange& wall : exchanges_) {
+        real most = 0;
+        for (int state = 0; state < 3; ++state)
+            most = std::max(most, states_.per_c[state] / (1 / wall.coefficient + 0.25 * spacing_ / states_.k[state]));
+        fastest += most / (spacing_ * rho0_);
+    }
+    if (fastest > 0) stable_dt_ = std::min(stable_dt_, 1 / fastest);
 }
 
 template <int D>
@@ -319,6 +339,8 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
     template real Heat<D>::start_enthalpy(real) const;                                               \
     template real Heat<D>::theta_of_wall(real) const;                                                \
     template void Heat<D>::read_sides(const scene::Scene&, const Domain<D>&);                        \
+    template void Heat<D>::read_exchange(const scene::Scene&, int, int, const std::string&);         \
+    template void Heat<D>::limit_exchange();                                                         \
     template void Heat<D>::read_heaters(const scene::Scene&, const Domain<D>&);                      \
     template void Heat<D>::start(const scene::Scene&, Fluid<D>&) const;
 WEIR_INSTANTIATE(2)

@@ -179,7 +179,8 @@ const PassTable passes_avx512{"avx512",
                               {muller::table, spline::table, c2::table},
                               {muller::finish_table, spline::finish_table, c2::finish_table},
                               {muller::sph_table, spline::sph_table, c2::sph_table},
-                              {muller::heat, spline::heat, c2::heat}};
+                              {muller::heat, spline::heat, c2::heat},
+                              {muller::heat_and_density, spline::heat_and_density, c2::heat_and_density}};
 #elif WEIR_ISA == 256
 const PassTable passes_avx2{"avx2",
                             lanes,
@@ -187,7 +188,8 @@ const PassTable passes_avx2{"avx2",
                             {muller::table, spline::table, c2::table},
                             {muller::finish_table, spline::finish_table, c2::finish_table},
                             {muller::sph_table, spline::sph_table, c2::sph_table},
-                            {muller::heat, spline::heat, c2::heat}};
+                            {muller::heat, spline::heat, c2::heat},
+                            {muller::heat_and_density, spline::heat_and_density, c2::heat_and_density}};
 #else
 const PassTable passes_sse2{"sse2",
                             lanes,
@@ -195,7 +197,8 @@ const PassTable passes_sse2{"sse2",
                             {muller::table, spline::table, c2::table},
                             {muller::finish_table, spline::finish_table, c2::finish_table},
                             {muller::sph_table, spline::sph_table, c2::sph_table},
-                            {muller::heat, spline::heat, c2::heat}};
+                            {muller::heat, spline::heat, c2::heat},
+                            {muller::heat_and_density, spline::heat_and_density, c2::heat_and_density}};
 #endif
 
 }  // namespace weir::particles

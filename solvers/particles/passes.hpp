@@ -136,6 +136,7 @@ struct PassTable {
         void (*tension)(const SphPass&, const ListChunk&);
     } sph[3];
     void (*heat[3])(const HeatPass&, const ListChunk&);
+    void (*heat_and_density[3])(const HeatPass&, const PbfPass&, const ListChunk&);
 };
 
 extern const PassTable passes_sse2, passes_avx2, passes_avx512;

@@ -46,7 +46,9 @@ void ReferenceSolver<D, Physics>::conduct_at(const std::vector<Point>& x, real d
     const int parts = heat.parts(dt);
     const real part = dt / parts;
     std::vector<double> theta(x.size());
+    const real outside = heat.exchanges().empty() ? 0 : heat.surroundings(fluid_.time - 0.5 * dt);
     for (int p = 0; p < parts; ++p) {
+        heat.exchange(fluid_, outside, part);
         for (std::size_t i = 0; i < x.size(); ++i) theta[i] = heat.theta(static_cast<int>(i), fluid_.enthalpy[i]);
         const auto warming = reference_.warming(x, theta, heat.plain_pairs(), heat.plain_walls());
         for (std::size_t i = 0; i < x.size(); ++i) {

@@ -1,5 +1,7 @@
 #include "particles/threaded_solver.hpp"
 
+#include <utility>
+
 namespace weir::particles {
 
 template <int D>
@@ -61,28 +63,52 @@ void ThreadedSolver<D>::expand() {
 }
 
 template <int D>
+void ThreadedSolver<D>::load_theta() {
+    float* x = pairs_.a();
+    pairs_.each([&](int k) {
+        const int i = pairs_.owner(k);
+        x[4 * k + 3] = static_cast<float>(this->heat_->theta(i, fluid_.enthalpy[static_cast<std::size_t>(i)]));
+    });
+}
+
+template <int D>
+HeatPass ThreadedSolver<D>::heat_pass() {
+    const Heat<D>& heat = *this->heat_;
+    const auto n = static_cast<std::size_t>(pairs_.size());
+    if (warming_.size() < n) warming_.resize(n + n / 8);
+    if (heat.held() && by_walls_.size() < n) by_walls_.resize(warming_.size());
+    return {
+        &heat.single_pairs(),  &heat.single_walls(), pairs_.size(), pairs_.a(), warming_.data(), heat.held() ? by_walls_.data() : nullptr,
+        pairs_.list().first(), pairs_.list().rows()};
+}
+
+template <int D>
+void ThreadedSolver<D>::find_density_and_heat(const PbfPass& density) {
+    load_theta();
+    const HeatPass job = heat_pass();
+    const auto pass = pairs_.table().heat_and_density[flow_.kernel];
+    pairs_.list().each_chunk([&](const ListChunk& chunk) { pass(job, density, chunk); });
+    warmed_ = true;
+}
+
+template <int D>
 void ThreadedSolver<D>::conduct(real dt) {
     if (!this->heat_) return;
     const auto timed = this->passes_.time("heat");
     Heat<D>& heat = *this->heat_;
     heat.feed(fluid_, dt);
     if (sources_) heat.add(sources_->warm(fluid_, heat, dt));
-    const auto n = static_cast<std::size_t>(pairs_.size());
-    if (warming_.size() < n) warming_.resize(n + n / 8);
-    if (heat.held() && by_walls_.size() < n) by_walls_.resize(warming_.size());
-    const HeatPass job{
-        &heat.single_pairs(),  &heat.single_walls(), pairs_.size(), pairs_.a(), warming_.data(), heat.held() ? by_walls_.data() : nullptr,
-        pairs_.list().first(), pairs_.list().rows()};
+    const HeatPass job = heat_pass();
     const auto pass = pairs_.table().heat[flow_.kernel];
     const int parts = heat.parts(dt);
     const real part = dt / parts;
+    const real outside = heat.exchanges().empty() ? 0 : heat.surroundings(fluid_.time - 0.5 * dt);
     for (int p = 0; p < parts; ++p) {
-        float* x = pairs_.a();
-        pairs_.each([&](int k) {
-            const int i = pairs_.owner(k);
-            x[4 * k + 3] = static_cast<float>(heat.theta(i, fluid_.enthalpy[static_cast<std::size_t>(i)]));
-        });
-        pairs_.list().each_chunk([&](const ListChunk& chunk) { pass(job, chunk); });
+        heat.exchange(fluid_, outside, part);
+        if (!std::exchange(warmed_, false)) {
+            load_theta();
+            pairs_.list().each_chunk([&](const ListChunk& chunk) { pass(job, chunk); });
+        }
         pairs_.each([&](int k) {
             if (!pairs_.is_image(k))
                 fluid_.enthalpy[static_cast<std::size_t>(pairs_.owner(k))] += part * warming_[static_cast<std::size_t>(k)];

@@ -38,6 +38,13 @@ protected:
     void end_step();
     /// Where the passes of the step were: their positions are the pairs'.
     void conduct(real dt) final;
+    /// Whether heat can be found in one pass with the densities of these places: nothing changes it before conduct().
+    bool conducts_alone() const {
+        const Heat<D>* heat = this->heat_.get();
+        return heat && !sources_ && heat->heaters().empty() && heat->fluxes().empty() && heat->exchanges().empty();
+    }
+    /// That pass, for a method's own of densities: conduct() goes on from there.
+    void find_density_and_heat(const PbfPass& density);
     /// After the pairs are found: what density particles are to have, where the scene lets them boil.
     void expand();
     /// Of sorted particles, over the liquid's; null: nothing boils, and no ice moves.
@@ -52,6 +59,10 @@ protected:
     HandOnParticles<D>* sources_ = nullptr;  // one of the effects
 
 private:
+    void load_theta();
+    HeatPass heat_pass();
+
+    bool warmed_ = false;                   // the first rates of the step are there
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
     std::vector<float> rest_;
     std::vector<std::vector<real>*> gathered_;

@@ -248,7 +248,10 @@ void PbfSolver<D>::update(real dt, real slow) {
     const auto timed = passes_.time("update");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const PbfPass job = pass(pairs_.a(), nullptr, solids_.at(pairs_, pairs_.a()));
-    pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
+    if (dt > 0 && this->conducts_alone())
+        this->find_density_and_heat(job);
+    else
+        pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
     const float* now = pairs_.a();
     const real too_fast = dt > 0 ? 1 / dt - 1 / slow : 0;
     pairs_.each([&](int k) {

@@ -138,4 +138,19 @@ Formula formula_at(const Scene& scene, std::string_view path, const std::vector<
     }
 }
 
+Variant formula_variant(const char* unit) {
+    return {"formula",
+            "A formula of x and y, and of z in 3D: numbers, pi, + - * / ^ ( ), functions such as sin, exp, max.",
+            {{.name = "value", .type = Type::text, .doc = "The formula.", .unit = unit, .required = true}}};
+}
+
+template <int D>
+std::function<real(const Vec<D>&)> formula_of_place(const Scene& scene, std::string_view path) {
+    std::vector<std::string> axes{"x", "y", "z"};
+    axes.resize(D);
+    return [f = formula_at(scene, path, axes)](const Vec<D>& x) { return f(std::span<const real>(&x[0], D)); };
+}
+template std::function<real(const Vec<2>&)> formula_of_place<2>(const Scene&, std::string_view);
+template std::function<real(const Vec<3>&)> formula_of_place<3>(const Scene&, std::string_view);
+
 }  // namespace weir::scene

@@ -4,6 +4,7 @@
 #include "core/types.hpp"
 #include "scene/scene.hpp"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -35,6 +36,12 @@ private:
     struct Compiled;
     std::shared_ptr<Compiled> compiled_;
 };
+
+/// The variant "formula" of a field at the start: a formula of place, the text at the key `value`.
+Variant formula_variant(const char* unit);
+/// That formula. NaN or infinity where it has no value.
+template <int D>
+std::function<real(const Vec<D>&)> formula_of_place(const Scene& scene, std::string_view path);
 
 /// The formula that stands at a key of type text; a mistake in it is refused with the place of the mistake.
 Formula formula_at(const Scene& scene, std::string_view path, const std::vector<std::string>& variables);

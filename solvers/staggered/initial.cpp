@@ -1,5 +1,7 @@
 #include "staggered/initial.hpp"
 
+#include "scene/formula.hpp"
+#include "scene/names.hpp"
 #include "staggered/inflow.hpp"
 #include "staggered/random_flow.hpp"
 
@@ -50,7 +52,8 @@ std::vector<Variant> field_variants() {
             {"slotted_disk",
              "Signed distance to Zalesak's slotted disk (1979), negative inside.",
              {point("centre", "Centre of the disk."), number("radius", "Radius.", "m", 0.15),
-              number("slot", "Width of the slot.", "m", 0.05), number("top", "Height of the slot's end above the centre.", "m", 0.1)}}};
+              number("slot", "Width of the slot.", "m", 0.05), number("top", "Height of the slot's end above the centre.", "m", 0.1)}},
+            scene::formula_variant("")};
 }
 
 Key field_key(const std::string& name) {
@@ -173,10 +176,25 @@ void set_initial_velocity(MacState<D>& s, const scene::Scene& scene) {
     sync_periodic(s.u, s.sides);
 }
 
+/// One cell after the other, since threads that ask a formula wait for one another. Refuses one that has no value somewhere.
+template <int D>
+static void set_by_formula(Grid<real, D>& q, const MacVelocity<D>& grid, const scene::Scene& scene, const std::string& path) {
+    const auto value = scene::formula_of_place<D>(scene, path);
+    for (std::size_t c = 0; c < product(q.extent()); ++c) {
+        const Vec<D> x = grid.cell_centre(index_of<D>(q.extent(), c));
+        q[c] = value(x);
+        if (std::isfinite(q[c])) continue;
+        std::string place;
+        for (int a = 0; a < D; ++a) place += (a == 0 ? "" : ", ") + std::string(1, "xyz"[a]) + " = " + scene::number_text(x[a]);
+        scene.refuse(path, path + " has no value at " + place);
+    }
+}
+
 template <int D>
 void set_initial_field(Grid<real, D>& q, const MacVelocity<D>& grid, const scene::Scene& scene, const std::string& name) {
     const std::string path = "initial." + name;
     if (!scene.has(path)) return;
+    if (scene.text(path + ".name") == "formula") return set_by_formula(q, grid, scene, path + ".value");
     const auto value = field_function<D>(scene.root().table(path));
     for_each_cell(q.extent(), [&](const Index<D>& I) { q(I) = value(grid.cell_centre(I)); });
 }

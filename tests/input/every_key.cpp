@@ -118,7 +118,7 @@ std::vector<std::string> of_field(const std::string& field, bool sides) {
          {"\"constant\", value = 1", "\"linear\", value = 1, gradient = [1, 0], at = [0, 0]",
           "\"gaussian\", base = 0, amplitude = 1, centre = [0, 0], width = 1",
           "\"ball\", centre = [0, 0], radius = 1, value = 1, outside = 0", "\"distance\", centre = [0, 0], radius = 1",
-          "\"slotted_disk\", centre = [0, 0], radius = 0.2, slot = 0.05, top = 0.1"})
+          "\"slotted_disk\", centre = [0, 0], radius = 0.2, slot = 0.05, top = 0.1", "\"formula\", value = \"1 + x\""})
         lines.push_back(is + function + " }");
     if (!sides) return lines;
     const std::string given = is + "\"constant\", value = 1 }\n", value = ", " + field + " = 1 }";
@@ -237,6 +237,10 @@ std::map<std::string, Said> everything() {
                   wax + "heat.frozen = \"free\"",
                   wax + "sides.x_min = { kind = \"wall\", heat_flux = 10 }",
                   wax + "sides.x_min = { kind = \"wall\", temperature = 320 }",
+                  wax + "heat.ambient = { temperature = 310 }\nsides.x_min = { kind = \"wall\", exchange = 5 }",
+                  wax +
+                      "heat.ambient.keyframes = [ { t = 0, temperature = 310 }, { t = 1, temperature = 320 } ]\nsides.x_min = { kind = "
+                      "\"wall\", exchange = 5 }",
                   wax + emitter + ", temperature = 310 } ]",
                   wax + "heaters = [ { shape = \"box\", min = [0.2, 0.2], max = [0.8, 0.8], power = 10, start = 1, end = 2 } ]"};
     for (const char* function :
@@ -347,8 +351,8 @@ std::map<std::string, Said> everything() {
 /// The same code reads all sides; all fields, whatever their function, once a field is read at all; and shapes and motions of all solvers.
 /// "open" is another word for "outflow".
 std::string written_once(std::string key, const std::string& solver) {
-    static const std::regex side("sides\\.[xyz]_m(in|ax)"), field("initial\\.[a-z_]+<(linear|gaussian|ball|distance|slotted_disk)>"),
-        open("<open>");
+    static const std::regex side("sides\\.[xyz]_m(in|ax)"),
+        field("initial\\.[a-z_]+<(linear|gaussian|ball|distance|slotted_disk|formula)>"), open("<open>");
     key = std::regex_replace(key, side, "sides");
     key = std::regex_replace(key, field, "initial.<$1>");
     key = std::regex_replace(key, open, "<outflow>");

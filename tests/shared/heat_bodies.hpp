@@ -25,7 +25,7 @@ scene::Scene heat_scene(const std::string& solver, const std::string& on, const 
     return scene::parse(text, "test.toml", {sph::kind().schema, pbf::kind().schema});
 }
 
-/// What may stand around it: nothing, walls at temperatures and with a flux and a heater, sides that repeat.
+/// What may stand around it: nothing, walls at temperatures and with a flux and a heater, sides that repeat and a wall to surroundings.
 template <int D>
 std::vector<std::string> warm_places() {
     const std::string heater = fmt::format(
@@ -34,7 +34,8 @@ std::vector<std::string> warm_places() {
             "sides.x_min = { kind = \"wall\", temperature = 330.0 }\nsides.y_min = { kind = \"wall\", temperature = 280.0 }\n"
             "sides.x_max = { kind = \"wall\", heat_flux = 1e8 }\n" +
                 heater,
-            "sides.x_min = \"periodic\"\nsides.x_max = \"periodic\"\nsides.y_min = { kind = \"wall\", heat_flux = -1e8 }\n"};
+            "sides.x_min = \"periodic\"\nsides.x_max = \"periodic\"\nsides.y_min = { kind = \"wall\", exchange = 1e7 }\nheat.ambient = { "
+            "keyframes = [ { t = 0.0, temperature = 320.0 }, { t = 0.002, temperature = 310.0 } ] }\n"};
 }
 
 /// Each kernel and each place, not all of both: a device compiles a program for each.

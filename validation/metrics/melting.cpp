@@ -80,16 +80,28 @@ Panel lever_panel(const RunRecord& run, const Reference& ref) {
     return {.title = "Share of liquid", .x = {"t [s]"}, .y = {"liquid"}, .curves = {rule, share}};
 }
 
-/// Largest |heat − heat at the start − heat added| of any moment, over the largest heat of any.
-real balance_error(const RunRecord& run, const Reference&) {
+/// Heat − heat at the start − heat added at each moment, over the largest heat of any.
+Curve unaccounted(const RunRecord& run) {
     const Curve heat = run.series("heat"), added = run.series("heat_added");
-    real worst = 0, most = 0;
+    Curve share{.label = "weir", .x = heat.x};
+    real most = 0;
     for (std::size_t i = 0; i < heat.size(); ++i) {
-        const real error = std::abs(heat.y[i] - heat.y.front() - added.y[i]);
-        if (!(error <= worst)) worst = error;
+        share.y.push_back(heat.y[i] - heat.y.front() - added.y[i]);
         most = std::max({most, std::abs(heat.y[i]), std::abs(added.y[i])});
     }
-    return worst / most;
+    for (real& y : share.y) y /= most;
+    return share;
+}
+
+real balance_error(const RunRecord& run, const Reference&) {
+    real worst = 0;
+    for (const real y : unaccounted(run).y)
+        if (!(std::abs(y) <= worst)) worst = std::abs(y);
+    return worst;
+}
+
+Panel balance_panel(const RunRecord& run, const Reference&) {
+    return {.title = "Heat that nothing accounts for", .x = {"t [s]"}, .y = {"of the largest heat"}, .curves = {unaccounted(run)}};
 }
 
 /// Temperatures of the first row of cells, along x.
@@ -192,7 +204,8 @@ std::vector<Metric> melting_metrics() {
         {.name = "heat.balance_error",
          .unit = "",
          .doc = "Largest difference between the heat in the box and what was there and was added, over the largest heat.",
-         .measure = balance_error},
+         .measure = balance_error,
+         .figure = balance_panel},
         {.name = "sine.decay_error",
          .unit = "",
          .doc = "How far the rate at which a wave of temperature decays is from that of the heat equation, relative.",

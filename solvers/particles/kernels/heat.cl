@@ -154,6 +154,24 @@ __kernel void feed_wall(int count, int stride, int axis, double plane, double si
     if (i < count) enthalpy[i] += each * flux_weight(x[(size_t)axis * stride + i], plane, sign, spacing);
 }
 
+/* What comes from outside through a wall (Heat::exchange), and how much that is for each particle [J/kg]. */
+__kernel void exchange_at_wall(int count, int stride, __constant HeatStates* s, int axis, double plane, double sign, double spacing,
+                               double coefficient, double outside, double part, __global const double* x, __global const double* shift,
+                               __global double* enthalpy, __global double* given) {
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    const double at = x[(size_t)axis * stride + i], share = flux_weight(at, plane, sign, spacing);
+    given[i] = 0;
+    if (share == 0) return;
+#ifdef WEIR_VAPOUR
+    const double deeper = shift[i];
+#else
+    const double deeper = 0;
+#endif
+    given[i] = part * share * heat_exchanged(enthalpy[i], deeper, sign * (at - plane), outside, coefficient, spacing, s);
+    enthalpy[i] += given[i];
+}
+
 /* Densities that sorted particles are to have over the liquid's, where ice moves. */
 __kernel void rests_of_ice(int count, __constant HeatStates* s, __global const int* order, __global const double* enthalpy,
                            __global float* rests) {

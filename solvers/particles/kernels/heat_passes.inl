@@ -4,14 +4,17 @@
 
 /* dh/dt of every particle; `positions` have theta as their fourth number. Beyond a wall stands the liquid's image: as warm as the liquid
    where no heat passes, as far from the wall's temperature on the other side where the wall is held at one. */
-static void heat(const HeatPass& a, const ListChunk& chunk) {
+template <bool Density>
+WEIR_ALWAYS void heat_and(const HeatPass& a, const PbfPass* d, const ListChunk& chunk) {
     const single::HeatParams* p = a.p;
+    const float beyond = 1.0001f * p->h2; /* where a root of single precision, too, is over h: exactly nothing there */
     for (int s = chunk.begin; s < chunk.end; ++s) {
         const int first = s * lanes;
         const Four i = load(a.positions, first);
         HeatImages images;
         heat_images(i, a.walls, p->h, images);
         vd sum{}, by_walls{};
+        vf rho = Density ? broadcast(d->p->self) : broadcast(0);
         for (int m = 0; m < images.count; ++m) {
             const HeatImages::Image& image = images.of[m];
             if (!image.held) continue;
@@ -25,6 +28,7 @@ static void heat(const HeatPass& a, const ListChunk& chunk) {
             prefetch(row);
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
             const vf r2 = distance2(dx, dy, dz, p->guard), rise = j.w - i.w;
+            if (Density) rho = pbf_add_density(rho, distance2(dx, dy, dz, d->p->guard), d->p);
             vf flow = heat_flow(r2, rise, p); /* the sum with those to images is the same with the other sign at j, as each is */
             for (int m = 0; m < images.count; ++m) {
                 const HeatImages::Image& image = images.of[m];
@@ -32,6 +36,7 @@ static void heat(const HeatPass& a, const ListChunk& chunk) {
                 vf behind = r2;
                 for (int n = 0; n < image.planes; ++n)
                     behind = heat_behind(behind, image.height[n], heat_height(other, image.plane[n], a.walls));
+                if (!any_below(behind, beyond)) continue;
                 if (image.held)
                     add(by_walls, heat_flow(behind, broadcast(2 * image.theta) - (j.w + i.w), p));
                 else
@@ -43,5 +48,12 @@ static void heat(const HeatPass& a, const ListChunk& chunk) {
         for (int l = 0; l < live(first, a.count); ++l) a.to[first + l] = sum[l];
         if (a.by_walls)
             for (int l = 0; l < live(first, a.count); ++l) a.by_walls[first + l] = by_walls[l];
+        if (Density)
+            store_numbers(d->density, first, live(first, a.count), rho + walls_at(i, d->walls, d->solid, first).w * rest_of(*d, first));
     }
 }
+
+static void heat(const HeatPass& a, const ListChunk& chunk) { heat_and<false>(a, nullptr, chunk); }
+
+/* And the density of PBF (pbf_passes.inl) at the same places, to the bit: most of either is the way to a pair. */
+static void heat_and_density(const HeatPass& a, const PbfPass& d, const ListChunk& chunk) { heat_and<true>(a, &d, chunk); }

@@ -37,3 +37,17 @@ WEIR_FN double heat_vapour(double h, double shift, WEIR_PARAM HeatStates* s) {
 
 /* The rest density over the liquid's: the volumes of what is solid and of what has melted add up. */
 WEIR_FN double heat_rest(double h, WEIR_PARAM HeatStates* s) { return 1 / (1 + s->swells * (1 - heat_melted(h, s))); }
+
+/* Of what is of several states at once, by their shares [W/(m K)]. */
+WEIR_FN double heat_conductivity(double h, double shift, WEIR_PARAM HeatStates* s) {
+    double melted = heat_melted(h, s), vapour = heat_vapour(h, shift, s);
+    return s->k[0] * (1 - melted) + s->k[1] * (melted - vapour) + s->k[2] * vapour;
+}
+
+/* What comes from outside to a height above a wall, through the wall and what is between, one after the other [W/m^2]. Below a quarter of a
+   spacing there is no less between: a particle is not a point. */
+WEIR_FN double heat_exchanged(double h, double shift, double height, double outside, double coefficient, double spacing,
+                              WEIR_PARAM HeatStates* s) {
+    double between = heat_high(height, 0.25 * spacing) / heat_conductivity(h, shift, s);
+    return (outside - heat_temperature(h, shift, s)) / (1 / coefficient + between);
+}

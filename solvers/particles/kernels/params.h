@@ -54,6 +54,6 @@ typedef struct {
 typedef struct {
     SCALAR lo[3], hi[3];             /* [m] */
     SCALAR lo_theta[3], hi_theta[3]; /* where a wall is held at a temperature, that of the wall [W/m] */
-    SCALAR closest;                  /* half of where the particles of a lattice stand [m] */
+    SCALAR closest;                  /* to a wall: what stands closer is taken to stand here [m] */
     int lo_held[3], hi_held[3];      /* 1: it is; 0: no heat passes */
 } HeatWalls;

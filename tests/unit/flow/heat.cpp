@@ -387,6 +387,20 @@ std::string slab(const std::string& more) {
 
 }  // namespace
 
+TEST("a temperature starts from a formula of the place") {
+    set_threads(1);
+    auto text = slab("");
+    const std::string constant = "{ name = \"constant\", value = 310.0 }";
+    text.replace(text.find(constant), constant.size(), "{ name = \"formula\", value = \"310 + 8*x - y^2\" }");
+    FlowSolver<2> flow(test::mac_scene(text));
+    const auto& T = *flow.state().find("temperature");
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 2; ++j) {
+            const real x = (i + 0.5) / 8, y = (j + 0.5) / 8;
+            EXPECT_NEAR(T({i, j}), 310 + 8 * x - y * y, 1e-9);
+        }
+}
+
 TEST("a wall that exchanges heat and the slab behind it resist one after the other") {
     set_threads(1);
     FlowSolver<2> flow(

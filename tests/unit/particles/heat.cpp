@@ -2,6 +2,7 @@
 #include "particles/heat.hpp"
 #include "matter/substance.hpp"
 #include "particles/flow.hpp"
+#include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
 #include "support/test.hpp"
 
@@ -53,6 +54,56 @@ TEST("the step in which no particle of a lattice becomes warmer than its neighbo
         EXPECT_LT(1 / ours.diagonal, row.most * ours.moment);
         EXPECT_GT(1 / ours.diagonal, 0.4 * row.most * ours.moment);
     }
+}
+
+/// Conducts as a solid as it does as a liquid.
+const std::string wax =
+    "substance = { name = \"own\", triple = [280.0, 1000.0], critical = [800.0, 5e6], fusion = 3e5, vaporisation = 2e6, "
+    "solid = { density = 1000.0, heat_capacity = 4000.0, conductivity = 0.6 }, "
+    "liquid = { density = 1000.0, heat_capacity = 4000.0, conductivity = 0.6 }, vapour = { heat_capacity = 2000.0 } }\n";
+
+/// A column of a liquid whose lowest row stands at the wall, all as warm as each other, and the wall warmer by one.
+template <int D>
+real first_step_at_a_wall(Smoothing kernel, real support, real height) {
+    const std::string cells = D == 2 ? "[6, 6]" : "[6, 6, 6]", size = D == 2 ? "[0.6, 0.6]" : "[0.6, 0.6, 0.6]";
+    const auto scene = scene::parse(
+        fmt::format(
+            "solver = \"sph\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime.end = 1.0\nfluid.density = 1000.0\n"
+            "liquid = [{{ shape = \"box\", min = {}, max = {} }}]\nscheme = {{ backend = \"reference\", density = "
+            "\"summation\", kernel = \"{}\", support = {}, sound_speed = 1e-9 }}\n"
+            "initial.temperature = {{ name = \"constant\", value = 300.0 }}\nsides.x_min = {{ kind = \"wall\", temperature = 301.0 }}\n{}",
+            D, cells, size, D == 2 ? "[0, 0]" : "[0, 0, 0]", size,
+            kernel == Smoothing::muller  ? "muller"
+            : kernel == Smoothing::cubic ? "cubic"
+                                         : "wendland",
+            support, wax),
+        "test.toml", {sph::kind().schema});
+    sph::ReferenceSphSolver<D> solver(scene);
+    particles::Fluid<D>& fluid = solver.fluid();
+    for (int i = 0; i < fluid.count(); ++i) {
+        Vec<D> x = fluid.position(i);
+        x[0] += height - 0.05;
+        particles::Fluid<D>::put(fluid.x, i, x);
+    }
+    const particles::Heat<D> heat(scene, fluid.domain);
+    solver.step(heat.stable_dt());
+    real warmest = 0;
+    for (const real h : fluid.enthalpy) warmest = std::max(warmest, particles::heat_temperature(h, 0, &heat.states()));
+    return warmest - 300;
+}
+
+TEST("particles at a wall become as warm as it in the longest step, where it lets them, and no warmer") {
+    const std::pair<Smoothing, real> schemes[] = {
+        {Smoothing::muller, 3}, {Smoothing::cubic, 2}, {Smoothing::wendland, 2}, {Smoothing::wendland, 3}, {Smoothing::cubic, 3}};
+    for (const auto& [kernel, support] : schemes)
+        for (const real height : {1e-7, 0.01, 0.05}) {
+            EXPECT_LE(first_step_at_a_wall<2>(kernel, support, height), 1 + 1e-6) << support << height;
+            EXPECT_LE(first_step_at_a_wall<3>(kernel, support, height), 1 + 1e-6) << support << height;
+            // a quarter of a spacing above, where all once stood, cubic splines of support 3 reach 0.66
+            if (height < 0.01) {
+                EXPECT_GT(first_step_at_a_wall<2>(kernel, support, height), 0.75) << support;
+            }
+        }
 }
 
 TEST("temperatures and shares are those of the substance's curve, through both latent heats and back") {
@@ -194,6 +245,34 @@ TEST("no heat passes between two that are as warm as each other, in whatever sta
         }
         for (const real theta : thetas) EXPECT_NEAR(theta, thetas[0], 1e-9 * std::abs(thetas[0]));
     }
+}
+
+/// Steady between surroundings and a wall that is held: how far from the straight line of an exchange and a slab one after the other [K].
+real off_the_line(int cells) {
+    const auto scene = scene::parse(
+        fmt::format(
+            "solver = \"sph\"\ndim = 2\ngrid = {{ cells = [{}, 4], size = [1.0, {}] }}\ntime.end = 1e9\nfluid.density = 1000.0\n"
+            "liquid = [{{ shape = \"box\", min = [0, 0], max = [1, 1] }}]\nscheme = {{ density = \"summation\", sound_speed = 1e-12 }}\n"
+            "initial.temperature = {{ name = \"constant\", value = 310.0 }}\nsides.x_max = {{ kind = \"wall\", temperature = 310.0 }}\n"
+            "sides.x_min = {{ kind = \"wall\", exchange = 2.0 }}\nheat.ambient.temperature = 330.0\n{}",
+            cells, 4.0 / cells, wax),
+        "test.toml", {sph::kind().schema});
+    sph::SphSolver<2> solver(scene);
+    for (int i = 0; i < 40; ++i) solver.step(1e6);  // six times L^2 rho c/k
+    const particles::Heat<2> heat(scene, solver.fluid().domain);
+    const real flux = 20 / (1 / 2.0 + 1 / 0.6);
+    real worst = 0;
+    for (int i = 0; i < solver.fluid().count(); ++i) {
+        const real T = particles::heat_temperature(solver.fluid().enthalpy[static_cast<std::size_t>(i)], 0, &heat.states());
+        worst = std::max(worst, std::abs(T - 310 - flux * (1 - solver.fluid().position(i)[0]) / 0.6));
+    }
+    return worst;
+}
+
+TEST("a wall that exchanges heat and the slab behind it resist one after the other, at first order in the spacing") {
+    const real coarse = off_the_line(16), fine = off_the_line(32);
+    EXPECT_LT(fine, 0.25 / 32 * 20) << "two rows take up the flux, of which the upper one's quarter skips a spacing";
+    EXPECT_LT(fine, 0.6 * coarse);  // 0.5, less what is of higher order
 }
 
 }  // namespace
