@@ -56,12 +56,14 @@ private:
     void remember(real dt);
     void extend_velocity();
     void remember_fields();
+    void rub(real t, real dt);
     void depart(real dt);
     void arrive(real dt);
     void advect_fields(real dt);
     void advect_velocity(real dt);
     void blend(const Substep& stage);
     void move_solids(real t, real dt);
+    void place_solids(real t, real dt);
     void conduct(real dt);
     void lift(real dt);
     void slow(real dt);
