@@ -31,7 +31,7 @@ docs_need=(mkdocs libjs-katex)
 package_needs=(dpkg-dev gzip lintian)
 films_need=(ffmpeg)
 tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libpetsc-real-dev libopenmpi-dev openmpi-bin pkgconf libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
-            python3-pytest python3-matplotlib jupyter-nbconvert python3-ipykernel doxygen dpkg-dev)
+            python3-pip python3-setuptools python3-pytest python3-matplotlib jupyter-nbconvert python3-ipykernel doxygen dpkg-dev)
 
 install_missing() { # PACKAGE...
     if ! command -v dpkg-query >/dev/null; then

@@ -46,6 +46,13 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-weir)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "fluid simulation: the module of Python\n${about}\n\nThis package is for Python and NumPy: import weir.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${same}, python3 (>= 3.${weir_python_minor}), python3 (<< 3.${weir_python_next}), python3-numpy")
+# What Python has compiled is in no package's list: it goes before its folder does.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/debian/prerm CONTENT "#!/bin/sh
+set -e
+rm -rf /usr/lib/python3/dist-packages/weir/__pycache__
+")
+file(CHMOD ${PROJECT_BINARY_DIR}/debian/prerm PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/prerm)
 
 # What Debian wants beside every package: who may copy it, and what has changed.
 set(documents ${PROJECT_BINARY_DIR}/debian)

@@ -111,6 +111,9 @@ void Scenery::tell(const std::string& figures, const std::string& help) {
     double box[4];  // of the text, from its corner [pixels]
     figures_->GetBoundingBox(renderer_, box);
     scale_.place(size[0], size[1], static_cast<int>(10 + box[3] + 16));  // and half a line between them
+    help_->GetBoundingBox(renderer_, box);
+    bar_hidden_ = !help.empty() && 0.02 * size[0] + box[1] > size[0] - view::bar_room;  // a narrow window: keys alone
+    scale_.show(!scale_.empty() && !bar_hidden_);
 }
 
 void Scenery::set_colours(const Snapshot& s) {
@@ -120,7 +123,7 @@ void Scenery::set_colours(const Snapshot& s) {
             const auto [least, most] = std::minmax_element(list->begin(), list->end());
             scale_.widen(*least, *most);
         }
-    scale_.show(!scale_.empty());
+    scale_.show(!scale_.empty() && !bar_hidden_);
     if (scale_.set(field_)) scale_.colour(volume_->GetProperty());
 }
 

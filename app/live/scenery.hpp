@@ -69,6 +69,7 @@ private:
     vtkNew<vtkRenderer> renderer_;
     view::Scale scale_;
     vtkNew<vtkTextActor> figures_, help_;
+    bool bar_hidden_ = false;  // behind the keys
     vtkNew<vtkPolyData> particles_;
     vtkNew<vtkFloatArray> particle_places_, particle_values_, cloud_values_;
     vtkNew<vtkImageData> sheet_, cloud_;

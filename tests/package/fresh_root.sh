@@ -67,6 +67,7 @@ expect "weir plan dam_break_martin_moyce --error 5% --as-measured" "^weir run /u
 expect "weir cost --plan dam_break_2d --set grid.cells=[32,16]" "MiB|MB|bytes"
 expect "weir validate hydrostatic_2d --quiet" "pass"
 expect "zcat /usr/share/man/man1/weir.1.gz" "^\.SS weir run .scene. "
+expect "zcat /usr/share/man/man1/weir-live.1.gz" "^\.so man1/weir\.1$"
 expect "set +e; . /usr/share/bash-completion/completions/weir; COMP_WORDS=(weir run dam_break_2); COMP_CWORD=2; _weir; echo \${COMPREPLY[*]}" "dam_break_2d"
 expect "set +e; . /usr/share/bash-completion/completions/weir; COMP_WORDS=(weir run --rest); COMP_CWORD=2; _weir; echo \${COMPREPLY[*]}" "^--restart$"
 expect "python3 -c 'import weir; s = weir.Simulation(\"dam_break_2d\", set={\"grid.cells\": [32, 16], \"time.end\": 0.01}); s.run(); print(s[\"pressure\"].shape, weir.__file__)'" \
@@ -74,5 +75,5 @@ expect "python3 -c 'import weir; s = weir.Simulation(\"dam_break_2d\", set={\"gr
 expect "weir view --help" "weir view"
 expect "test -x /usr/bin/weir-view && test -x /usr/bin/weir-live && ls /usr/lib/cmake/weir/ /usr/lib/*/cmake/weir/ 2>/dev/null || true" "weirConfig.cmake"
 inside "dpkg -r python3-weir weir-view libweir-dev weir" >/dev/null
-expect "ls /usr/bin /usr/share /usr/include | grep -c weir || true" "^0$"
+expect "ls /usr/bin /usr/share /usr/include /usr/lib/python3/dist-packages | grep -c weir || true" "^0$"
 (cd "$root/packages" && ls -s --block-size=K -- *.deb)
