@@ -22,14 +22,15 @@ StepReport FlowSolver<D>::step(real dt) {
     apply(Stage::source, dt);  // emitters
     for (const Substep& stage : substeps(options_.scheme)) {
         const real part = stage.fraction() * dt;
-        remember(dt);                  // uⁿ, qⁿ with their ghosts
-        depart(dt);                    // u += dt f(uⁿ, qⁿ): all of it with fluxes, half where paths are followed to second order
-        advect_fields(dt);             // Dq/Dt = 0    only fields that an effect asked for
-        advect_velocity(dt);           // Du/Dt = 0
-        blend(stage);                  // γ and ζ of a Runge-Kutta stage
-        apply(Stage::carried, part);   // (I − dt κ∇²) q = ...
-        conduct(part);                 // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
-        arrive(dt);                    // u += what is left of dt f(u, q)
+        remember(dt);                 // uⁿ, qⁿ with their ghosts
+        depart(dt);                   // u += dt f(uⁿ, qⁿ): all of it with fluxes, half where paths are followed to second order
+        advect_fields(dt);            // Dq/Dt = 0    only fields that an effect asked for
+        advect_velocity(dt);          // Du/Dt = 0
+        blend(stage);                 // γ and ζ of a Runge-Kutta stage
+        apply(Stage::carried, part);  // (I − dt κ∇²) q = ...
+        conduct(part);                // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
+        arrive(dt);                   // u += what is left of dt f(u, q)
+        if (state_.grip) rub(t + part, part);
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
         move_solids(t += part, part);  // u·n = u_solid·n
         project(part);                 // ∇·u = 0
@@ -167,6 +168,9 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
             scene.refuse("bodies", "scheme.advection = \"conservative\" takes a step in stages, and bodies move in whole steps",
                          "scheme.advection: semi_lagrangian, maccormack");
         bodies_->start(state_, solids_);
+        const auto& all = bodies_->bodies().all();
+        if (scene.effect("viscosity") && std::any_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; }))
+            bodies_->stick(state_);
         if (hand_) bodies_->follow(hand_, scene);
     }
     for (auto& field : state_.fields) {
@@ -242,6 +246,15 @@ void FlowSolver<D>::refresh_fields() {
     shared_.clear();
     for (auto& field : state_.fields) shared_.push_back(planes_of(field.values));
     slabs().refresh(cut_, shared_, 1, state_.sides.periodic(D - 1));
+}
+
+/// Friction is felt where bodies will be: they move before it.
+template <int D>
+void FlowSolver<D>::rub(real t, real dt) {
+    bodies_->leave(state_, dt);
+    place_solids(t, dt);
+    const auto timed = passes_.time("solids");
+    bodies_->grip(state_, solids_, dt);
 }
 
 /// With fluxes all explicit rates are of the fields of before. The trapezoidal rule along paths takes half of every term where they begin:
@@ -340,6 +353,12 @@ void FlowSolver<D>::blend(const Substep& stage) {
 
 template <int D>
 void FlowSolver<D>::move_solids(real t, real dt) {
+    if (!state_.grip) place_solids(t, dt);
+    solids_.set_faces(state_);
+}
+
+template <int D>
+void FlowSolver<D>::place_solids(real t, real dt) {
     if (!solids_.any()) return;
     const auto timed = passes_.time("solids");
     if (bodies_) bodies_->fly(solids_, dt);
@@ -347,7 +366,6 @@ void FlowSolver<D>::move_solids(real t, real dt) {
         solids_.place(state_, t);
         projection_.set_matrix(state_);
     }
-    solids_.set_faces(state_);
 }
 
 template <int D>

@@ -57,12 +57,14 @@ private:
     int planes_to_extend() const;
     void fill_field_planes();
     void extend_fields();
+    void rub(real t, real dt);
     void depart(real dt);
     void arrive(real dt);
     void advect_fields(real dt);
     void advect_velocity(real dt);
     void blend(const Substep& stage);
     void move_solids(real t, real dt);
+    void place_solids(real t, real dt);
     void conduct(real dt);
     void lift(real dt);
     void slow(real dt);

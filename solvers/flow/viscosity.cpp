@@ -4,6 +4,7 @@
 // that the tangential velocity at walls is right to second order in dt (van Kan 1986):
 //     (I − dt/2 ν∇²)(u* − uⁿ) = (ũ − uⁿ) + dt ν∇²uⁿ − (dt/ρ)∇pⁿ,      u = u* + (dt/ρ)∇pⁿ,      ũ: all explicit rates are in.
 // Along paths to second order (MacCormack) ũ brings half of dt ν∇²uⁿ from where the path begins, and half is left to be added here.
+#include "flow/body_friction.hpp"
 #include "flow/effects.hpp"
 #include "flow/helmholtz.hpp"
 #include "staggered/projection.hpp"
@@ -95,7 +96,14 @@ template <int D>
 struct Viscosity final : MacEffect<D> {
     TimeRule rule;
     std::vector<Diffuser<D>> axes;
-    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) {}
+    std::optional<BodyFriction<D>> friction;  // none where the fluid sticks to no body
+    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) {
+        for (const auto& body : scene.root().tables("bodies"))
+            if (rule.time != Time::implicit && body.text("slip") == "no")
+                scene.refuse("effects.viscosity.scheme",
+                             "effects.viscosity.scheme = \"" + table.text("scheme") + "\" takes friction where bodies are before the step",
+                             "with a body that has slip = \"no\": scheme = \"implicit\"");
+    }
     Stage stage() const override { return rule.time == Time::explicit_ ? Stage::force : Stage::implicit; }
     void depart(MacState<D>& s, real dt) override {
         if (rule.departs) add(s, dt);
@@ -103,6 +111,7 @@ struct Viscosity final : MacEffect<D> {
     void apply(MacState<D>& s, real dt) override {
         if (s.nu == 0) return;
         if (rule.time == Time::explicit_) return add(s, dt);
+        if (s.grip) return rub(s, dt);
         prepare(s);
         add_gradient(s.u, s, -dt / s.rho);
         for (int a = 0; a < D; ++a) axes[static_cast<std::size_t>(a)].solve(s.before[a], dt * s.nu, rule, {}, s.u[a], "velocity");
@@ -113,10 +122,17 @@ struct Viscosity final : MacEffect<D> {
     std::size_t bytes() const override {
         std::size_t total = 0;
         for (const auto& axis : axes) total += axis.bytes();
-        return total;
+        return total + (friction ? friction->bytes() : 0);
     }
 
 private:
+    void rub(MacState<D>& s, real dt) {
+        if (!friction) friction.emplace(s);
+        add_gradient(s.u, s, -dt / s.rho);
+        friction->solve(s, dt);
+        friction->carry(s);
+        add_gradient(s.u, s, dt / s.rho);
+    }
     void add(MacState<D>& s, real dt) {
         if (s.nu == 0) return;
         prepare(s);

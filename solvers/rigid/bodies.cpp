@@ -264,7 +264,8 @@ template <int D>
 void Bodies<D>::show(FieldSet& set) const {
     if (empty()) return;
     constexpr std::size_t n = freedoms<D>, turns = n - D, angles = D == 2 ? 1 : 3;
-    shown_.assign(D + 2 * n + angles, std::vector<real>(count()));
+    const bool rubbed = std::any_of(list_.begin(), list_.end(), [](const Body<D>& b) { return b.rubbed; });
+    shown_.assign(D + 2 * n + angles + (rubbed ? n : 0), std::vector<real>(count()));
     std::size_t at = 0;
     const auto add = [&](const char* name, const char* unit, std::size_t components, auto&& value) {
         FieldView view{name, unit, Where::particle, body_set_name, {}};
@@ -281,6 +282,9 @@ void Bodies<D>::show(FieldSet& set) const {
     add("spin", "rad/s", turns, [](const Body<D>& b, std::size_t k) { return b.velocity[D + k]; });
     add("force", D == 2 ? "N/m" : "N", D, [](const Body<D>& b, std::size_t k) { return b.force[k]; });
     add("torque", D == 2 ? "N" : "N m", turns, [](const Body<D>& b, std::size_t k) { return b.force[D + k]; });
+    if (!rubbed) return;
+    add("viscous_force", D == 2 ? "N/m" : "N", D, [](const Body<D>& b, std::size_t k) { return b.viscous[k]; });
+    add("viscous_torque", D == 2 ? "N" : "N m", turns, [](const Body<D>& b, std::size_t k) { return b.viscous[D + k]; });
 }
 
 template <int D>

@@ -228,6 +228,7 @@ void Body<D>::save(Checkpoint& to, const std::string& block) const {
     to.put_value(block + "orientation", orientation);
     to.put_value(block + "velocity", velocity);
     to.put_value(block + "force", force);
+    if (rubbed) to.put_value(block + "viscous", viscous);
     to.put_value(block + "wet", wet);
     to.put_value(block + "touches", touches);
 }
@@ -238,6 +239,7 @@ void Body<D>::restore(const Checkpoint& from, const std::string& block) {
     orientation = from.template get_value<Orientation>(block + "orientation");
     velocity = from.template get_value<Twist<D>>(block + "velocity");
     force = from.template get_value<Twist<D>>(block + "force");
+    if (rubbed) viscous = from.template get_value<Twist<D>>(block + "viscous");
     wet = from.template get_value<real>(block + "wet");
     touches = from.template get_value<bool>(block + "touches");
 }

@@ -55,6 +55,8 @@ struct Body {
     bool touches = false;  // something other than fluid in the last step
     real wet = 0;          // the part of its surface that fluid touched then, in [0, 1]
     Twist<D> force{};      // of the fluid, mean over the last step [N], then [N m] about the centre of mass
+    Twist<D> viscous{};    // its friction's part of that
+    bool rubbed = false;   // friction is felt: its part is shown
 
     real density() const { return mass / moments.volume; }
     /// Position and velocity field, as solids have them.

@@ -16,6 +16,7 @@
 #include "rigid/bodies.hpp"
 #include "staggered/solid_faces.hpp"
 #include "staggered/state.hpp"
+#include "staggered/wall_grip.hpp"
 
 #include <memory>
 #include <vector>
@@ -36,6 +37,12 @@ public:
     void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
     /// What of them stands in fluid at t = 0.
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
+    /// A fluid with viscosity sticks to those that say so.
+    void stick(MacState<D>& s);
+    /// Before they fly: what stands in the cells and faces that they leave goes on as the fluid beside, having fallen for a time dt.
+    void leave(MacState<D>& s, real dt) const;
+    /// Where it does, and what of the bodies' motion the friction of a step dt meets.
+    void grip(const MacState<D>& s, const SolidPlacement<D>& solids, real dt);
     /// A time dt along their velocities.
     void fly(SolidPlacement<D>& solids, real dt);
     /// The pressure s.p and the velocities of the bodies: A p = b with what their velocities add to b, which is that of before on entry.
@@ -95,6 +102,7 @@ private:
     void turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, const Grid<real, D>& b);
 
     rigid::Bodies<D> bodies_;
+    std::unique_ptr<WallGrip<D>> grip_;  // none: nothing sticks
     rigid::Contacts<D> contacts_;
     Vec<D> gravity_{};
     real rho_ = 1, cell_ = 0, h2_ = 0;

@@ -43,6 +43,9 @@ struct SolidFaces {
     bool any() const { return !open[0].empty(); }
 };
 
+template <int D>
+struct WallGrip;
+
 /// The state of a MAC solver. Cell fields exist only if an effect (or the scene) asked for them.
 template <int D>
 struct MacState {
@@ -57,9 +60,10 @@ struct MacState {
     geometry::Sides<D> sides;
     /// How far a face follows the pressure, in [0, 1]; empty: all of them do, as long as nothing has held one back.
     std::array<Grid<real, D>, D> mobility;
-    real rho = 1;   // density [kg/m³]
-    real nu = 0;    // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
-    real time = 0;  // [s]
+    WallGrip<D>* grip = nullptr;  // where the fluid sticks to bodies; none: nowhere
+    real rho = 1;                 // density [kg/m³]
+    real nu = 0;                  // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
+    real time = 0;                // [s]
 
     MacState() = default;
     MacState(const scene::Scene& scene, const FieldPlan& plan);

@@ -82,6 +82,33 @@ Panel body_heave_panel(const RunRecord& run, const Reference& ref) {
     return {.title = "Height over where it was let go", .x = {"t [s]"}, .y = {"y/y0"}, .curves = {exact, body_heave(run, ref)}};
 }
 
+/// How fast the body sinks.
+Curve body_fall(const RunRecord& run) {
+    Curve v = track(run, "velocity_y");
+    for (real& value : v.y) value = -value;
+    v.label = "weir";
+    return v;
+}
+
+real fastest_fall(const RunRecord& run) {
+    const Curve v = body_fall(run);
+    return *std::max_element(v.y.begin(), v.y.end());
+}
+
+/// At the reference's times that the run has reached.
+real fall_error(const RunRecord& run, const Reference& ref) {
+    const Curve ours = body_fall(run), theirs = ref.curve("fall");
+    const real scale = *std::max_element(theirs.y.begin(), theirs.y.end());
+    real worst = 0;
+    for (std::size_t i = 0; i < theirs.size(); ++i)
+        if (theirs.x[i] <= run.time) worst = std::max(worst, std::abs(interpolate(ours, theirs.x[i]) - theirs.y[i]) / scale);
+    return worst;
+}
+
+Panel body_fall_panel(const RunRecord& run, const Reference& ref) {
+    return {.title = "Speed of sinking", .x = {"t [s]"}, .y = {"v [m/s]"}, .curves = {ref.curve("fall"), body_fall(run)}};
+}
+
 /// A square looks the same after a quarter turn: its tilt is at most an eighth of one.
 real tilt(real angle) { return std::abs(std::remainder(angle, pi / 2)); }
 
@@ -177,6 +204,29 @@ std::vector<Metric> body_metrics() {
          .unit = "",
          .doc = "Largest difference of the first three extrema to the reference's, over the height of release.",
          .measure = extrema_error},
+        {.name = "body.period_ratio",
+         .unit = "",
+         .doc = "Time between the first and the third crossing of the place of rest, over the reference's.",
+         .measure = [](const RunRecord& run, const Reference& ref) { return period(body_heave(run, ref)) / period(ref.curve("heave")); },
+         .figure = body_heave_panel},
+        {.name = "body.trough_error",
+         .unit = "",
+         .doc = "Difference of the first extreme to the reference's, over the height of release.",
+         .measure =
+             [](const RunRecord& run, const Reference& ref) {
+                 const auto ours = first_extrema(body_heave(run, ref));
+                 return ours.empty() ? std::nan("") : std::abs(ours[0] - first_extrema(ref.curve("heave")).at(0));
+             }},
+        {.name = "body.peak_fall_error",
+         .unit = "",
+         .doc = "Relative error of the greatest speed at which the body sinks.",
+         .measure = [](const RunRecord& run, const Reference& ref) { return std::abs(fastest_fall(run) / ref.number("fastest_fall") - 1); },
+         .figure = body_fall_panel},
+        {.name = "body.fall_error",
+         .unit = "",
+         .doc = "Largest difference of the speed at which the body sinks to the reference's, over its largest.",
+         .measure = fall_error,
+         .figure = body_fall_panel},
         {.name = "body.tilt_error",
          .unit = "rad",
          .doc = "Distance of the mean tilt of a square section over the last quarter of the run from the reference's.",

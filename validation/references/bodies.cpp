@@ -2,6 +2,7 @@
 #include "validation/harness/reference.hpp"
 #include "validation/references/table.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace weir;
@@ -72,6 +73,41 @@ REFERENCE(heave_decay) {
     for (real& t : curve.x) t *= std::sqrt(a / g);
     ref.curves["heave"] = curve;
     ref.numbers["start"] = first_body(scene).numbers("centre").at(1) - level(scene);
+    return ref;
+}
+
+/// Heave of a ball let go a tenth of its diameter above where it floats: measured, over that height.
+REFERENCE(heave_sphere) {
+    const Table table = read_table(data / "kramer2021_sphere_heave_0p1D.csv");
+    constexpr real te0 = 0.7561;  // the time by which the table divides [s]
+    Reference ref{.source = "Kramer et al. 2021"};
+    Curve curve = table.curve("t_over_Te0", "x3_over_H0", ref.source);
+    for (real& t : curve.x) t *= te0;
+    ref.curves["heave"] = curve;
+    ref.numbers["start"] = first_body(scene).numbers("centre").at(1) - level(scene);
+    return ref;
+}
+
+/// The greatest speed of a ball that sinks through one of four oils, told by its density.
+REFERENCE(settling_sphere) {
+    const Table table = read_table(data / "ten_cate2002_settling_sphere.csv");
+    Reference ref{.source = "ten Cate et al. 2002"};
+    for (std::size_t row = 0; row < table.rows.size(); ++row)
+        if (table.number(row, "rho_f") == scene.number("fluid.density"))
+            ref.numbers["fastest_fall"] = table.number(row, "u_inf") * table.number(row, "u_max_over_u_inf");
+    if (ref.numbers.empty()) throw BadInput("no oil of the table has the density of this fluid");
+    const real fastest = ref.number("fastest_fall");
+    ref.curves["fall"] = {.label = "greatest speed measured", .x = {0, scene.number("time.end")}, .y = {fastest, fastest}, .dashed = true};
+    return ref;
+}
+
+/// A disc sinks in a channel, by finite elements.
+REFERENCE(settling_disc) {
+    Reference ref{.source = "Glowinski et al. 2001"};
+    Curve curve = read_table(data / "glowinski2001_disc_settling_velocity.csv").curve("t_s", "v_m_per_s", ref.source);
+    for (real& v : curve.y) v = -v;
+    ref.numbers["fastest_fall"] = *std::max_element(curve.y.begin(), curve.y.end());
+    ref.curves["fall"] = curve;
     return ref;
 }
 

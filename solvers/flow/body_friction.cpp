@@ -1,0 +1,254 @@
+#include "flow/body_friction.hpp"
+
+#include "core/error.hpp"
+
+namespace weir::flow {
+
+namespace {
+
+/// As of the fluid alone (helmholtz.cpp).
+constexpr real tolerance = 1e-6;
+constexpr int max_iterations = 2000;
+
+/// Conductance of a wall: ρν ΔV/(θ h²) [N by m/s].
+template <int D>
+real conductance(const MacState<D>& s, const WallLink<D>& link) {
+    return s.rho * s.nu * s.u.cell_volume() * link.nearer / (s.u.h[link.across] * s.u.h[link.across]);
+}
+
+}  // namespace
+
+template <int D>
+BodyFriction<D>::BodyFriction(const MacState<D>& s) : direction_(s.u) {
+    for (int a = 0; a < D; ++a) {
+        nodes_.push_back(free_faces(s.u, s.sides, a));
+        homogeneous_[static_cast<std::size_t>(a)] = s.boundary[static_cast<std::size_t>(a)].homogeneous();
+    }
+    direction_bodies_.resize(s.grip->riders.size());
+    for (Vector* v : {&residual_, &solution_, &image_, &diagonal_}) size(*v, s);
+}
+
+template <int D>
+void BodyFriction<D>::size(Vector& v, const MacState<D>& s) const {
+    for (int a = 0; a < D; ++a) v.fluid[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent());
+    v.bodies.resize(s.grip->riders.size());
+}
+
+/// Fluid's part, then the bodies', each in its order.
+template <int D>
+real BodyFriction<D>::dot(const Vector& x, const Vector& y) const {
+    real sum = 0;
+    for (std::size_t a = 0; a < D; ++a)
+        sum += sum_over(x.fluid[a].extent(), [&](const Index<D>& I) { return x.fluid[a](I) * y.fluid[a](I); });
+    for (std::size_t b = 0; b < x.bodies.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k) sum += x.bodies[b][k] * y.bodies[b][k];
+    return sum;
+}
+
+/// ∇²q of the grid's neighbours, without what reaches through walls: these are added by who knows the walls' velocity.
+template <int D>
+void BodyFriction<D>::laplacian_of(const Padded<D>& q, const MacState<D>& s, int a, Grid<real, D>& out) const {
+    const auto& mask = s.grip->takes_part[static_cast<std::size_t>(a)];
+    laplacian(q, s.u.h, nodes_[static_cast<std::size_t>(a)], mask, Beyond::value, out);
+    for (const WallLink<D>& link : s.grip->links)
+        if (link.axis == a) out(link.node) -= (q(link.beyond) - q(link.node)) / (s.u.h[link.across] * s.u.h[link.across]);
+}
+
+/// ν∇² of before, walls included, times ρ ΔV, into the image.
+template <int D>
+static void add_walls_of_before(const MacState<D>& s, std::array<Grid<real, D>, D>& rate) {
+    const real mass = s.rho * s.u.cell_volume();
+    for (std::size_t a = 0; a < D; ++a) for_each_cell(rate[a].extent(), [&](const Index<D>& I) { rate[a](I) *= s.nu * mass; });
+    for (const WallLink<D>& link : s.grip->links) {
+        const auto a = static_cast<std::size_t>(link.axis);
+        const real wall = WallGrip<D>::along(link.moves, s.grip->riders[link.body].velocity);
+        rate[a](link.node) += conductance(s, link) * (wall - s.before[link.axis](link.node));
+    }
+}
+
+template <int D>
+void BodyFriction<D>::set_right_side(const MacState<D>& s, real dt) {
+    const real mass = s.rho * s.u.cell_volume();
+    for (int a = 0; a < D; ++a) laplacian_of(s.before[a], s, a, residual_.fluid[static_cast<std::size_t>(a)]);
+    add_walls_of_before<D>(s, residual_.fluid);
+    for (std::size_t a = 0; a < D; ++a) {
+        const auto& mask = s.grip->takes_part[a];
+        auto& r = residual_.fluid[a];
+        for_each_in(nodes_[a].lo, nodes_[a].hi, [&](const Index<D>& I) {
+            const real changed = mass * (s.u.face[a](I) - s.before.face[a](I));
+            r(I) = mask(I) * (changed + dt * r(I));
+        });
+    }
+    for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
+        const Rider<D>& rider = s.grip->riders[b];
+        auto& r = residual_.bodies[b];
+        r = rider.sticks ? rider.drive : rigid::Twist<D>{};
+        for (std::size_t k = D; k < n && rider.sticks; ++k) r[k] -= dt * rider.turning * rider.velocity[k];
+    }
+    for (const WallLink<D>& link : s.grip->links) {
+        const real wall = WallGrip<D>::along(link.moves, s.grip->riders[link.body].velocity);
+        const real pull = dt * conductance(s, link) * (s.before[link.axis](link.node) - wall);
+        for (std::size_t k = 0; k < n; ++k) residual_.bodies[link.body][k] += pull * link.moves[k];
+    }
+    for (std::size_t b = 0; b < s.grip->riders.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k)
+            if (s.grip->riders[b].held[k]) residual_.bodies[b][k] = 0;
+}
+
+/// image = A direction
+template <int D>
+void BodyFriction<D>::multiply(const MacState<D>& s, real dt) {
+    const real mass = s.rho * s.u.cell_volume();
+    for (int c = 0; c < D; ++c) {
+        const auto at = static_cast<std::size_t>(c);
+        auto& image = image_.fluid[at];
+        laplacian_of(direction_[c], s, c, image);
+        for_each_in(nodes_[at].lo, nodes_[at].hi, [&](const Index<D>& I) { image(I) = mass * (direction_[c](I) - dt * s.nu * image(I)); });
+    }
+    for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
+        const Rider<D>& rider = s.grip->riders[b];
+        for (std::size_t k = 0; k < n; ++k) {
+            real& image = image_.bodies[b][k] = 0;
+            for (std::size_t l = 0; l < n; ++l) image += rider.mass[k][l] * direction_bodies_[b][l];
+            if (k >= D) image += dt * rider.turning * direction_bodies_[b][k];
+        }
+    }
+    for (const WallLink<D>& link : s.grip->links) {
+        const real apart = direction_[link.axis](link.node) - WallGrip<D>::along(link.moves, direction_bodies_[link.body]);
+        const real pull = dt * conductance(s, link) * apart;
+        image_.fluid[static_cast<std::size_t>(link.axis)](link.node) += pull;
+        for (std::size_t k = 0; k < n; ++k) image_.bodies[link.body][k] -= pull * link.moves[k];
+    }
+    for (std::size_t b = 0; b < s.grip->riders.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k)
+            if (s.grip->riders[b].held[k] || !s.grip->riders[b].sticks) image_.bodies[b][k] = direction_bodies_[b][k];
+}
+
+template <int D>
+void BodyFriction<D>::set_diagonal(const MacState<D>& s, real dt) {
+    const real mass = s.rho * s.u.cell_volume();
+    real across = 0;
+    for (int b = 0; b < D; ++b) across += 2 / (s.u.h[b] * s.u.h[b]);
+    for (auto& diagonal : diagonal_.fluid) diagonal.fill(mass * (1 + dt * s.nu * across));
+    for (std::size_t b = 0; b < s.grip->riders.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k) diagonal_.bodies[b][k] = s.grip->riders[b].sticks ? s.grip->riders[b].mass[k][k] : 1;
+    for (const WallLink<D>& link : s.grip->links) {
+        const real c = dt * conductance(s, link);
+        diagonal_.fluid[static_cast<std::size_t>(link.axis)](link.node) += c * (1 - 1 / link.nearer);
+        for (std::size_t k = 0; k < n; ++k) diagonal_.bodies[link.body][k] += c * link.moves[k] * link.moves[k];
+    }
+}
+
+/// z = residual/diagonal into the image; answers by residual · z.
+template <int D>
+real BodyFriction<D>::precondition() {
+    for (std::size_t c = 0; c < D; ++c)
+        for_each_cell(image_.fluid[c].extent(),
+                      [&](const Index<D>& I) { image_.fluid[c](I) = residual_.fluid[c](I) / diagonal_.fluid[c](I); });
+    for (std::size_t b = 0; b < image_.bodies.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k) image_.bodies[b][k] = residual_.bodies[b][k] / diagonal_.bodies[b][k];
+    return dot(residual_, image_);
+}
+
+/// direction = z + β direction; the first has no other before it.
+template <int D>
+void BodyFriction<D>::turn(real beta) {
+    for (std::size_t c = 0; c < D; ++c) {
+        auto& d = direction_.face[c];
+        for_each_in(nodes_[c].lo, nodes_[c].hi, [&](const Index<D>& I) { d(I) = image_.fluid[c](I) + (beta == 0 ? 0 : beta * d(I)); });
+        fill_ghosts(d, homogeneous_[c], 1);
+    }
+    for (std::size_t b = 0; b < direction_bodies_.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k)
+            direction_bodies_[b][k] = image_.bodies[b][k] + (beta == 0 ? 0 : beta * direction_bodies_[b][k]);
+}
+
+/// Along the direction as far as the residual falls.
+template <int D>
+void BodyFriction<D>::walk(real rz) {
+    real met = 0;
+    for (std::size_t c = 0; c < D; ++c)
+        met += sum_over(image_.fluid[c].extent(), [&](const Index<D>& I) { return image_.fluid[c](I) * direction_.face[c](I); });
+    for (std::size_t b = 0; b < direction_bodies_.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k) met += image_.bodies[b][k] * direction_bodies_[b][k];
+    const real alpha = rz / met;
+    for (std::size_t c = 0; c < D; ++c)
+        for_each_in(nodes_[c].lo, nodes_[c].hi, [&](const Index<D>& I) {
+            solution_.fluid[c](I) += alpha * direction_.face[c](I);
+            residual_.fluid[c](I) -= alpha * image_.fluid[c](I);
+        });
+    for (std::size_t b = 0; b < direction_bodies_.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k) {
+            solution_.bodies[b][k] += alpha * direction_bodies_[b][k];
+            residual_.bodies[b][k] -= alpha * image_.bodies[b][k];
+        }
+}
+
+/// Conjugate gradients with the diagonal as preconditioner: walls very near to nodes make entries that differ by a hundred.
+template <int D>
+void BodyFriction<D>::solve(MacState<D>& s, real dt) {
+    set_right_side(s, dt);
+    set_diagonal(s, dt);
+    for (auto& q : solution_.fluid) q.fill(0);
+    for (auto& q : solution_.bodies) q = {};
+    real rz = precondition();
+    const real goal = tolerance * tolerance * rz;
+    if (rz > 0) turn(0);
+    for (iterations_ = 0; rz > goal; ++iterations_) {
+        if (iterations_ == max_iterations || !std::isfinite(rz))
+            throw NumericalFailure("velocity", "the implicit solve for velocity and bodies did not converge");
+        multiply(s, dt);
+        walk(rz);
+        const real last = rz;
+        rz = precondition();
+        turn(rz / last);
+    }
+    finish(s, dt);
+}
+
+/// u, and what friction gave the bodies: as much as it took from the fluid.
+template <int D>
+void BodyFriction<D>::finish(MacState<D>& s, real dt) {
+    for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
+        Rider<D>& rider = s.grip->riders[b];
+        rider.impulse = {};
+        for (std::size_t k = D; k < n && rider.sticks; ++k)
+            rider.impulse[k] = -dt * rider.turning * (rider.velocity[k] + solution_.bodies[b][k]);
+    }
+    for (const WallLink<D>& link : s.grip->links) {
+        Rider<D>& rider = s.grip->riders[link.body];
+        const real before = s.before[link.axis](link.node) - WallGrip<D>::along(link.moves, rider.velocity);
+        const real change =
+            solution_.fluid[static_cast<std::size_t>(link.axis)](link.node) - WallGrip<D>::along(link.moves, solution_.bodies[link.body]);
+        const real pull = dt * conductance(s, link) * (before + change);
+        for (std::size_t k = 0; k < n; ++k) rider.impulse[k] += pull * link.moves[k];
+    }
+    for (std::size_t a = 0; a < D; ++a) {
+        const auto& mask = s.grip->takes_part[a];
+        for_each_in(nodes_[a].lo, nodes_[a].hi, [&](const Index<D>& I) {
+            if (mask(I) != 0) s.u.face[a](I) = s.before.face[a](I) + solution_.fluid[a](I);
+        });
+    }
+}
+
+template <int D>
+void BodyFriction<D>::carry(MacState<D>& s) const {
+    for (const InsideFace<D>& f : s.grip->inside) {
+        rigid::Twist<D> velocity = s.grip->riders[f.body].velocity;
+        for (std::size_t k = 0; k < n; ++k) velocity[k] += solution_.bodies[f.body][k];
+        s.u[f.axis](f.face) = WallGrip<D>::along(f.moves, velocity);
+    }
+}
+
+template <int D>
+std::size_t BodyFriction<D>::bytes() const {
+    std::size_t nodes = 0;
+    for (const auto& q : residual_.fluid) nodes += 4 * q.size();
+    for (const auto& q : direction_.face) nodes += q.bytes() / sizeof(real);
+    return nodes * sizeof(real) + 5 * direction_bodies_.size() * sizeof(rigid::Twist<D>);
+}
+
+template class BodyFriction<2>;
+template class BodyFriction<3>;
+
+}  // namespace weir::flow

@@ -1,0 +1,52 @@
+// The viscosity of a fluid and of the bodies that it sticks to, as one linear system: with δ the change of the velocity, δV that of a
+// body's, and c = dt ρν ΔV/(θ h²) at each of its walls (staggered/wall_grip.hpp)
+//
+//     ρ ΔV (I − dt ν∇²) δ + Σ c (δ − J δV) = ρ ΔV r,      M δV + Σ Jᵀ c (J δV − δ) = R,      J: the wall's velocity by the body's
+//
+// It is symmetric and positive, so that conjugate gradients solve it, and a light body is carried by the fluid and does not swing against
+// it, whatever the step. The Laplacian gives the walls μ ∂u/∂n; on a wall that turns by ω the stress has −μ ω × n more, of which the
+// torque is −2 μ V ω for a body of any shape.
+#pragma once
+#include "flow/helmholtz.hpp"
+#include "staggered/state.hpp"
+#include "staggered/wall_grip.hpp"
+
+namespace weir::flow {
+
+template <int D>
+class BodyFriction {
+public:
+    explicit BodyFriction(const MacState<D>& s);
+    /// The step dt from the velocity of before, where all other rates are in.
+    void solve(MacState<D>& s, real dt);
+    /// The faces inside bodies move with them.
+    void carry(MacState<D>& s) const;
+    int iterations() const { return iterations_; }
+    std::size_t bytes() const;
+
+private:
+    static constexpr std::size_t n = rigid::freedoms<D>;
+    struct Vector {
+        std::array<Grid<real, D>, D> fluid;
+        std::vector<rigid::Twist<D>> bodies;
+    };
+    void size(Vector& v, const MacState<D>& s) const;
+    void laplacian_of(const Padded<D>& q, const MacState<D>& s, int a, Grid<real, D>& out) const;
+    void set_right_side(const MacState<D>& s, real dt);
+    void set_diagonal(const MacState<D>& s, real dt);
+    void multiply(const MacState<D>& s, real dt);
+    real precondition();
+    void turn(real beta);
+    void walk(real rz);
+    void finish(MacState<D>& s, real dt);
+    real dot(const Vector& x, const Vector& y) const;
+
+    std::vector<Nodes<D>> nodes_;
+    std::array<Boundary<D>, D> homogeneous_;
+    PaddedVelocity<D> direction_;
+    std::vector<rigid::Twist<D>> direction_bodies_;
+    Vector residual_, solution_, image_, diagonal_;
+    int iterations_ = 0;
+};
+
+}  // namespace weir::flow
