@@ -9,7 +9,7 @@
 #include "flow/helmholtz.hpp"
 #include "staggered/projection.hpp"
 
-#include <optional>
+#include <memory>
 
 namespace weir::flow {
 
@@ -96,7 +96,7 @@ template <int D>
 struct Viscosity final : MacEffect<D> {
     TimeRule rule;
     std::vector<Diffuser<D>> axes;
-    std::optional<BodyFriction<D>> friction;  // none where the fluid sticks to no body
+    std::unique_ptr<BodyFriction<D>> friction;  // none where the fluid sticks to no body
     Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) {
         for (const auto& body : scene.root().tables("bodies"))
             if (rule.time != Time::implicit && body.text("slip") == "no")
@@ -127,7 +127,7 @@ struct Viscosity final : MacEffect<D> {
 
 private:
     void rub(MacState<D>& s, real dt) {
-        if (!friction) friction.emplace(s);
+        if (!friction) friction = std::make_unique<BodyFriction<D>>(s);
         add_gradient(s.u, s, -dt / s.rho);
         friction->solve(s, dt);
         friction->carry(s);

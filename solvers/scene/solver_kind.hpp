@@ -25,6 +25,7 @@ struct SolverKind {
     PlainStep plain{};
     /// Refuses, at its key, what of a scene cannot run over several ranks. None: the solver runs in one process only.
     std::function<void(const Scene&)> over_ranks{};
+    /// What each of several ranks takes its share of.
     Shared shared = Shared::by_planes;
 };
 

@@ -49,10 +49,14 @@ const Variant* method_named(const Study& study, const std::string& name) {
     return nullptr;
 }
 
-/// What settings of a method are multiples of: cells along the sweep's axis that leave whole numbers along the others, or iterations.
+/// Whether the values of a key say how many: iterations, or entries of a list.
+bool counts(const std::string& key) { return key.find("iterations") != std::string::npos || key.ends_with("[:]"); }
+
+/// What settings of a method are multiples of: cells along the sweep's axis that leave whole numbers along the others, or one where they
+/// count.
 real grain_of(const Variant& method) {
     const Sweep& sweep = *method.sweep;
-    if (sweep.key.find("iterations") != std::string::npos) return 1;
+    if (counts(sweep.key)) return 1;
     if (sweep.key != "grid.cells") return 0;
     Variant plain = method;
     plain.sweep.reset();
@@ -159,8 +163,8 @@ std::vector<CostCurve> read_cost_table(const Study& study, const std::filesystem
         if (index == method->runs() || !runs_here(scene_of(*method, index, schemas))) continue;
         auto curve = std::find_if(curves.begin(), curves.end(), [&](const CostCurve& c) { return c.method == method->name; });
         if (curve == curves.end()) {
-            const bool iterations = method->sweep && method->sweep->key.find("iterations") != std::string::npos;
-            curve = curves.insert(curves.end(), {.method = method->name, .counts_iterations = iterations, .points = {}});
+            const bool counting = method->sweep && counts(method->sweep->key);
+            curve = curves.insert(curves.end(), {.method = method->name, .counts = counting, .points = {}});
             if (method->sweep) curve->grain = grain_of(*method);
         }
         curve->points.push_back({.setting = method->sweep ? method->sweep->values[index] : 0,
@@ -197,8 +201,8 @@ std::optional<Priced> predict(const CostCurve& curve, real setting) {
     const Priced &a = *(above - 1), &b = *above;
     const real ratio = a.error / b.error;
     if (!(a.error > 0 && b.error > 0) || std::max(ratio, 1 / ratio) > widest_step) return std::nullopt;
-    const auto time = curve.counts_iterations ? by_line : by_power;
-    const auto error = curve.counts_iterations ? by_factor : by_power;
+    const auto time = curve.counts ? by_line : by_power;
+    const auto error = curve.counts ? by_factor : by_power;
     const auto read = [&](auto how, auto Priced::*of) { return how(setting, a.setting, b.setting, a.*of, b.*of); };
     return Priced{.setting = setting,
                   .error = read(error, &Priced::error),
@@ -229,7 +233,7 @@ std::vector<Choice> between_entries(const std::vector<CostCurve>& curves, Price 
             const real from = c.points[i - 1].setting, to = c.points[i].setting;
             real last = from;
             for (int k = 1; k < between; ++k) {
-                const real setting = rounded(by_power(k, 1, between, from, to), c.grain);
+                const real setting = rounded((from > 0 ? by_power : by_line)(k, 1, between, from, to), c.grain);
                 if (setting <= last || setting >= to) continue;
                 last = setting;
                 if (const auto p = predict(c, setting)) all.push_back({&c, *p, seconds_of(*p, price, budget)});

@@ -25,7 +25,7 @@ struct Priced {
 /// One method of a study through its settings, in their order.
 struct CostCurve {
     std::string method;
-    bool counts_iterations = false;  // the settings are iterations; otherwise a resolution
+    bool counts = false;  // the settings are a number of iterations or of entries; otherwise a resolution
     std::vector<Priced> points;
     real grain = 1;  // settings between entries are multiples of it: cells that keep a grid's proportions whole; 0: any number
 };

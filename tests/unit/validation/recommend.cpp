@@ -107,6 +107,15 @@ TEST("what is recommended between two entries can be asked for: cells that keep 
     for (const CostCurve& curve : read_cost_table(water, tables)) EXPECT_EQ(curve.grain, 24) << curve.method;
 }
 
+TEST("what grows with a number of entries is predicted along a line, from none of them on") {
+    CostCurve bodies = line("bodies", {{0, 0.010, 0.40, 1}, {10, 0.012, 0.60, 1}});
+    bodies.counts = true, bodies.grain = 1;
+    const auto five = predict(bodies, 5);
+    ASSERT_TRUE(five);
+    EXPECT_DOUBLE_EQ(five->seconds_per_second, 0.5);
+    EXPECT_NEAR(five->error, std::sqrt(0.010 * 0.012), 1e-12);
+}
+
 TEST("a budget and an error are read with their units, or refused") {
     EXPECT_DOUBLE_EQ(parse_seconds("16ms"), 0.016);
     EXPECT_DOUBLE_EQ(parse_seconds("0.5 s"), 0.5);
