@@ -30,7 +30,7 @@ python_needs=(python3-dev pybind11-dev python3-numpy)
 docs_need=(mkdocs libjs-katex)
 package_needs=(dpkg-dev gzip lintian)
 films_need=(ffmpeg)
-tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libpetsc-real-dev libopenmpi-dev openmpi-bin pkgconf libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
+tests_need=(ccache ffmpeg libgtest-dev libbenchmark-dev libhypre-dev libpetsc-real-dev libopenmpi-dev openmpi-bin libmpich-dev mpich pkgconf libnanoflann-dev pocl-opencl-icd oclgrind valgrind xvfb xauth chromium
             python3-pip python3-setuptools python3-pytest python3-matplotlib jupyter-nbconvert python3-ipykernel doxygen dpkg-dev)
 
 install_missing() { # PACKAGE...

@@ -33,7 +33,10 @@ explained() { # REASON
         *"no nbconvert"*) ! /usr/bin/python3 -c 'import ipykernel, nbconvert' 2>/dev/null ;;
         *"no Xvfb"*) ! has_display ;;
         *"no chromium"*) ! has_browser ;;
+        *"no mpirun.mpich"*) ! has mpirun.mpich ;;
         *"no mpirun"*) ! has mpirun ;;
+        *"WEIR_MPI is off"*) true ;;  # somebody wanted it so
+        *"built without MPI"*libmpich-dev*) ! has mpicc.mpich ;;
         *"built without MPI"*) ! has mpicc ;;
         *"no valgrind"*) ! has valgrind ;;
         *"valgrind does not know this build's instructions"*) grep -q avx512f /proc/cpuinfo ;;

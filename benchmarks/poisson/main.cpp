@@ -2,9 +2,11 @@
 //
 //     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] [--csv]
 //
-// --csv: comma-separated values in place of the table. // Times are the least of K runs; a peer that would take minutes or more memory than
-// there is says "skipped" and why.
+// --csv: comma-separated values in place of the table. Times are the least of K runs; a peer that would take minutes or more memory than
+// there is says "skipped" and why. Started by mpirun it shares `multigrid` between the ranks; the others are then left out.
 #include "core/error.hpp"
+#include "core/slabs.hpp"
+#include "distributed/ranks.hpp"
 #include "pfmg.hpp"
 #include "problems.hpp"
 
@@ -114,14 +116,18 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         return row;
     }
     set_threads(threads);
+    const Cut cut = cut_of(problem.b.extent()[D - 1], slabs().ranks());
     const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0" || solver.starts_with("petsc");
     const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
     row.setup_ms = row.solve_ms = infinity;
     for (int k = 0; k < (slow ? std::min(2, choice.repeat) : choice.repeat); ++k) {
         if (!(slow && k > 0)) method->setup(problem.A);
         p.fill(0);
+        slabs().largest(0);  // nobody begins before all are here
         try {
+            const OwnPlanes own(cut);
             const auto& report = method->solve(p, problem.b);
+            gather(p);
             row.setup_ms = std::min(row.setup_ms, 1e3 * report.setup_seconds);
             row.solve_ms = std::min(row.solve_ms, 1e3 * report.solve_seconds);
             row.iterations = report.iterations;
@@ -165,6 +171,10 @@ void print(const Row& r, double pfmg_ms) {
 template <int D>
 void run_case(const std::string& name, int n, int threads, const Choice& choice) {
     std::vector<std::string> solvers = choice.solvers;
+    if (slabs().several()) {
+        if (!solvers.empty() && solvers != std::vector<std::string>{"multigrid"}) throw BadInput("over ranks: --solver multigrid alone");
+        solvers = {"multigrid"};
+    }
     if (solvers.empty()) {
         solvers = {"pfmg_cg", "multigrid", "cholmod"};
         if (is_obstacle(name)) solvers.push_back("cg_mic0");
@@ -218,9 +228,10 @@ int main(int argc, char** argv) {
     try {
         const Choice choice = read_options(argc, argv);
         if (choice.pfmg_process) return bench::pfmg_process(choice.cases[0], choice.dims[0], choice.n, choice.repeat);
-        return run(choice);
+        distributed::join();
+        return distributed::leave(run(choice), "");
     } catch (const std::exception& error) {
         std::fprintf(stderr, "bench_poisson: %s\n", error.what());
-        return exit_bad_input;
+        return distributed::leave(exit_bad_input, error.what());
     }
 }

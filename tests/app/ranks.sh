@@ -1,15 +1,25 @@
 #!/usr/bin/env bash
-# ranks.sh WEIR SCENES MPI_LIBRARY PART: weir run over several processes leaves what one process leaves, byte for byte; what cannot run so
-# is refused; and however a run ends, it ends on all ranks. Exit code 77 (skipped) where there is no MPI.
+# ranks.sh WEIR SCENES MPI_LIBRARY PART [MPIRUN]: weir run over several processes leaves what one process leaves, byte for byte; what cannot
+# run so is refused; and however a run ends, it ends on all ranks. With MPIRUN, that of another MPI than the one weir was built with, and
+# the library for that. Exit code 77 (skipped) where there is no MPI.
 set -uo pipefail
 weir=$1 scenes=$2 library=$3 part=$4
-[ -n "$library" ] || { echo "skipped: built without MPI (Debian: apt-get install libopenmpi-dev)"; exit 77; }
-command -v mpirun >/dev/null || { echo "skipped: no mpirun (Debian: apt-get install openmpi-bin)"; exit 77; }
+export MPIRUN=${5:-mpirun}
+[ "$library" != off ] || { echo "skipped: WEIR_MPI is off"; exit 77; }
+package=$([ "$MPIRUN" = mpirun ] && echo openmpi || echo "${MPIRUN#mpirun.}")
+[ -n "$library" ] || { echo "skipped: built without MPI (Debian: apt-get install lib$package-dev)"; exit 77; }
+command -v "$MPIRUN" >/dev/null || { echo "skipped: no $MPIRUN (Debian: apt-get install ${package/openmpi/openmpi-bin})"; exit 77; }
 mpirun_sh=$(realpath "$(dirname "$0")/../support/mpirun.sh")
 source "$mpirun_sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+if [ $# -gt 4 ]; then # weir looks beside itself first
+    mkdir other
+    ln "$weir" other/weir 2>/dev/null || cp "$weir" other/weir
+    cp "$library" other/libweir_mpi.so
+    weir=$work/other/weir
+fi
 export OMP_NUM_THREADS=1 GOMP_SPINCOUNT=2000
 
 fail() { echo "FAILED: $*"; tail -n 20 "$work"/log; exit 1; }
