@@ -4,6 +4,7 @@
 //
 // --csv: comma-separated values in place of the table. Times are the least of K runs; a peer that would take minutes or more memory than
 // there is says "skipped" and why. Started by mpirun it shares `multigrid` between the ranks; the others are then left out.
+#include "core/cut_by_work.hpp"
 #include "core/error.hpp"
 #include "core/slabs.hpp"
 #include "distributed/ranks.hpp"
@@ -95,6 +96,19 @@ std::optional<std::string> reason_to_skip(const std::string& solver, const std::
     return std::nullopt;
 }
 
+/// What a sweep over each plane costs: blocks of a row's cells that hold fluid, as the kernels take them.
+template <int D>
+std::vector<std::int64_t> blocks_in_planes(const Grid<poisson::Cell, D>& cells) {
+    constexpr std::size_t block = 32;  // 16 of either colour
+    const auto row = static_cast<std::size_t>(cells.extent()[0]), plane = static_cast<std::size_t>(cells.stride(D - 1));
+    std::vector<std::int64_t> list(cells.size() / plane);
+    for (std::size_t begin = 0; begin < cells.size(); begin += row)
+        for (std::size_t i = begin; i < begin + row; i += block)
+            list[begin / plane] +=
+                std::any_of(&cells[i], &cells[begin] + std::min(row, i - begin + block), [](auto c) { return c == poisson::Cell::fluid; });
+    return list;
+}
+
 template <int D>
 Row measure(const std::string& solver, const std::string& name, const bench::Problem<D>& problem, int threads, const Choice& choice,
             Grid<real, D>& p) {
@@ -116,7 +130,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         return row;
     }
     set_threads(threads);
-    const Cut cut = cut_of(problem.b.extent()[D - 1], slabs().ranks());
+    const Cut cut = cut_by_work(blocks_in_planes(problem.A.cells), slabs().ranks());
     const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0" || solver.starts_with("petsc");
     const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
     row.setup_ms = row.solve_ms = infinity;

@@ -24,30 +24,40 @@ struct Wavefront {
     int reach_down(int stage) const { return stage + (last_pairs && stage == stages - 1 ? 1 : 0); }
 
     /// The same on the planes of one rank: `below` and `above` tell whether another owns what lies beyond them. exchange(stage) brings what
-    /// that stage has written beside the cuts; as many exchanges as there are stages but one, whatever the slab.
+    /// that stage has written beside the cuts; as many exchanges as there are stages but one, whatever the slab. What others wait for comes
+    /// first: the planes by the cuts, a plane less each stage; then what depends on no other rank any more, however much that is.
     template <class F, class Exchange>
     void run_slab(int wanted, PlaneRange own, bool below, bool above, F&& f, Exchange&& exchange) const {
-        const int slabs = std::min(wanted, (own.end - own.begin) / thickness());
-        if (slabs == 0) {
+        const auto low = [&](int s) { return below ? own.begin + by_cut(s) : own.begin; };
+        const auto high = [&](int s) { return above ? own.end - by_cut(s) : own.end; };
+        const int inner = high(0) - low(0);
+        if (inner < 0) {
             for (int s = 0; s < stages; ++s) {
                 for (int q = own.begin; q < own.end; ++q) f(s, q);
                 if (s + 1 < stages) exchange(s);
             }
             return;
         }
+        const int slabs = std::max(1, std::min(wanted, inner / thickness()));
 #pragma omp parallel num_threads(slabs)
         {
             const int t = omp_get_thread_num(), team = omp_get_num_threads();
-            const int begin = boundary(t, team, own), end = boundary(t + 1, team, own);
-            const bool first = t == 0 && !below, last = t == team - 1 && !above;
-            sweep(begin, end, first, last, f);
+            for (int s = 0; s < stages; ++s) {
+                if (t == 0)
+                    for (int q = own.begin; q < low(s); ++q) f(s, q);
+                if (t == team - 1)
+                    for (int q = high(s); q < own.end; ++q) f(s, q);
+#pragma omp barrier
+                if (t == 0 && s + 1 < stages) exchange(s);
+#pragma omp barrier
+            }
+            const int begin = boundary(t, team, {low(0), high(0)}), end = boundary(t + 1, team, {low(0), high(0)});
+            sweep([&](int s) { return PlaneRange{t == 0 ? low(s) : begin + reach_down(s), t == team - 1 ? high(s) : end - s}; }, f);
             for (int s = 1; s < stages; ++s) {
 #pragma omp barrier
-                if (t == 0) exchange(s - 1);
-#pragma omp barrier
-                if (!first)
+                if (t > 0)
                     for (int q = begin; q < begin + reach_down(s); ++q) f(s, q);
-                if (!last)
+                if (t < team - 1)
                     for (int q = end - s; q < end; ++q) f(s, q);
             }
         }
@@ -58,13 +68,13 @@ struct Wavefront {
     void run(int wanted, F&& f) const {
         const int slabs = std::min(wanted, planes / thickness());
         if (slabs == 0 || (slabs == 1 && ring && planes < 2 * thickness())) return stage_by_stage(f);
-        if (slabs == 1 && !ring) return sweep(0, planes, true, true, f);
+        if (slabs == 1 && !ring) return sweep([&](int) { return PlaneRange{0, planes}; }, f);
 #pragma omp parallel num_threads(slabs)
         {
             const int t = omp_get_thread_num(), team = omp_get_num_threads();
             const int begin = boundary(t, team, {0, planes}), end = boundary(t + 1, team, {0, planes});
             const bool first = t == 0 && !ring, last = t == team - 1 && !ring;
-            sweep(begin, end, first, last, f);
+            sweep([&](int s) { return PlaneRange{first ? begin : begin + reach_down(s), last ? end : end - s}; }, f);
             if (many_planes()) {
 #pragma omp barrier
                 if (!first) close_below(begin, f);
@@ -106,16 +116,20 @@ private:
             for (int q = 0; q < planes; ++q) f(s, q);
     }
 
-    /// What stage s can do on planes [begin, end) alone; open ends lose a plane a stage.
-    template <class F>
-    void sweep(int begin, int end, bool first, bool last, F&& f) const {
-        for (int front = begin; front < end + stages - 1; ++front)
+    /// Stage s on the planes of(s), whose ends move by a plane a stage at least where they are not ends of the grid.
+    template <class Of, class F>
+    void sweep(Of&& of, F&& f) const {
+        int begin = planes, end = 0;
+        for (int s = 0; s < stages; ++s) begin = std::min(begin, of(s).begin + s), end = std::max(end, of(s).end + s);
+        for (int front = begin; front < end; ++front)
             for (int s = 0; s < stages; ++s) {
                 const int q = front - s;
-                const int from = first ? begin : begin + reach_down(s), to = last ? end : end - s;
-                if (q >= from && q < to) f(s, q);
+                const PlaneRange range = of(s);
+                if (q >= range.begin && q < range.end) f(s, q);
             }
     }
+    /// Planes beside a cut that stage s does before the rest: each stage needs those of the stage before it and one more.
+    int by_cut(int stage) const { return stages - stage + (last_pairs && stage + 1 < stages ? 1 : 0); }
 };
 
 }  // namespace weir::poisson

@@ -1,4 +1,5 @@
 // Who owns which planes and what travels: arithmetic that all ranks do alike, against its definition; and that one rank asks for nothing.
+#include "core/cut_by_work.hpp"
 #include "core/grid.hpp"
 #include "support/test.hpp"
 
@@ -20,6 +21,24 @@ TEST("planes are cut at multiples of 8 where there are enough, of fewer where no
             ASSERT_EQ(cut.planes(), planes);
             for (int r = 0; r < ranks; ++r) ASSERT_LT(cut.begin(r), cut.end(r, planes)) << planes << " planes, " << ranks << " ranks";
         }
+}
+
+TEST("cuts by work: the slabs of a tank whose upper half is empty are in its lower half, and every rank has one") {
+    std::vector<std::int64_t> half(128, 0);
+    std::fill_n(half.begin(), 64, 1000);
+    EXPECT_EQ(cut_by_work(half, 2).at, (std::vector<int>{0, 32, 128}));
+    EXPECT_EQ(cut_by_work(half, 4).at, (std::vector<int>{0, 16, 32, 48, 128}));
+    EXPECT_TRUE(cut_by_work(half, 1).empty());
+    const std::vector<std::int64_t> even(64, 7), none(64, 0);
+    EXPECT_EQ(cut_by_work(even, 4), cut_of(64, 4));
+    EXPECT_EQ(cut_by_work(none, 3), cut_of(64, 3));
+    std::vector<std::int64_t> one(20, 0);  // all of it in the last plane
+    one.back() = 5;
+    for (const int ranks : {2, 3, 7, 20}) {
+        const Cut cut = cut_by_work(one, ranks);
+        for (int r = 0; r < ranks; ++r) EXPECT_LT(cut.begin(r), cut.end(r, 20)) << ranks;
+        EXPECT_EQ(cut.planes(), 20);
+    }
 }
 
 /// Beyond both cuts, plane by plane as one would say it.
