@@ -18,6 +18,7 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
       liquid_(b_.size() / static_cast<std::size_t>(frame.cells[0])),
       solver_(poisson::make_solver<D>(choice.method, choice.options)),
       tolerance_(choice.options.tolerance),
+      cut_(cut_of(frame.cells[D - 1], slabs().ranks())),
       h2_(frame.h[0] * frame.h[0]),
       largest_cut_(1 + frame.h_max() / frame.h_min() / thinnest) {
     A_.cells = Grid<Cell, D>(frame.cells, Cell::air);
@@ -150,6 +151,19 @@ void SurfacePressure<D>::hold_back(const MacState<D>& state) {
     }
 }
 
+/// Over ranks: by all of them together where the method can, else by each of them.
+template <int D>
+const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
+    const OwnPlanes mine(cut_);
+    if (over_ranks() && solver_->shares_planes()) {
+        const poisson::Report& report = solver_->solve(state.p, b_);
+        gather(state.p);
+        return report;
+    }
+    const AllPlanes all;
+    return solver_->solve(state.p, b_);
+}
+
 template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
@@ -160,7 +174,7 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
     set_rhs(state, surface, dt, sigma, curvature);
     solver_->setup(A_);
     const poisson::Report& report =  // the last pressure is the first guess
-        bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solver_->solve(state.p, b_);
+        bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
     subtract_gradient(state, dt);
     if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature);
     return report;

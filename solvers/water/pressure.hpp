@@ -42,6 +42,7 @@ public:
     std::size_t bytes() const;
 
 private:
+    const poisson::Report& solve(MacState<D>& state);
     void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
     real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;
@@ -62,6 +63,7 @@ private:
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;
     real tolerance_ = 0;
+    Cut cut_;               // of the solve; none in one process
     real h2_ = 0;           // h of axis 0, squared: what the matrix is scaled by
     real largest_cut_ = 0;  // of 1/θ, along the longest edge of a cell
 };

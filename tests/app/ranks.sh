@@ -38,6 +38,7 @@ compare() {
 }
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
+water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
@@ -56,6 +57,26 @@ particles)
 particles_3d)
     compare pbf "$every" "$drops_deep"
     compare sph "$every" "$drops_deep" $sph
+    ;;
+water)
+    compare flip "$every" "$water"
+    compare few "4 2" "$scenes/water.toml"
+    ;;
+water_3d)
+    compare flip "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep"
+    ;;
+water_schemes)
+    compare grid "3 1" "$water" --set scheme.transfer=grid --set scheme.trace=rk3
+    compare apic "3 2" "$water" --set scheme.transfer=apic --set scheme.poisson.method=cg_mic0
+    ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
+    compare ring "2 1,3 2" "$water_deep" $ring --set time.cfl=2 --set time.max_dt=0.05
+    compare ring_apic "3 1" "$water_deep" $ring --set scheme.transfer=apic
+    compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
+    # saved on three, continued on two
+    ends 0 over 3 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
+    ends 0 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.06
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.06
+    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
     ;;
 particles_schemes)
     compare tolerant "3 2" "$drops" --set scheme.tolerance=1e-3 --set scheme.warm_start=0.4 --set scheme.kernel=muller --set effects.artificial_pressure.k=1e-4
@@ -175,7 +196,10 @@ ends)
         says "$key"
         [ ! -e refused ] || fail "a refused run has written"
     }
-    refused 'solver "mac_water" runs in one process' "$scenes/water.toml"
+    refused 'solver "tallcell" runs in one process' "$scenes/water.toml" --set solver=tallcell
+    refused "effects.hand: the hand pushes in one process only" "$water" --set effects.hand={}
+    refused 'solids\[0\].motion' "$water" --set 'solids=[{shape="sphere",centre=[0.5,0.3],radius=0.08,motion={kind="rotation",rate=1.0,axis=[0.0,0.0,1.0]}}]'
+    refused scheme.poisson.method "$water" --set scheme.poisson.method=petsc_gamg
     refused "effects.hand: the hand pushes in one process only" "$drops" --set effects.hand={}
     refused "scheme.backend: this backend runs in one process only" "$drops" --set scheme.backend=reference
     refused 'solids\[0\].motion' "$scenes/smoke.toml"
