@@ -1,7 +1,10 @@
 #include "surface/markers.hpp"
 
 #include "core/parallel.hpp"
+#include "core/slabs.hpp"
 #include "surface/marker_lanes.hpp"
+
+#include <numeric>
 
 namespace weir::surface {
 
@@ -120,6 +123,105 @@ void Markers<D>::find_rows(const Frame<D>& frame) {
 }
 
 template <int D>
+bool Markers<D>::holds(const Frame<D>& frame, const Cut& cut, int rank, int plane) const {
+    const int n = frame.cells[D - 1], lo = cut.begin(rank) - 1, hi = cut.end(rank, n) + 1;
+    if (plane >= lo && plane < hi) return true;
+    return frame.periodic(D - 1) && (plane - n >= lo || plane + n < hi);
+}
+
+template <int D>
+void Markers<D>::keep_held(const Frame<D>& frame, const Cut& cut) {
+    if (cut.empty()) return;
+    retain([&](std::size_t p) { return holds(frame, cut, slabs().rank(), frame.cell_of(position(p))[D - 1]); });
+    sort(frame);
+}
+
+template <int D>
+std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut& cut, bool leave) {
+    const auto ranks = static_cast<std::size_t>(slabs().ranks());
+    const auto [first, last] = own(frame);
+    going_.resize(ranks), sent_.resize(ranks), received_.resize(ranks);
+    for (auto& list : going_) list.clear();
+    std::vector<std::vector<int>> holders(static_cast<std::size_t>(frame.cells[D - 1]));  // of each plane
+    for (int plane = 0; plane < frame.cells[D - 1]; ++plane)
+        for (int rank = 0; rank < slabs().ranks(); ++rank)
+            if (holds(frame, cut, rank, plane)) holders[static_cast<std::size_t>(plane)].push_back(rank);
+    std::int64_t left = 0;
+    const auto is_beyond = [&](const Vec<D>& at) {
+        for (int d = 0; d < D; ++d)
+            if (at[d] < frame.origin[d] || at[d] >= frame.origin[d] + frame.h[d] * frame.cells[d]) return true;
+        return false;
+    };
+    for (std::size_t p = first; p < last; ++p) {
+        if (leave && is_beyond(position(p))) {
+            ++left;
+            continue;
+        }
+        const real s = (x[D - 1][p] - frame.origin[D - 1]) * frame.inv_h[D - 1];
+        const int plane = std::clamp(static_cast<int>(std::floor(s)), 0, frame.cells[D - 1] - 1);
+        for (const int rank : holders[static_cast<std::size_t>(plane)])
+            going_[static_cast<std::size_t>(rank)].push_back(static_cast<int>(p));
+    }
+    // How many go from each to each: a row of the table a rank.
+    std::vector<int> table(ranks * ranks);
+    const auto self = static_cast<std::size_t>(slabs().rank());
+    for (std::size_t r = 0; r < ranks; ++r) table[self * ranks + r] = static_cast<int>(going_[r].size());
+    std::vector<std::size_t> rows(ranks + 1);
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    slabs().gather_parts(table.data(), sizeof(int) * ranks, rows);
+
+    std::size_t arrays = 0, total = 0;
+    for_each_array([&](std::vector<real>&) { ++arrays; });
+    parcels_.clear();
+    for (std::size_t r = 0; r < ranks; ++r) {
+        const auto coming = static_cast<std::size_t>(table[r * ranks + self]), going = going_[r].size();
+        total += coming;
+        if (r == self) continue;
+        sent_[r].resize(arrays * going), received_[r].resize(arrays * coming);
+        real* to = sent_[r].data();
+        for_each_array([&](const std::vector<real>& array) {
+            for (const int p : going_[r]) *to++ = array[static_cast<std::size_t>(p)];
+        });
+        parcels_.push_back(
+            {static_cast<int>(r), sent_[r].data(), arrays * going * sizeof(real), received_[r].data(), arrays * coming * sizeof(real)});
+    }
+    slabs().trade(parcels_);
+    std::size_t number = 0;
+    for_each_array([&](std::vector<real>& array) {
+        scratch_.resize(total);
+        real* to = scratch_.data();
+        for (std::size_t r = 0; r < ranks; ++r) {
+            if (r == self) {
+                for (const int p : going_[r]) *to++ = array[static_cast<std::size_t>(p)];
+            } else {
+                const auto coming = static_cast<std::size_t>(table[r * ranks + self]);
+                to = std::copy_n(received_[r].data() + number * coming, coming, to);
+            }
+        }
+        array.swap(scratch_);
+        ++number;
+    });
+    return {static_cast<std::int64_t>(last - first), left};
+}
+
+template <int D>
+void Markers<D>::gather(const Frame<D>& frame, Markers& all) const {
+    const auto [first, last] = own(frame);
+    const std::vector<std::size_t> counts = of_ranks(last - first);
+    std::vector<std::size_t> begins(1, 0);
+    for (const std::size_t count : counts) begins.push_back(begins.back() + count);
+    std::vector<std::vector<real>*> to;
+    all.for_each_array([&](std::vector<real>& array) { to.push_back(&array); });
+    std::size_t number = 0;
+    for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
+        std::vector<real>& whole = *to[number++];
+        whole.resize(begins.back());
+        std::copy_n(array.data() + begin, count, whole.data() + begins[static_cast<std::size_t>(slabs().rank())]);
+        slabs().gather_parts(whole.data(), sizeof(real), begins);
+    });
+}
+
+template <int D>
 void Markers<D>::reserve(std::size_t capacity) {
     for_each_array([&](std::vector<real>& array) { array.reserve(capacity); });
     scratch_.reserve(capacity);
@@ -132,6 +234,9 @@ std::size_t Markers<D>::bytes() const {
     std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + rows_.capacity() * sizeof(Extent) +
                         scratch_.capacity() * sizeof(real);
     for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
+    for (const auto& list : going_) total += list.capacity() * sizeof(int);
+    for (const auto* buffers : {&sent_, &received_})
+        for (const auto& buffer : *buffers) total += buffer.capacity() * sizeof(real);
     return total;
 }
 

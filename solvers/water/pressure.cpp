@@ -11,6 +11,13 @@ using poisson::Cell;
 /// A weight without the open fraction that it holds.
 static real per_open(real weight, real open) { return open > 0 ? weight / open : 0; }
 
+/// From the first liquid cell of a line to behind the last.
+static Extent extent_of(const Cell* cell, int n) {
+    Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
+    while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
+    return extent;
+}
+
 template <int D>
 SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice)
     : frame_(frame),
@@ -18,7 +25,6 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
       liquid_(b_.size() / static_cast<std::size_t>(frame.cells[0])),
       solver_(poisson::make_solver<D>(choice.method, choice.options)),
       tolerance_(choice.options.tolerance),
-      cut_(cut_of(frame.cells[D - 1], slabs().ranks())),
       h2_(frame.h[0] * frame.h[0]),
       largest_cut_(1 + frame.h_max() / frame.h_min() / thinnest) {
     A_.cells = Grid<Cell, D>(frame.cells, Cell::air);
@@ -35,6 +41,7 @@ void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std:
     find_liquid(surface, closed);
     state.cells = A_.cells;
     for (int a = 0; a < D; ++a) set_weights(surface, state, a);
+    for (auto& weight : A_.weight) gather(weight);
 }
 
 /// What each cell is, and where the liquid of each line begins and ends: everything below looks at that part of the line only.
@@ -54,10 +61,15 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
         }
         for (int i = first; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
         for (int i = 0; !closed.empty() && i < n; ++i) cell[i] = closed[at + static_cast<std::size_t>(i)] ? Cell::solid : cell[i];
-        Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
-        while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
-        liquid_[at / static_cast<std::size_t>(n)] = extent;
+        liquid_[at / static_cast<std::size_t>(n)] = extent_of(cell, n);
     });
+    if (over_ranks()) {
+        gather(A_.cells);
+        const AllPlanes all;
+        for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
+            liquid_[at / static_cast<std::size_t>(n)] = extent_of(A_.cells.data() + at, n);
+        });
+    }
     has_liquid_ = std::any_of(liquid_.begin(), liquid_.end(), [](const Extent& extent) { return extent.begin < extent.end; });
 }
 
@@ -154,12 +166,14 @@ void SurfacePressure<D>::hold_back(const MacState<D>& state) {
 /// Over ranks: by all of them together where the method can, else by each of them.
 template <int D>
 const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
-    const OwnPlanes mine(cut_);
-    if (over_ranks() && solver_->shares_planes()) {
+    if (!over_ranks()) return solver_->solve(state.p, b_);
+    if (solver_->shares_planes()) {
         const poisson::Report& report = solver_->solve(state.p, b_);
-        gather(state.p);
+        refresh(state.p, frame_.periodic(D - 1));
         return report;
     }
+    gather(b_);
+    gather(state.p);
     const AllPlanes all;
     return solver_->solve(state.p, b_);
 }
@@ -172,7 +186,10 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         return nothing_to_do_;
     }
     set_rhs(state, surface, dt, sigma, curvature);
-    solver_->setup(A_);
+    {
+        const AllPlanes all;
+        solver_->setup(A_);
+    }
     const poisson::Report& report =  // the last pressure is the first guess
         bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
     subtract_gradient(state, dt);
@@ -240,8 +257,8 @@ void SurfacePressure<D>::subtract_surface_gradient(MacState<D>& state, const Lev
 
 template <int D>
 real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
-    const int n = frame_.cells[0];
-    return ordered_max(static_cast<int>(liquid_.size()), [&](int line) {
+    const int n = frame_.cells[0], planes = frame_.cells[D - 1], lines = static_cast<int>(liquid_.size()) / planes;
+    const auto of_line = [&](int line) {
         const auto [begin, end] = liquid_[static_cast<std::size_t>(line)];
         std::array<real, row_block> divergence;
         real largest = 0;
@@ -255,6 +272,11 @@ real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
             }
             if (std::isnan(largest)) break;
         }
+        return largest;
+    };
+    return plane_max(planes, [&](int plane) {
+        real largest = 0;
+        for (int line = plane * lines; line < (plane + 1) * lines; ++line) largest = larger_or_nan(largest, of_line(line));
         return largest;
     });
 }

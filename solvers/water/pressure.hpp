@@ -24,7 +24,8 @@ public:
     SurfacePressure() = default;
     SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice);
 
-    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells.
+    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells. Over ranks each finds those of its own
+    /// planes, and everybody has all of them then.
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
     /// Faces follow the pressure as far as state.mobility says; state.u must be that part of itself already.
     void hold_back(const MacState<D>& state);
@@ -63,7 +64,6 @@ private:
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;
     real tolerance_ = 0;
-    Cut cut_;               // of the solve; none in one process
     real h2_ = 0;           // h of axis 0, squared: what the matrix is scaled by
     real largest_cut_ = 0;  // of 1/θ, along the longest edge of a cell
 };

@@ -39,6 +39,7 @@ compare() {
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml
+water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
@@ -68,9 +69,8 @@ water_3d)
 water_schemes)
     compare grid "3 1" "$water" --set scheme.transfer=grid --set scheme.trace=rk3
     compare apic "3 2" "$water" --set scheme.transfer=apic --set scheme.poisson.method=cg_mic0
-    ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
-    compare ring "2 1,3 2" "$water_deep" $ring --set time.cfl=2 --set time.max_dt=0.05
-    compare ring_apic "3 1" "$water_deep" $ring --set scheme.transfer=apic
+    compare ring "2 1,3 2" "$water_deep" $water_ring --set time.cfl=2 --set time.max_dt=0.05
+    compare ring_apic "3 1" "$water_deep" $water_ring --set scheme.transfer=apic
     compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
     # saved on three, continued on two
     ends 0 over 3 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
@@ -175,6 +175,15 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     ends 0 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out one_3d
     ends 0 over 2 WEIR_HALO_POISON=1 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out poisoned_3d
     alike one_3d poisoned_3d
+    ends 0 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
+    alike liquid liquid_poisoned
+    for case in "" "--set scheme.transfer=apic $water_ring" "--set scheme.transfer=grid"; do
+        rm -rf liquid_3d liquid_3d_poisoned
+        ends 0 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d
+        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
+        alike liquid_3d liquid_3d_poisoned
+    done
     for case in "$drops" "$drops_deep" "$drops $sph" "$drops_deep $sph" "$drops $sph --set scheme.density=summation"; do
         rm -rf drops drops_poisoned
         ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops
