@@ -91,13 +91,18 @@ public:
 private:
     void find_cells(const Frame<D>& frame, int first, int last);
     void find_rows(const Frame<D>& frame);
+    void find_holders(const Frame<D>& frame, const Cut& cut);
+    std::int64_t find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, cell_start_, from_;
     std::vector<Extent> rows_;
     std::vector<real> scratch_;
-    std::vector<std::vector<int>> going_;             // to each rank
-    std::vector<std::vector<real>> sent_, received_;  // array by array
+    // Over ranks: who holds the markers of each plane, which go to each rank, which do not stay, what travels, array by array
+    std::vector<std::vector<int>> holders_, going_;
+    std::vector<int> gone_, table_;
+    std::vector<std::size_t> table_rows_;
+    std::vector<std::vector<real>> sent_, received_;
     std::vector<Parcel> parcels_;
 };
 

@@ -11,13 +11,6 @@ using poisson::Cell;
 /// A weight without the open fraction that it holds.
 static real per_open(real weight, real open) { return open > 0 ? weight / open : 0; }
 
-/// From the first liquid cell of a line to behind the last.
-static Extent extent_of(const Cell* cell, int n) {
-    Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
-    while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
-    return extent;
-}
-
 template <int D>
 SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice)
     : frame_(frame),
@@ -38,10 +31,10 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
 
 template <int D>
 void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state) {
+    const AllPlanes all;
     find_liquid(surface, closed);
     state.cells = A_.cells;
     for (int a = 0; a < D; ++a) set_weights(surface, state, a);
-    for (auto& weight : A_.weight) gather(weight);
 }
 
 /// What each cell is, and where the liquid of each line begins and ends: everything below looks at that part of the line only.
@@ -61,15 +54,10 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
         }
         for (int i = first; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
         for (int i = 0; !closed.empty() && i < n; ++i) cell[i] = closed[at + static_cast<std::size_t>(i)] ? Cell::solid : cell[i];
-        liquid_[at / static_cast<std::size_t>(n)] = extent_of(cell, n);
+        Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
+        while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
+        liquid_[at / static_cast<std::size_t>(n)] = extent;
     });
-    if (over_ranks()) {
-        gather(A_.cells);
-        const AllPlanes all;
-        for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
-            liquid_[at / static_cast<std::size_t>(n)] = extent_of(A_.cells.data() + at, n);
-        });
-    }
     has_liquid_ = std::any_of(liquid_.begin(), liquid_.end(), [](const Extent& extent) { return extent.begin < extent.end; });
 }
 

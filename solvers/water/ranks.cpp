@@ -45,23 +45,35 @@ void Water<D>::rub(real dt) {
 /// What is looked at in whole after each step of one process.
 template <int D>
 void Water<D>::check_own() const {
-    const OwnPlanes mine(cut_);
-    const auto check = [](bool finite, const std::string& name) {
-        if (!finite) throw NumericalFailure(name, name + " is no longer finite");
+    const auto is_finite = [](const Grid<real, D>& q) {
+        const int planes = q.extent()[D - 1], begin = detail::own_share.lower(0), end = detail::own_share.upper(planes);
+        const auto plane = static_cast<std::size_t>(q.stride(D - 1));
+        auto& most = detail::reduction_scratch(static_cast<std::size_t>(planes));
+        for_each_plane(0, planes, [&](int k) {
+            most[static_cast<std::size_t>(k)] = largest_magnitude(q.data() + static_cast<std::size_t>(k) * plane, plane);
+        });
+        return std::all_of(most.begin() + begin, most.begin() + end, [](real value) { return std::isfinite(value); });
     };
-    real fastest = 0;
-    for (int a = 0; a < D; ++a) fastest = larger_or_nan(fastest, max_magnitude(state_.u[a]));
-    check(std::isfinite(fastest), "velocity");
-    check(std::isfinite(max_magnitude(state_.p)), "pressure");
-    check(std::isfinite(max_magnitude(surface_.phi)), level_set_name);
+    enum { none, position, pressure, level_set, velocity };
+    int broken = none;
+    const auto see = [&](bool finite, int what) {
+        if (!finite) broken = std::max(broken, what);
+    };
+    for (int a = 0; a < D; ++a) see(is_finite(state_.u[a]), velocity);
+    see(is_finite(state_.p), pressure);
+    see(is_finite(surface_.phi), level_set);
     const auto [first, last] = markers_.own(frame_);
-    int number = 0, broken = 0;  // broken: 1 a position, 2 what a marker carries
+    int number = 0;
     markers_.for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
-        if (!std::isfinite(largest_magnitude(array.data() + begin, count))) broken = std::max(broken, number < D ? 1 : 2);
-        ++number;
+        see(std::isfinite(largest_magnitude(array.data() + begin, count)), number++ < D ? position : velocity);
     });
     broken = slabs().largest(broken);
-    check(broken == 0, broken == 1 ? "position" : "velocity");
+    if (broken == none) return;
+    const std::string name = broken == position    ? "position"
+                             : broken == pressure  ? "pressure"
+                             : broken == level_set ? level_set_name
+                                                   : "velocity";
+    throw NumericalFailure(name, name + " is no longer finite");
 }
 
 /// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.

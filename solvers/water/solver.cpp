@@ -76,6 +76,7 @@ void Water<D>::correct_surface(real dt) {
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
+    surface_.make_whole();
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 

@@ -135,6 +135,34 @@ traffic) # what is sent is what must be, in the steps by which one run is longer
     # PBF: two halos an iteration, densities, positions and velocities, what walls corrected, and the run
     both still.toml --set solver=pbf --set scheme.iterations=5 --set scheme.warm_start=0
     for rank in 0 1; do expect "$(sent messages $rank)" $((20 * (2 * 5 + 3 + 2))) "messages of rank $rank, pbf"; done
+    # A pool at rest: its pressure is everybody's, of gathered numbers.
+    cat >pool.toml <<-END
+	solver = "mac_water"
+	dim = 2
+	grid = { cells = [16, 40], size = [0.16, 0.4] }
+	time = { end = 0.01, max_dt = 1e-4 }
+	liquid = [ { shape = "box", min = [0.0, 0.0], max = [0.16, 0.3] } ]
+	output = { every = 1.0 }
+	END
+    both pool.toml
+    for rank in 0 1; do
+        # Cut before plane 16 of 40, with a plane of faces more at the end. A row of cells, and of faces along x.
+        planes=$([ $rank = 0 ] && echo 16 || echo 24) faces=$([ $rank = 0 ] && echo 16 || echo 25)
+        row=$((8 * 16)) both=$((8 * 17 + 8 * 16)) number_a_row=$((8 * (planes + faces)))
+        # The fastest flow; the velocity 3 rows deep; the level set as deep, and 2 rows of it; how many markers go; the 4 of each cell at the
+        # cut, with 4 numbers.
+        messages=6 bytes=$((8 * faces + 3 * both + 5 * row + 2 * 4 + 16 * 4 * 4 * 8))
+        # The level set: what is inside, a byte a cell; a row of it, twice for each of 4 layers, 2 at the end; all of it.
+        messages=$((messages + 1 + 9 + 1 + 1)) bytes=$((bytes + planes * 16 + 11 * row + planes * row))
+        # Faces, 2 layers on from the markers and 4 on from the liquid: what is known, a byte a face; 3 rows; for the second layer 3 more, for
+        # others one, each component by itself. Faces at the cut: before, behind, as forces and as the pressure leave them, at the end.
+        messages=$((messages + 2 * (2 + 1 + 2) + 2 * 2 + 5))
+        bytes=$((bytes + 2 * (planes * 17 + faces * 16 + 6 * both) + 2 * both + 5 * row))
+        # The right-hand side and the pressure; what diverges; the fastest flow; FLIP's difference, one row; whether all is finite; the run's.
+        messages=$((messages + 2 + 1 + 2 + 1 + 1 + 2)) bytes=$((bytes + 2 * planes * row + 8 * planes + number_a_row + both + 4 + 2 * 4))
+        expect "$(sent messages $rank)" $((20 * messages)) "messages of rank $rank, mac_water"
+        expect "$(sent bytes $rank)" $((20 * bytes)) "bytes of rank $rank, mac_water"
+    done
     cat >stirred.toml <<-END
 	solver = "mac"
 	dim = 2
