@@ -153,4 +153,14 @@ inline void set_reach(int planes) { detail::own_share.reach = planes; }
 /// Are loops over planes those of one rank among several?
 inline bool over_ranks() { return detail::own_share.cut != nullptr; }
 
+/// Is this plane among those that loops over planes are of now?
+inline bool is_own_plane(int plane) { return plane >= detail::own_share.begin && plane < detail::own_share.end; }
+
+/// What the ranks give, added up; in one process, and where every rank does everything, what is given.
+inline std::int64_t sum_of_ranks(std::int64_t own) {
+    if (!over_ranks()) return own;
+    const std::vector<std::int64_t> list = of_ranks(own);
+    return std::accumulate(list.begin(), list.end(), std::int64_t{0});
+}
+
 }  // namespace weir

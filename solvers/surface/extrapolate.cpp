@@ -196,10 +196,24 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
     return weights * h_min_ > 1e-9 ? sum / weights : plain / count;
 }
 
+/// f(place in the front) for the faces that are this rank's own.
+template <int D>
+template <class F>
+void Extrapolation<D>::for_each_own(F&& f) {
+    if (!over_ranks()) return parallel_for(0, static_cast<int>(front_.size()), f);
+    own_.clear();
+    for (std::size_t i = 0; i < front_.size(); ++i)
+        if (is_own_plane(front_[i][D - 1])) own_.push_back(static_cast<int>(i));
+    parallel_for(0, static_cast<int>(own_.size()), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
+}
+
 template <int D>
 void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const LevelSet<D>& surface, const FaceLists<D>& in_solids,
                                   int layers) {
-    const int near = std::min(3, surface.layers());
+    const int near = std::min(3, surface.layers()), behind = frame_.periodic(D - 1) ? 4 : 3;  // planes that a slope reads
+    if (over_ranks())
+        for (auto& mark : marks) gather(mark);
+    refresh_faces(u, frame_, behind);
     find_band_rows(surface, near);
     for (int a = 0; a < D; ++a) {
         auto& mark = marks[static_cast<std::size_t>(a)];
@@ -207,14 +221,14 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
         start_front(mark, a, surface, near);
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
         for (int layer = 1; layer <= layers && !front_.empty(); ++layer) {
-            const int count = static_cast<int>(front_.size());
+            if (layer > 1) refresh(u[a], frame_.periodic(D - 1), layer == 2 ? behind : 1);
             resize_scratch(value_, front_.size());
-            parallel_for(0, count, [&](int i) {
+            for_each_own([&](int i) {
                 const auto at = static_cast<std::size_t>(i);
                 value_[at] = value(u[a], mark, surface.phi, front_[at], a, layer);
             });
             for (std::size_t i = 0; i < front_.size(); ++i) {
-                u[a](front_[i]) = value_[i];
+                if (is_own_plane(front_[i][D - 1])) u[a](front_[i]) = value_[i];
                 mark(front_[i]) = static_cast<std::uint8_t>(layer + 1);
             }
             if (layer < layers) grow_front(mark, a);

@@ -1,7 +1,7 @@
 // Velocity beyond the liquid, outwards from the faces whose velocity is known: ∇(∇u·∇φ)·∇φ = 0 in the first two layers (Aslam 2004),
 // ∇u·∇φ = 0 beyond (Adalsteinsson & Sethian 1999), with upwind differences as in the fast sweeping of Zhao 2005. Faces are visited layer by
 // layer from the known ones, each from finished layers only: one visit a face, and no result depends on threads, on the direction of a
-// sweep, or on a mirror.
+// sweep, or on a mirror. Over ranks everybody finds the layers, and each the values on its own planes of faces.
 #pragma once
 #include "surface/level_set.hpp"
 
@@ -32,12 +32,14 @@ public:
     void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, const FaceLists<D>& in_solids, int layers);
     std::size_t bytes() const {
         return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) +
-               band_rows_.capacity() * sizeof(Extent) + joins_.capacity();
+               own_.capacity() * sizeof(int) + band_rows_.capacity() * sizeof(Extent) + joins_.capacity();
     }
 
 private:
     void find_band_rows(const LevelSet<D>& surface, int layers);
     void start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers);
+    template <class F>
+    void for_each_own(F&& f);
     void join_front(Grid<std::uint8_t, D>& mark, int a, const Index<D>& face);
     void grow_front(Grid<std::uint8_t, D>& mark, int a);
     real value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
@@ -50,6 +52,7 @@ private:
     real steepest_ = 0, h_min_ = 0;
     std::vector<Index<D>> front_, next_;
     std::vector<real> value_;
+    std::vector<int> own_;             // over ranks: places in the front of this rank's own faces
     std::vector<Extent> band_rows_;    // of every row of cells: its part in the layers from which the first front starts
     std::vector<std::uint8_t> joins_;  // of one row of faces
 };

@@ -113,6 +113,20 @@ struct Extent {
     void join(const Extent& other) { begin = std::min(begin, other.begin), end = std::max(end, other.end); }
 };
 
+/// Over ranks, the faces of the `deep` planes beyond this rank's cuts, all components in one message a neighbour. Around a periodic axis
+/// face n is face 0.
+template <int D>
+void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int deep) {
+    if (!over_ranks()) return;
+    std::array<Planes, D> all;
+    for (int a = 0; a < D; ++a) all[static_cast<std::size_t>(a)] = planes_of(u[a]);
+    slabs().refresh(*detail::own_share.cut, all, deep, frame.periodic(D - 1));
+    const int n = frame.cells[D - 1];
+    if (!frame.periodic(D - 1) || is_own_plane(n)) return;
+    Grid<real, D>& across = u[D - 1];
+    std::copy_n(across.data(), across.stride(D - 1), across.data() + n * across.stride(D - 1));
+}
+
 /// f(I, at) for the first entry I of every line along x of a box, and its place in memory; threaded over the slowest axis.
 template <int D, class F>
 void for_each_line(const Index<D>& extent, F&& f) {

@@ -91,17 +91,27 @@ void LevelSet<D>::continue_into_solids() {
 }
 
 template <int D>
-void LevelSet<D>::advect(const MacVelocity<D>& u, real dt) {
+void LevelSet<D>::find_own() {
+    if (!over_ranks()) return;
+    own_.clear();
+    for (std::size_t i = 0; i < band_.size(); ++i)
+        if (is_own_plane(band_[i][D - 1])) own_.push_back(static_cast<int>(i));
+}
+
+template <int D>
+void LevelSet<D>::advect(const MacVelocity<D>& u, real dt, int reach) {
     const real near = (reach_ + 2) * frame_.h_max();  // beyond, no point can come to lie beside the surface
     resize_scratch(value_, band_.size());
-    parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
+    find_own();
+    refresh(phi, frame_.periodic(D - 1), reach);
+    for_each_own(0, band_.size(), [&](int i) {
         const Index<D>& I = band_[static_cast<std::size_t>(i)];
         real& to = value_[static_cast<std::size_t>(i)];
         to = phi(I);
         if (std::abs(to) < near) to = departed(u, I, dt);
     });
-    parallel_for(0, static_cast<int>(band_.size()),
-                 [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
+    for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
+    refresh(phi, frame_.periodic(D - 1), 2);  // markers one plane beyond a cut look at the cells around them
 }
 
 namespace {
@@ -222,7 +232,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
     const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
     refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
-    markers.for_each_occupied_cell(frame_, [&](const Index<D>& I, std::size_t begin, std::size_t end) {
+    const auto find_escaped = [&](const Index<D>& I, std::size_t begin, std::size_t end) {
         if (phi(I) < -diagonal_) return;
         CellNodes<D> nodes;
         nodes.look_at(phi, frame_, I);
@@ -232,17 +242,50 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
             const Lanes distance = nodes.template at<-1>(hats);
             for (int l = 0; l < count; ++l) escaped_[p + static_cast<std::size_t>(l)] = distance[l] > margin;
         }
-    });
+    };
+    const auto [first, last] = markers.own(frame_);
+    if (over_ranks() && !frame_.cubic()) {
+        markers.for_each_occupied_cell(frame_, find_escaped);
+        rescue_in_order(markers, radius);
+        return static_cast<std::size_t>(std::count(escaped_.begin(), escaped_.end(), 1));
+    }
+    {
+        const AllPlanes all;  // those beyond the cuts too, whose spheres reach across
+        markers.for_each_occupied_cell(frame_, find_escaped);
+    }
     std::size_t count = 0;
-    for_each_escaped([&](std::size_t p) {
+    for_each_escaped([&, begin = first, end = last](std::size_t p) {
         if (!frame_.cubic() && !escaped_across(markers.position(p))) {
             escaped_[p] = 0;
             return;
         }
-        ++count;
+        if (p >= begin && p < end) ++count;
         join_sphere(markers.position(p), radius);
     });
     return count;
+}
+
+/// In cells that are no cubes, whether a marker has escaped depends on those before it, however far apart: every rank looks at all of
+/// them, in the order of one process.
+template <int D>
+void LevelSet<D>::rescue_in_order(const Markers<D>& markers, real radius) {
+    gather(phi);
+    std::vector<Vec<D>> found;
+    for_each_escaped([&](std::size_t p) { found.push_back(markers.position(p)); });
+    const std::vector<std::size_t> counts = of_ranks(found.size());
+    std::vector<std::size_t> begins(1, 0);
+    for (const std::size_t count : counts) begins.push_back(begins.back() + count);
+    std::vector<Vec<D>> list(begins.back());
+    const std::size_t begin = begins[static_cast<std::size_t>(slabs().rank())];
+    std::copy(found.begin(), found.end(), list.begin() + static_cast<std::ptrdiff_t>(begin));
+    slabs().gather_parts(list.data(), sizeof(Vec<D>), begins);
+    std::vector<std::uint8_t> rescued(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        rescued[i] = escaped_across(list[i]);
+        if (rescued[i]) join_sphere(list[i], radius);
+    }
+    std::size_t next = begin;
+    for_each_escaped([&](std::size_t p) { escaped_[p] = rescued[next++]; });
 }
 
 /// f(p) for one after the other.
@@ -260,7 +303,10 @@ void LevelSet<D>::for_each_escaped(F&& f) const {
 template <int D>
 std::size_t LevelSet<D>::count_airborne(const Markers<D>& markers) const {
     std::size_t count = 0;
-    for_each_escaped([&](std::size_t p) { count += sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0; });
+    const auto [first, last] = markers.own(frame_);
+    for_each_escaped([&, begin = first, end = last](std::size_t p) {
+        if (p >= begin && p < end) count += sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0;
+    });
     return count;
 }
 
@@ -319,7 +365,8 @@ void LevelSet<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t LevelSet<D>::bytes() const {
     return phi.size() * sizeof(real) + layer_.size() + inside_.size() + closed_.size() +
-           (band_.capacity() + skin_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) + escaped_.capacity();
+           (band_.capacity() + skin_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) + escaped_.capacity() +
+           own_.capacity() * sizeof(int);
 }
 
 template class LevelSet<2>;

@@ -4,12 +4,14 @@
 //                   beside the surface, which themselves keep their values: the zero does not move
 //   markers         where a marker has escaped, the level set has lost liquid: φ = min(φ, |x − x_p| − r) (Foster & Fedkiw 2001; Enright
 //   2002)
+// Over ranks each finds the values of its own planes of cells; which cells are of the band, layer by layer, everybody finds.
 // The level set is thus the smooth part of the markers' shape: second order where the grid resolves it, and at rest exactly at rest.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "surface/marker_motion.hpp"
 #include "surface/markers.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,11 +28,14 @@ public:
 
     /// Cells that are closed to the liquid. Their φ is continued from open cells, so that the surface meets a solid at right angles.
     void set_closed(const Grid<std::uint8_t, D>& closed);
-    /// Moves the surface by dt in the field u, which must be known throughout the band.
-    void advect(const MacVelocity<D>& u, real dt);
-    /// Joins spheres around escaped markers; answers how many had escaped. Markers must be sorted.
+    /// Moves the surface by dt in the field u, which must be known throughout the band; `reach`: over ranks, how many planes beyond its
+    /// cuts a rank reads.
+    void advect(const MacVelocity<D>& u, real dt, int reach = 0);
+    /// Over ranks, what others know of φ.
+    void make_whole() { gather(phi); }
+    /// Joins spheres around escaped markers; answers how many of this rank's own had escaped. Markers must be sorted.
     std::size_t rescue_escaped(const Markers<D>& markers);
-    /// How many of the markers that had escaped are outside even now: drops too small for the grid.
+    /// How many of this rank's own markers that had escaped are outside even now: drops too small for the grid.
     std::size_t count_airborne(const Markers<D>& markers) const;
     /// Makes φ a distance again and finds the band.
     void redistance();
@@ -77,6 +82,11 @@ private:
     void find_inside();
     void find_surface();
     void mark_changes_of_sign(const Index<D>& first, std::size_t at);
+    void rescue_in_order(const Markers<D>& markers, real radius);
+    void find_own();
+    /// f(place in the band) for those from `first` to before `last` that are of this rank's own planes.
+    template <class F>
+    void for_each_own(std::size_t first, std::size_t last, F&& f) const;
     template <class F>
     real sum_over_band(std::size_t end, F&& f) const;
     bool crosses_in_liquid(const Index<D>& I) const;
@@ -96,7 +106,16 @@ private:
     std::vector<std::size_t> layer_start_;
     std::vector<real> value_;
     std::vector<std::uint8_t> escaped_;
+    std::vector<int> own_;  // over ranks: places in the band of this rank's own cells
 };
+
+template <int D>
+template <class F>
+void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const {
+    if (!over_ranks()) return parallel_for(static_cast<int>(first), static_cast<int>(last), f);
+    const auto place = [&](std::size_t at) { return std::lower_bound(own_.begin(), own_.end(), static_cast<int>(at)) - own_.begin(); };
+    parallel_for(static_cast<int>(place(first)), static_cast<int>(place(last)), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
+}
 
 /// Volume of {x in the unit cube about 0 : value + g·x < 0}. Inclusion and exclusion of corners (Scardovelli & Zaleski 2000).
 template <int D>

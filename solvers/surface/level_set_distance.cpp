@@ -5,16 +5,19 @@
 #include "surface/marker_lanes.hpp"
 
 #include <cstring>
+#include <numeric>
 
 namespace weir::surface {
 
 template <int D>
 void LevelSet<D>::redistance() {
+    if (!skin_.empty()) gather(phi);  // one cell after the other: by everybody
     continue_into_solids();
     find_surface();
     rescale_surface();
     grow_band();
     for (int layer = 2; layer <= layers_; ++layer) fill_layer(layer);
+    refresh(phi, frame_.periodic(D - 1), 2);  // curvature of cells beside the cuts; the continued velocity looks as far
 }
 
 template <int D>
@@ -38,6 +41,8 @@ template <int D>
 void LevelSet<D>::find_surface() {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     find_inside();
+    gather(inside_);
+    const AllPlanes all;
     for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t at) { mark_changes_of_sign(first, at); });
     band_.clear();
     for (std::size_t line = 0; line < layer_.size(); line += n) {
@@ -81,7 +86,7 @@ bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
     for (int d = 0; d < D; ++d)
         for (const int by : {-1, 1}) {
             Index<D> J = I;
-            if (frame_.step(J, d, by) && !closed_(J) && (phi(J) < 0) != (phi(I) < 0)) return true;
+            if (frame_.step(J, d, by) && !closed_(J) && inside_(J) != inside_(I)) return true;
         }
     return false;
 }
@@ -91,7 +96,9 @@ bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
 template <int D>
 void LevelSet<D>::rescale_surface() {
     resize_scratch(value_, band_.size());
-    parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
+    find_own();
+    refresh(phi, frame_.periodic(D - 1));
+    for_each_own(0, band_.size(), [&](int i) {
         const Index<D>& I = band_[static_cast<std::size_t>(i)];
         const auto slope = slopes(I);
         real central = 0, steepest = 0;
@@ -103,8 +110,7 @@ void LevelSet<D>::rescale_surface() {
         const real gradient = std::max({std::sqrt(central), steepest, 1e-6});
         value_[static_cast<std::size_t>(i)] = gradient > 4.0 / 3 || gradient < 0.75 ? phi(I) / gradient : phi(I);
     });
-    parallel_for(0, static_cast<int>(band_.size()),
-                 [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
+    for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }
 
 /// Layers 2 .. layers_: neighbours of the layer before. Cells outside hold ± cap.
@@ -122,6 +128,7 @@ void LevelSet<D>::grow_band() {
                 }
         layer_start_[static_cast<std::size_t>(layer)] = band_.size();
     }
+    find_own();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         const real far = cap();
         real* line = phi.data() + at;
@@ -148,23 +155,20 @@ real LevelSet<D>::width_at(const Index<D>& I) const {
 /// differences are not, and curvature looks at them.
 template <int D>
 void LevelSet<D>::fill_layer(int layer) {
-    const std::size_t from = layer_begin(layer);
-    const int count = static_cast<int>(layer_end(layer) - from);
+    const std::size_t from = layer_begin(layer), to = layer_end(layer);
     const bool cubic = frame_.cubic();
     const int visits = cubic ? 2 : 1 + static_cast<int>(std::ceil(frame_.h_max() / frame_.h_min()));
     const real keep = layer == 2 ? 0.3 : 0;
     resize_scratch(value_, band_.size());
     for (int visit = 0; visit < visits; ++visit) {
-        parallel_for(0, count, [&](int i) {
-            const std::size_t at = from + static_cast<std::size_t>(i);
+        refresh(phi, frame_.periodic(D - 1));
+        for_each_own(from, to, [&](int i) {
+            const auto at = static_cast<std::size_t>(i);
             const real distance = upwind_distance(band_[at], visit == 0 ? layer - 1 : layer), moved = phi(band_[at]);
             const real width = cubic || layer > 2 ? frame_.h_min() : width_at(band_[at]);
             value_[at] = std::abs(distance - moved) < keep * width ? moved : distance;
         });
-        parallel_for(0, count, [&](int i) {
-            const std::size_t at = from + static_cast<std::size_t>(i);
-            phi(band_[at]) = value_[at];
-        });
+        for_each_own(from, to, [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
     }
 }
 
@@ -316,15 +320,38 @@ real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     return fraction_of_halves<D>(here, slope);
 }
 
-/// Sum of f(I) over the open cells of the band up to place `end`; block by block of equal length, so that its order is fixed.
+/// Sum of f(I) over the open cells of the band up to place `end`; block by block of equal length, so that its order is fixed. Over ranks
+/// the cells of a block are of several: each finds the values of its own, and all add up all of them.
 template <int D>
 template <class F>
 real LevelSet<D>::sum_over_band(std::size_t end, F&& f) const {
     constexpr std::size_t block = 256;
+    std::vector<real> values;
+    if (over_ranks()) {
+        const Cut& cut = *detail::own_share.cut;
+        std::vector<int> owner(static_cast<std::size_t>(frame_.cells[D - 1]));
+        for (int rank = 0; rank < cut.ranks(); ++rank)
+            std::fill(owner.begin() + cut.at[static_cast<std::size_t>(rank)], owner.begin() + cut.at[static_cast<std::size_t>(rank) + 1],
+                      rank);
+        const auto owner_of = [&](std::size_t i) { return static_cast<std::size_t>(owner[static_cast<std::size_t>(band_[i][D - 1])]); };
+        std::vector<std::size_t> begins(static_cast<std::size_t>(cut.ranks()) + 1);
+        for (std::size_t i = 0; i < end; ++i) ++begins[owner_of(i) + 1];
+        std::partial_sum(begins.begin(), begins.end(), begins.begin());
+        std::vector<real> by_rank(end);
+        const std::size_t first = begins[static_cast<std::size_t>(slabs().rank())];
+        const auto own_end = static_cast<int>(std::lower_bound(own_.begin(), own_.end(), static_cast<int>(end)) - own_.begin());
+        parallel_for(0, own_end, [&](int i) {
+            const Index<D>& I = band_[static_cast<std::size_t>(own_[static_cast<std::size_t>(i)])];
+            by_rank[first + static_cast<std::size_t>(i)] = closed_.empty() || !closed_(I) ? f(I) : 0;
+        });
+        slabs().gather_parts(by_rank.data(), sizeof(real), begins);
+        values.resize(end);
+        for (std::size_t i = 0; i < end; ++i) values[i] = by_rank[begins[owner_of(i)]++];
+    }
     return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {
         real sum = 0;
         for (std::size_t i = static_cast<std::size_t>(b) * block; i < std::min(end, static_cast<std::size_t>(b + 1) * block); ++i)
-            if (closed_.empty() || !closed_(band_[i])) sum += f(band_[i]);
+            if (closed_.empty() || !closed_(band_[i])) sum += values.empty() ? f(band_[i]) : values[i];
         return sum;
     });
 }
@@ -334,7 +361,7 @@ template <int D>
 real LevelSet<D>::volume() const {
     const int planes = frame_.cells[D - 1];
     const std::size_t plane = phi.size() / static_cast<std::size_t>(planes);
-    const real full = ordered_sum(planes, [&](int k) {
+    const real full = plane_sum(planes, [&](int k) {
         const std::size_t first = static_cast<std::size_t>(k) * plane;
         const std::uint8_t *inside = inside_.data() + first, *layer = layer_.data() + first;
         const std::uint8_t* closed = closed_.empty() ? nullptr : closed_.data() + first;

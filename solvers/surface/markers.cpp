@@ -1,7 +1,11 @@
 #include "surface/markers.hpp"
 
 #include "core/parallel.hpp"
+#include "core/scratch.hpp"
+#include "core/slabs.hpp"
 #include "surface/marker_lanes.hpp"
+
+#include <numeric>
 
 namespace weir::surface {
 
@@ -120,6 +124,131 @@ void Markers<D>::find_rows(const Frame<D>& frame) {
 }
 
 template <int D>
+bool Markers<D>::holds(const Frame<D>& frame, const Cut& cut, int rank, int plane) const {
+    const int n = frame.cells[D - 1], lo = cut.begin(rank) - 1, hi = cut.end(rank, n) + 1;
+    if (plane >= lo && plane < hi) return true;
+    return frame.periodic(D - 1) && (plane - n >= lo || plane + n < hi);
+}
+
+template <int D>
+void Markers<D>::keep_held(const Frame<D>& frame, const Cut& cut) {
+    if (cut.empty()) return;
+    retain([&](std::size_t p) { return holds(frame, cut, slabs().rank(), frame.cell_of(position(p))[D - 1]); });
+    sort(frame);
+}
+
+/// The ranks that hold the markers of each plane of cells.
+template <int D>
+void Markers<D>::find_holders(const Frame<D>& frame, const Cut& cut) {
+    const int planes = frame.cells[D - 1];
+    if (!holders_.empty()) return;
+    holders_.resize(static_cast<std::size_t>(planes));
+    for (int plane = 0; plane < planes; ++plane)
+        for (int rank = 0; rank < cut.ranks(); ++rank)
+            if (holds(frame, cut, rank, plane)) holders_[static_cast<std::size_t>(plane)].push_back(rank);
+}
+
+/// Which of this rank's own markers go to which ranks, to going_; those that do not stay, to gone_. Answers how many have left the domain.
+template <int D>
+std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave) {
+    const int planes = frame.cells[D - 1], self = slabs().rank();
+    const real origin = frame.origin[D - 1], inv_h = frame.inv_h[D - 1];
+    const auto is_beyond = [&](const Vec<D>& at) {
+        for (int d = 0; d < D; ++d)
+            if (at[d] < frame.origin[d] || at[d] >= frame.origin[d] + frame.h[d] * frame.cells[d]) return true;
+        return false;
+    };
+    for (auto& list : going_) list.clear();
+    gone_.clear();
+    std::int64_t left = 0;
+    for (std::size_t p = first; p < last; ++p) {
+        const int plane = std::clamp(static_cast<int>(std::floor((x[D - 1][p] - origin) * inv_h)), 0, planes - 1);
+        const auto& ranks = holders_[static_cast<std::size_t>(plane)];
+        if (leave && is_beyond(position(p))) {
+            ++left;
+            gone_.push_back(static_cast<int>(p));
+        } else if (ranks.size() > 1 || ranks[0] != self) {
+            bool stays = false;
+            for (const int rank : ranks) {
+                if (rank == self) stays = true;
+                if (rank != self) going_[static_cast<std::size_t>(rank)].push_back(static_cast<int>(p));
+            }
+            if (!stays) gone_.push_back(static_cast<int>(p));
+        }
+    }
+    return left;
+}
+
+template <int D>
+std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut& cut, bool leave) {
+    const auto ranks = static_cast<std::size_t>(slabs().ranks()), self = static_cast<std::size_t>(slabs().rank());
+    const auto [first, last] = own(frame);
+    going_.resize(ranks), sent_.resize(ranks), received_.resize(ranks);
+    find_holders(frame, cut);
+    const std::int64_t left = find_going(frame, first, last, leave);
+    // How many go from each to each: a row of the table a rank.
+    table_.resize(ranks * ranks), table_rows_.resize(ranks + 1);
+    for (std::size_t r = 0; r < ranks; ++r) table_[self * ranks + r] = static_cast<int>(going_[r].size());
+    std::iota(table_rows_.begin(), table_rows_.end(), std::size_t{0});
+    slabs().gather_parts(table_.data(), sizeof(int) * ranks, table_rows_);
+    const auto coming = [&](std::size_t r) { return static_cast<std::size_t>(table_[r * ranks + self]); };
+
+    std::size_t arrays = 0, total = last - first - gone_.size();
+    for_each_array([&](std::vector<real>&) { ++arrays; });
+    parcels_.clear();
+    for (std::size_t r = 0; r < ranks; ++r) {
+        if (r == self) continue;
+        total += coming(r);
+        resize_scratch(sent_[r], arrays * going_[r].size());
+        resize_scratch(received_[r], arrays * coming(r));
+        real* to = sent_[r].data();
+        for_each_array([&](const std::vector<real>& array) {
+            for (const int p : going_[r]) *to++ = array[static_cast<std::size_t>(p)];
+        });
+        parcels_.push_back({static_cast<int>(r), sent_[r].data(), sent_[r].size() * sizeof(real), received_[r].data(),
+                            received_[r].size() * sizeof(real)});
+    }
+    slabs().trade(parcels_);
+    std::size_t number = 0;
+    for_each_array([&, begin = first, end = last](std::vector<real>& array) {
+        resize_scratch(scratch_, total);
+        real* to = scratch_.data();
+        for (std::size_t r = 0; r < ranks; ++r) {
+            if (r != self) {
+                to = std::copy_n(received_[r].data() + number * coming(r), coming(r), to);
+                continue;
+            }
+            std::size_t from = begin;
+            for (const int p : gone_) {
+                to = std::copy(array.data() + from, array.data() + p, to);
+                from = static_cast<std::size_t>(p) + 1;
+            }
+            to = std::copy(array.data() + from, array.data() + end, to);
+        }
+        array.swap(scratch_);
+        ++number;
+    });
+    return {static_cast<std::int64_t>(last - first), left};
+}
+
+template <int D>
+void Markers<D>::gather(const Frame<D>& frame, Markers& all) const {
+    const auto [first, last] = own(frame);
+    const std::vector<std::size_t> counts = of_ranks(last - first);
+    std::vector<std::size_t> begins(1, 0);
+    for (const std::size_t count : counts) begins.push_back(begins.back() + count);
+    std::vector<std::vector<real>*> to;
+    all.for_each_array([&](std::vector<real>& array) { to.push_back(&array); });
+    std::size_t number = 0;
+    for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
+        std::vector<real>& whole = *to[number++];
+        whole.resize(begins.back());
+        std::copy_n(array.data() + begin, count, whole.data() + begins[static_cast<std::size_t>(slabs().rank())]);
+        slabs().gather_parts(whole.data(), sizeof(real), begins);
+    });
+}
+
+template <int D>
 void Markers<D>::reserve(std::size_t capacity) {
     for_each_array([&](std::vector<real>& array) { array.reserve(capacity); });
     scratch_.reserve(capacity);
@@ -132,6 +261,10 @@ std::size_t Markers<D>::bytes() const {
     std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + rows_.capacity() * sizeof(Extent) +
                         scratch_.capacity() * sizeof(real);
     for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
+    for (const auto& list : going_) total += list.capacity() * sizeof(int);
+    total += gone_.capacity() * sizeof(int);
+    for (const auto* buffers : {&sent_, &received_})
+        for (const auto& buffer : *buffers) total += buffer.capacity() * sizeof(real);
     return total;
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace weir::surface {
@@ -46,11 +47,28 @@ public:
     template <class Keep>
     void retain(Keep&& keep);
 
+    /// Over ranks each holds the markers of its own planes of cells and of one more beyond either cut, which give to the same faces.
+    bool holds(const Frame<D>& frame, const Cut& cut, int rank, int plane) const;
+    /// Keeps those that this rank holds, of all.
+    void keep_held(const Frame<D>& frame, const Cut& cut);
+    /// After motion: every rank gets what it holds now from where it was. Each gives its own, in their order, and takes what comes in the
+    /// order of the ranks, so that the stable sort finds them as in one process. Those that are beyond the domain go, where `leave`;
+    /// answers how many were this rank's own, before and of those that left.
+    std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Cut& cut, bool leave);
+    /// All markers of all ranks, to `all`, as they are sorted in one process.
+    void gather(const Frame<D>& frame, Markers& all) const;
+    /// Those of this rank's own planes: [first, second). Sorted.
+    std::pair<std::size_t, std::size_t> own(const Frame<D>& frame) const {
+        const std::size_t plane = product(frame.cells) / static_cast<std::size_t>(frame.cells[D - 1]);
+        const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(frame.cells[D - 1]);
+        return {begin(plane * static_cast<std::size_t>(lo)), begin(plane * static_cast<std::size_t>(hi))};
+    }
+
     /// Sorts by cell, x fastest, stable. Afterwards the markers of cell I are begin(I) .. end(I).
     void sort(const Frame<D>& frame);
     std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell]); }
     std::size_t end(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell + 1]); }
-    /// f(I, begin, end) for each cell that holds markers, after sort(); threaded by equal numbers of markers.
+    /// f(I, begin, end) for each cell of this rank's own planes that holds markers, after sort(); threaded by equal numbers of markers.
     template <class F>
     void for_each_occupied_cell(const Frame<D>& frame, F&& f) const;
     /// The same for the cells [from, to) in memory, one after the other.
@@ -73,11 +91,19 @@ public:
 private:
     void find_cells(const Frame<D>& frame, int first, int last);
     void find_rows(const Frame<D>& frame);
+    void find_holders(const Frame<D>& frame, const Cut& cut);
+    std::int64_t find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, cell_start_, from_;
     std::vector<Extent> rows_;
     std::vector<real> scratch_;
+    // Over ranks: who holds the markers of each plane, which go to each rank, which do not stay, what travels, array by array
+    std::vector<std::vector<int>> holders_, going_;
+    std::vector<int> gone_, table_;
+    std::vector<std::size_t> table_rows_;
+    std::vector<std::vector<real>> sent_, received_;
+    std::vector<Parcel> parcels_;
 };
 
 template <int D>
@@ -94,8 +120,9 @@ template <int D>
 template <class F>
 void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
     constexpr int blocks = 64;
-    const auto first_cell = [&](int block) {  // the first whose markers begin in this block
-        const auto least = static_cast<int>(count() * static_cast<std::size_t>(block) / blocks);
+    const auto [first, last] = own(frame);
+    const auto first_cell = [&, begin = first, count = last - first](int block) {  // the first whose markers begin in this block
+        const auto least = static_cast<int>(begin + count * static_cast<std::size_t>(block) / blocks);
         return std::lower_bound(cell_start_.begin(), cell_start_.end() - 1, least) - cell_start_.begin();
     };
     parallel_for(0, blocks, [&](int block) {

@@ -95,13 +95,16 @@ Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, cons
 
 }  // namespace
 
+/// Over ranks, each those of its own planes.
 template <int D>
 void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, const Frame<D>& frame) {
+    if (std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) refresh_faces(u, frame, 1);
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         parallel_for(0, static_cast<int>(solid_[at].size()), [&](int i) {
             SolidFace& face = solid_[at][static_cast<std::size_t>(i)];
             const Index<D>& I = faces_[at][static_cast<std::size_t>(i)];
+            if (!is_own_plane(I[D - 1])) return;
             if (face.no_slip || known[at](I) == 0) {
                 face.value = face.velocity[a];
                 return;
@@ -112,7 +115,8 @@ void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, c
     }
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
-        for (std::size_t i = 0; i < solid_[at].size(); ++i) u[a](faces_[at][i]) = solid_[at][i].value;
+        for (std::size_t i = 0; i < solid_[at].size(); ++i)
+            if (is_own_plane(faces_[at][i][D - 1])) u[a](faces_[at][i]) = solid_[at][i].value;
     }
 }
 

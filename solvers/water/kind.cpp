@@ -55,6 +55,20 @@ Key scheme_keys() {
                      PoissonChoice::key()}};
 }
 
+/// What of a scene is not cut into slabs yet.
+void over_ranks(const scene::Scene& scene) {
+    const auto refuse = [&](const std::string& key, const std::string& what) {
+        scene.refuse(key, key + ": " + what + " in one process only");
+    };
+    if (!scene.root().tables("bodies").empty()) refuse("bodies", "bodies move");
+    if (LiquidHeat<2>::named(scene)) refuse("substance", "a substance melts or boils");
+    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
+    for (std::size_t i = 0; scene.has("solids") && i < scene.root().tables("solids").size(); ++i)
+        if (const auto& solid = scene.root().tables("solids")[i]; solid.has("motion") && solid.text("motion.kind") != "rest")
+            refuse("solids[" + std::to_string(i) + "].motion", "solids move");
+    if (scene.root().text("scheme.poisson.method").starts_with("petsc")) refuse("scheme.poisson.method", "PETSc's methods are");
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -85,7 +99,8 @@ scene::SolverKind kind() {
             {{"velocity", "pressure", "level_set", "position", "velocity"},
              {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
               "faces to markers"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""}};
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+            over_ranks};
 }
 
 }  // namespace weir::water

@@ -31,6 +31,7 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
 
 template <int D>
 void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state) {
+    const AllPlanes all;
     find_liquid(surface, closed);
     state.cells = A_.cells;
     for (int a = 0; a < D; ++a) set_weights(surface, state, a);
@@ -150,6 +151,21 @@ void SurfacePressure<D>::hold_back(const MacState<D>& state) {
     }
 }
 
+/// Over ranks: by all of them together where the method can, else by each of them.
+template <int D>
+const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
+    if (!over_ranks()) return solver_->solve(state.p, b_);
+    if (solver_->shares_planes()) {
+        const poisson::Report& report = solver_->solve(state.p, b_);
+        refresh(state.p, frame_.periodic(D - 1));
+        return report;
+    }
+    gather(b_);
+    gather(state.p);
+    const AllPlanes all;
+    return solver_->solve(state.p, b_);
+}
+
 template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
@@ -158,9 +174,12 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         return nothing_to_do_;
     }
     set_rhs(state, surface, dt, sigma, curvature);
-    solver_->setup(A_);
+    {
+        const AllPlanes all;
+        solver_->setup(A_);
+    }
     const poisson::Report& report =  // the last pressure is the first guess
-        bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solver_->solve(state.p, b_);
+        bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
     subtract_gradient(state, dt);
     if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature);
     return report;
@@ -226,8 +245,8 @@ void SurfacePressure<D>::subtract_surface_gradient(MacState<D>& state, const Lev
 
 template <int D>
 real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
-    const int n = frame_.cells[0];
-    return ordered_max(static_cast<int>(liquid_.size()), [&](int line) {
+    const int n = frame_.cells[0], planes = frame_.cells[D - 1], lines = static_cast<int>(liquid_.size()) / planes;
+    const auto of_line = [&](int line) {
         const auto [begin, end] = liquid_[static_cast<std::size_t>(line)];
         std::array<real, row_block> divergence;
         real largest = 0;
@@ -241,6 +260,11 @@ real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
             }
             if (std::isnan(largest)) break;
         }
+        return largest;
+    };
+    return plane_max(planes, [&](int plane) {
+        real largest = 0;
+        for (int line = plane * lines; line < (plane + 1) * lines; ++line) largest = larger_or_nan(largest, of_line(line));
         return largest;
     });
 }

@@ -24,7 +24,8 @@ public:
     SurfacePressure() = default;
     SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice);
 
-    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells.
+    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells. Over ranks everybody finds all of it, of the
+    /// whole φ.
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
     /// Faces follow the pressure as far as state.mobility says; state.u must be that part of itself already.
     void hold_back(const MacState<D>& state);
@@ -42,6 +43,7 @@ public:
     std::size_t bytes() const;
 
 private:
+    const poisson::Report& solve(MacState<D>& state);
     void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
     real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;

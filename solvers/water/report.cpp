@@ -10,6 +10,9 @@ using poisson::Cell;
 
 template <int D>
 FieldSet Water<D>::fields() const {
+    make_whole();
+    gather_markers();
+    const Markers<D>& markers = all_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
     FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, marker_set_name, {}};
@@ -17,8 +20,8 @@ FieldSet Water<D>::fields() const {
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         velocity.data.push_back(state_.u[a].values());
-        position.data.push_back(markers_.x[at]);
-        if (markers_.carries_velocity()) carried.data.push_back(markers_.v[at]);
+        position.data.push_back(markers.x[at]);
+        if (markers.carries_velocity()) carried.data.push_back(markers.v[at]);
     }
     set.fields.push_back(std::move(velocity));
     set.fields.push_back({"pressure", "Pa", Where::cell, "", {state_.p.values()}});
@@ -32,15 +35,21 @@ FieldSet Water<D>::fields() const {
 
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
+    make_whole();
+    const OwnPlanes mine(cut_);
+    const auto [first, last] = markers_.own(frame_);
+    const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
+    const std::int64_t escaped = sum_of_ranks(escaped_), reseeded = sum_of_ranks(reseeded_);
+    const AllPlanes all;
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
-    list.insert(list.begin() + 1, {"marker_volume", list[0].unit, markers_.volume * static_cast<real>(markers_.count())});
-    list.push_back({"markers", "", static_cast<real>(markers_.count())});
+    list.insert(list.begin() + 1, {"marker_volume", list[0].unit, markers_.volume * count});
+    list.push_back({"markers", "", count});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     if (hand_) geometry::sum_up(*hand_, D, list);
     if (heat_)
         for (auto& integral : heat_->integrals(state_, volume_target_)) list.push_back(std::move(integral));
-    list.push_back({"escaped_markers", "", static_cast<real>(escaped_)});
-    list.push_back({"reseeded_markers", "", static_cast<real>(reseeded_)});
+    list.push_back({"escaped_markers", "", static_cast<real>(escaped)});
+    list.push_back({"reseeded_markers", "", static_cast<real>(reseeded)});
     if (bodies_)
         for (auto& integral : bodies_->bodies().integrals(gravity_)) list.push_back(std::move(integral));
     return list;
@@ -48,13 +57,16 @@ std::vector<Integral> Water<D>::integrals() const {
 
 template <int D>
 void Water<D>::save(Checkpoint& to) const {
+    make_whole();
+    gather_markers();
+    const OwnPlanes mine(cut_);
+    const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(escaped_), sum_of_ranks(reseeded_)};
     state_.save(to);
     if (bodies_) bodies_->save(to);
     surface_.save(to);
     int at = 0;
-    markers_.for_each_array([&](const std::vector<real>& array) { to.put("water.markers." + std::to_string(at++), array); });
+    all_markers().for_each_array([&](const std::vector<real>& array) { to.put("water.markers." + std::to_string(at++), array); });
     const std::array<real, 3> reals{volume_target_, markers_.volume, volume_shift_};
-    const std::array<std::int64_t, 3> counts{steps_, escaped_, reseeded_};
     to.put_value("water.reals", reals);
     to.put_value("water.counts", counts);
     to.put_value("water.rate", rate_);
@@ -74,9 +86,11 @@ void Water<D>::restore(const Checkpoint& from) {
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
-    steps_ = counts[0], escaped_ = counts[1], reseeded_ = counts[2];
+    steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
     if (hand_ && from.has("hand")) hand_->restore(from);
     markers_.sort(frame_);
+    markers_.keep_held(frame_, cut_);
+    whole_ = true, markers_whole_ = false;
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
     mark_liquid_faces();
@@ -88,6 +102,7 @@ std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
                         (viscosity_ ? viscosity_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.size() + near_solid_.size() +
                         not_solved_for_.size() + curvature_.size() * sizeof(real) + in_solids_.bytes();
+    if (!cut_.empty()) total += all_markers_.bytes();
     if (bodies_) total += bodies_->bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();
     for (const auto& sum : sums_.sum) total += sum.size() * (sizeof(FaceSum) + 1);  // with its mark

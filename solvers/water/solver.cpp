@@ -8,6 +8,8 @@ namespace weir::water {
 /// the level set and free of divergence in the liquid, to the tolerance of the pressure.
 template <int D>
 StepReport Water<D>::step(real dt) {
+    const OwnPlanes mine(cut_);
+    bring_faces(dt);
     move_bodies(dt);
     place_solids(state_.time + dt);
     move_surface(dt);                             // Dx/Dt = u for markers, Dφ/Dt = 0
@@ -23,6 +25,7 @@ StepReport Water<D>::step(real dt) {
     momentum_to_markers(dt);
     state_.time += dt;
     ++steps_;
+    if (!cut_.empty()) check_own();
     return {.dt = dt,
             .cfl = dt * rate_,
             .max_divergence = divergence,
@@ -59,7 +62,7 @@ void Water<D>::move_surface(real dt) {
     const auto timed = passes_.time("move surface");
     move_markers(markers_, state_.u, frame_, dt, options_.trace, state_.sides, solids_.solids(), near_solid_);
     if (heat_) heat_->carry(state_, surface_, dt, options_.trace);
-    surface_.advect(state_.u, dt);
+    surface_.advect(state_.u, dt, reach_);
 }
 
 template <int D>
@@ -73,6 +76,7 @@ void Water<D>::correct_surface(real dt) {
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
+    surface_.make_whole();
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 
@@ -134,10 +138,7 @@ void Water<D>::momentum_to_faces(real dt) {
 /// A steady flow is then that of the forces plus θ dt times them (Lie's splitting, first order).
 template <int D>
 void Water<D>::forces(real dt) {
-    if (viscosity_) {
-        const auto timed = passes_.time("effect viscosity");
-        viscosity_->apply(state_, surface_, closed_, dt);
-    }
+    if (viscosity_) rub(dt);
     effects_.apply(Stage::force, state_, dt, passes_);
     const auto timed = passes_.time("walls");
     set_fixed_faces();
@@ -151,6 +152,7 @@ poisson::Report Water<D>::project(real dt) {
     const auto& report =
         pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr, bodies_.get(), &solids_);
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);
+    refresh(state_.u[D - 1], frame_.periodic(D - 1));
     return report;
 }
 
@@ -168,6 +170,7 @@ void Water<D>::extend_velocity(real dt) {
 template <int D>
 void Water<D>::momentum_to_markers(real dt) {
     const auto timed = passes_.time("faces to markers");
+    if (options_.transfer == Transfer::pic || options_.transfer == Transfer::apic) refresh_faces(state_.u, frame_, 1);
     switch (options_.transfer) {
         case Transfer::grid:
             return;
@@ -248,7 +251,8 @@ template <int D>
 void Water<D>::control_volume() {
     if (!options_.volume_control) return;
     const auto timed = passes_.time("effect volume_control");
-    const real missing = volume_target_ - surface_.volume() - markers_.volume * static_cast<real>(surface_.count_airborne(markers_));
+    const std::int64_t airborne = sum_of_ranks(static_cast<std::int64_t>(surface_.count_airborne(markers_)));
+    const real missing = volume_target_ - surface_.volume() - markers_.volume * static_cast<real>(airborne);
     volume_shift_ += std::abs(surface_.regain(missing));
 }
 
@@ -279,6 +283,7 @@ void Water<D>::curvature() {
         const real limit = (D - 1) / frame_.h_min();  // of a drop as small as a cell
         if (g2 > 1e-6) curvature_(I) = std::clamp((laplacian - bending / g2) / std::sqrt(g2), -limit, limit);
     });
+    refresh(curvature_, frame_.periodic(D - 1));
 }
 
 /// Of the faces that the pressure decided, and of the sides that prescribe theirs.
@@ -289,7 +294,7 @@ real Water<D>::max_speed_rate() const {
         const auto& known = known_[static_cast<std::size_t>(a)];
         const auto& u = state_.u[a];
         const Index<D>& n = known.extent();
-        const real largest = ordered_max(n[D - 1], [&](int k) {
+        const real largest = plane_max(n[D - 1], [&](int k) {
             real m = 0;
             const auto see = [&](std::size_t at, int count) {
                 const real* value = u.data() + at;

@@ -70,6 +70,8 @@ public:
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
+    /// Over ranks, of what each has computed.
+    bool checks_itself() const override { return !cut_.empty(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
@@ -92,7 +94,7 @@ private:
     void pour_and_drain(real dt);
     void redistribute_markers();
     bool fill_cell(const Index<D>& I, int wanted);
-    void pour(const Emitter<D>& emitter, real dt);
+    std::int64_t pour(const Emitter<D>& emitter, real dt);
     bool is_free(const Vec<D>& x) const;
     void impose_emitters(real dt, real Emitter<D>::Face::*speed);
     void carry_emitters_velocity(real dt);
@@ -108,6 +110,15 @@ private:
     poisson::Report project(real dt);
     void extend_velocity(real dt);
     void momentum_to_markers(real dt);
+
+    // Over ranks (ranks.cpp)
+    void bring_faces(real dt);
+    std::array<std::int64_t, 2> let_depart();
+    void check_own() const;
+    void make_whole() const;
+    void gather_markers() const;
+    const Markers<D>& all_markers() const { return cut_.empty() ? markers_ : all_markers_; }
+    void rub(real dt);
 
     // Edits between steps (edit.cpp)
     void keep_faces();
@@ -146,12 +157,16 @@ private:
     std::unique_ptr<LiquidHeat<D>> heat_;  // none where the scene names no substance
     real volume_target_ = 0;               // what the ledger says: start + poured in − drained [m^D]
     std::int64_t steps_ = 0;
-    real rate_ = 0;  // max |u|/h over known faces [1/s]
-    int up_ = 1;     // the axis that gravity is most along
-    std::int64_t escaped_ = 0, reseeded_ = 0;
-    real volume_shift_ = 0;       // how far volume control moved the surface, all steps together [m]
-    std::shared_ptr<Hand> hand_;  // none where the scene names none
+    real rate_ = 0;                            // max |u|/h over known faces [1/s]
+    int up_ = 1;                               // the axis that gravity is most along
+    std::int64_t escaped_ = 0, reseeded_ = 0;  // over ranks: by this one
+    real volume_shift_ = 0;                    // how far volume control moved the surface, all steps together [m]
+    std::shared_ptr<Hand> hand_;               // none where the scene names none
     Passes passes_;
+    Cut cut_;                                           // none in one process
+    int reach_ = 0;                                     // planes beyond the cuts that motion reads in this step
+    mutable bool whole_ = true, markers_whole_ = true;  // all planes stand here, not this rank's alone; all markers in all_markers_
+    mutable Markers<D> all_markers_;                    // over ranks, when somebody looks
 };
 
 }  // namespace weir::water

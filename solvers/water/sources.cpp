@@ -61,7 +61,8 @@ bool Water<D>::is_free(const Vec<D>& x) const {
 /// slow. Markers have already moved: the lattice is where it is at the end of the step, and in the first one those count that have come out
 /// again.
 template <int D>
-void Water<D>::pour(const Emitter<D>& emitter, real dt) {
+std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
+    std::int64_t poured = 0;
     const real from = std::max(state_.time, emitter.start), to = std::min(state_.time + dt, emitter.end);
     const real running = to - emitter.start;
     const bool starts = state_.time <= emitter.start;  // this step is the first in which it works
@@ -81,16 +82,18 @@ void Water<D>::pour(const Emitter<D>& emitter, real dt) {
                 x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
                        emitter.velocity[d] * running;
             }
+            if (over_ranks() && !markers_.holds(frame_, cut_, slabs().rank(), frame_.cell_of(x)[D - 1])) continue;
             const Vec<D> earlier = x - (to - from) * emitter.velocity;
             const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
             const bool enters = now && !before, fills = starts && before && !(surface_.phi(frame_.cell_of(earlier)) < 0);
-            if ((enters || fills) && is_free(x)) markers_.add(x, emitter.velocity);
+            if ((enters || fills) && is_free(x)) markers_.add(x, emitter.velocity), poured += is_own_plane(frame_.cell_of(x)[D - 1]);
         }
     });
     for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
         if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
             surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
     });
+    return poured;
 }
 
 /// Markers beyond open sides go, and take their share of the ledger's volume with them: it is redistribute_markers() that says how many
@@ -98,12 +101,13 @@ void Water<D>::pour(const Emitter<D>& emitter, real dt) {
 template <int D>
 void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
-    const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
+    const auto [all, departed] = let_depart();
     if (departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
+    bool pours = false;
+    std::int64_t poured = 0;
     for (const auto& emitter : emitters_)
-        if (emitter.works(state_.time, state_.time + dt)) pour(emitter, dt);
-    const std::size_t poured = markers_.count() - (all - departed);
-    volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(poured);
+        if (emitter.works(state_.time, state_.time + dt)) pours = true, poured += pour(emitter, dt);
+    if (pours) volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(sum_of_ranks(poured));
     markers_.sort(frame_);
     if (hand_) pour_and_drain_by_hand();
 }
@@ -203,14 +207,21 @@ void Water<D>::redistribute_markers() {
     const auto timed = passes_.time("redistribute markers");
     const real deep = -1.5 * frame_.h_max();
     bool changed = false, heaps = false;
-    const std::size_t cells = product(frame_.cells), before = markers_.count();
+    const auto row = static_cast<std::size_t>(frame_.cells[0]);
+    const std::size_t cells = product(frame_.cells);
     for (std::size_t cell = 0; cell < cells; ++cell) {
+        if (over_ranks() && cell % row == 0 && !markers_.holds(frame_, cut_, slabs().rank(), frame_.index_of(cell)[D - 1])) {
+            cell += row - 1;
+            continue;
+        }
         const int count = markers_.in_cell(cell);
         heaps |= count > many;
         if (count >= few || surface_.phi[cell] > deep || (!closed_.empty() && closed_[cell])) continue;
-        changed |= fill_cell(frame_.index_of(cell), few);
+        const Index<D> I = frame_.index_of(cell);
+        const std::size_t before = markers_.count();
+        changed |= fill_cell(I, few);
+        if (is_own_plane(I[D - 1])) reseeded_ += static_cast<std::int64_t>(markers_.count() - before);
     }
-    reseeded_ += static_cast<std::int64_t>(markers_.count() - before);
     if (changed) markers_.sort(frame_);
     if (!heaps) return;
     std::size_t cell = 0;

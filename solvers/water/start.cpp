@@ -28,10 +28,11 @@ Water<D>::Water(const scene::Scene& scene)
       effects_(make_effects<D>(body_forces(), scene)),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
-      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
+      hand_(geometry::make_hand(scene, kinds_of_hand(scene))),
+      cut_(cut_of(frame_.cells[D - 1], slabs().ranks())) {
     if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
     refuse_flat_cells(scene, frame_);
-    markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
+    markers_ = all_markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
     pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
     const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);  // σ k²/ρ of a wave of ten cells
@@ -145,6 +146,8 @@ void Water<D>::seed_markers() {
         markers_.volume = volume_target_ / static_cast<real>(markers_.count());
     else
         markers_.volume = frame_.cell_volume() / Markers<D>::per_cell;
+    markers_.keep_held(frame_, cut_);
+    markers_whole_ = false;
 }
 
 template Water<2>::Water(const scene::Scene&);

@@ -178,6 +178,7 @@ void scatter_cell(const Markers<D>& m, const Index<D>& I, std::size_t begin, std
 /// A periodic axis has its first face twice: both copies get the sum.
 template <int D>
 void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
+    const AllPlanes all;
     for (int a = 0; a < D; ++a) {
         if (!frame.periodic(a)) continue;
         auto& sum = sums.sum[static_cast<std::size_t>(a)];
@@ -227,10 +228,13 @@ template <int D>
 void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums<D>& sums, MacVelocity<D>& u,
                       std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known) {
     const auto nothing = [](std::size_t, std::size_t) {};
-    for (auto& sum : sums.sum)
+    // Over ranks: those beyond the cuts give to faces there too, whose sums are not whole and not asked for.
+    for (auto& sum : sums.sum) {
+        const AllPlanes all;
         for_faces_near(
             markers, frame, sum.extent(),
             [&](std::size_t at, std::size_t count) { std::fill(sum.data() + at, sum.data() + at + count, FaceSum{}); }, nothing);
+    }
     const int planes = frame.cells[D - 1], slabs = (planes + slab_planes - 1) / slab_planes;
     const std::size_t plane_cells = product(frame.cells) / static_cast<std::size_t>(planes);
     const auto scatter_slab = [&](int slab) {
@@ -307,12 +311,14 @@ void flip_to_markers(const MacVelocity<D>& u, MacVelocity<D>& before, real beta,
                 for (std::size_t i = 0; i < count; ++i) then[i] = now[i] - beta * then[i];
             },
             [](std::size_t, std::size_t) {});
+    refresh_faces(before, frame, 1);
     gather(before, frame, beta, markers);
 }
 
 template <int D>
 void apic_to_markers(const MacVelocity<D>& u, const Frame<D>& frame, Markers<D>& markers) {
-    parallel_for(0, static_cast<int>(markers.count()), [&](int i) {
+    const auto [first, last] = markers.own(frame);
+    parallel_for(static_cast<int>(first), static_cast<int>(last), [&](int i) {
         const auto p = static_cast<std::size_t>(i);
         const Stencil<D> stencil(frame, markers.position(p));
         for (int a = 0; a < D; ++a) {

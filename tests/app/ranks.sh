@@ -48,6 +48,8 @@ compare() {
 }
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
+water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml
+water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
@@ -66,6 +68,25 @@ particles)
 particles_3d)
     compare pbf "$every" "$drops_deep"
     compare sph "$every" "$drops_deep" $sph
+    ;;
+water)
+    compare flip "$every" "$water"
+    compare few "4 2" "$scenes/water.toml"
+    ;;
+water_3d)
+    compare flip "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep"
+    ;;
+water_schemes)
+    compare grid "3 1" "$water" --set scheme.transfer=grid --set scheme.trace=rk3
+    compare apic "3 2" "$water" --set scheme.transfer=apic --set scheme.poisson.method=cg_mic0
+    compare ring "2 1,3 2" "$water_deep" $water_ring --set time.cfl=2 --set time.max_dt=0.05
+    compare ring_apic "3 1" "$water_deep" $water_ring --set scheme.transfer=apic
+    compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
+    # saved on three, continued on two
+    ends 0 over 3 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
+    ends 0 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.06
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.06
+    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
     ;;
 particles_schemes)
     compare tolerant "3 2" "$drops" --set scheme.tolerance=1e-3 --set scheme.warm_start=0.4 --set scheme.kernel=muller --set effects.artificial_pressure.k=1e-4
@@ -124,6 +145,34 @@ traffic) # what is sent is what must be, in the steps by which one run is longer
     # PBF: two halos an iteration, densities, positions and velocities, what walls corrected, and the run
     both still.toml --set solver=pbf --set scheme.iterations=5 --set scheme.warm_start=0
     for rank in 0 1; do expect "$(sent messages $rank)" $((20 * (2 * 5 + 3 + 2))) "messages of rank $rank, pbf"; done
+    # A pool at rest: its pressure is everybody's, of gathered numbers.
+    cat >pool.toml <<-END
+	solver = "mac_water"
+	dim = 2
+	grid = { cells = [16, 40], size = [0.16, 0.4] }
+	time = { end = 0.01, max_dt = 1e-4 }
+	liquid = [ { shape = "box", min = [0.0, 0.0], max = [0.16, 0.3] } ]
+	output = { every = 1.0 }
+	END
+    both pool.toml
+    for rank in 0 1; do
+        # Cut before plane 16 of 40, with a plane of faces more at the end. A row of cells, and of faces along x.
+        planes=$([ $rank = 0 ] && echo 16 || echo 24) faces=$([ $rank = 0 ] && echo 16 || echo 25)
+        row=$((8 * 16)) both=$((8 * 17 + 8 * 16)) number_a_row=$((8 * (planes + faces)))
+        # The fastest flow; the velocity 3 rows deep; the level set as deep, and 2 rows of it; how many markers go; the 4 of each cell at the
+        # cut, with 4 numbers.
+        messages=6 bytes=$((8 * faces + 3 * both + 5 * row + 2 * 4 + 16 * 4 * 4 * 8))
+        # The level set: what is inside, a byte a cell; a row of it, twice for each of 4 layers, 2 at the end; all of it.
+        messages=$((messages + 1 + 9 + 1 + 1)) bytes=$((bytes + planes * 16 + 11 * row + planes * row))
+        # Faces, 2 layers on from the markers and 4 on from the liquid: what is known, a byte a face; 3 rows; for the second layer 3 more, for
+        # others one, each component by itself. Faces at the cut: before, behind, as forces and as the pressure leave them, at the end.
+        messages=$((messages + 2 * (2 + 1 + 2) + 2 * 2 + 5))
+        bytes=$((bytes + 2 * (planes * 17 + faces * 16 + 6 * both) + 2 * both + 5 * row))
+        # The right-hand side and the pressure; what diverges; the fastest flow; FLIP's difference, one row; whether all is finite; the run's.
+        messages=$((messages + 2 + 1 + 2 + 1 + 1 + 2)) bytes=$((bytes + 2 * planes * row + 8 * planes + number_a_row + both + 4 + 2 * 4))
+        expect "$(sent messages $rank)" $((20 * messages)) "messages of rank $rank, mac_water"
+        expect "$(sent bytes $rank)" $((20 * bytes)) "bytes of rank $rank, mac_water"
+    done
     cat >stirred.toml <<-END
 	solver = "mac"
 	dim = 2
@@ -164,6 +213,15 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     ends 0 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out one_3d
     ends 0 over 2 WEIR_HALO_POISON=1 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out poisoned_3d
     alike one_3d poisoned_3d
+    ends 0 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
+    alike liquid liquid_poisoned
+    for case in "" "--set scheme.transfer=apic $water_ring" "--set scheme.transfer=grid"; do
+        rm -rf liquid_3d liquid_3d_poisoned
+        ends 0 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d
+        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
+        alike liquid_3d liquid_3d_poisoned
+    done
     for case in "$drops" "$drops_deep" "$drops $sph" "$drops_deep $sph" "$drops $sph --set scheme.density=summation"; do
         rm -rf drops drops_poisoned
         ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops
@@ -185,7 +243,10 @@ ends)
         says "$key"
         [ ! -e refused ] || fail "a refused run has written"
     }
-    refused 'solver "mac_water" runs in one process' "$scenes/water.toml"
+    refused 'solver "tallcell" runs in one process' "$scenes/water.toml" --set solver=tallcell
+    refused "effects.hand: the hand pushes in one process only" "$water" --set effects.hand={}
+    refused 'solids\[0\].motion' "$water" --set 'solids=[{shape="sphere",centre=[0.5,0.3],radius=0.08,motion={kind="rotation",rate=1.0,axis=[0.0,0.0,1.0]}}]'
+    refused scheme.poisson.method "$water" --set scheme.poisson.method=petsc_gamg
     refused "effects.hand: the hand pushes in one process only" "$drops" --set effects.hand={}
     refused "scheme.backend: this backend runs in one process only" "$drops" --set scheme.backend=reference
     refused 'solids\[0\].motion' "$scenes/smoke.toml"

@@ -1,0 +1,110 @@
+// What several ranks that run one scene of liquid have of one another. Each owns the planes of cells between two cuts and the markers in
+// them, and knows the markers of one plane more beyond either cut.
+#include "core/error.hpp"
+#include "water/solver.hpp"
+
+namespace weir::water {
+
+/// The velocity as far beyond the cuts as anything moves in the step, and reads there: a marker or a cell at the end of its path, and the
+/// markers of one plane beyond.
+template <int D>
+void Water<D>::bring_faces(real dt) {
+    whole_ = cut_.empty(), markers_whole_ = false;
+    if (!over_ranks()) return;
+    const auto timed = passes_.time("exchange");
+    const int planes = frame_.cells[D - 1];
+    const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];
+    reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
+    refresh_faces(state_.u, frame_, reach_);
+}
+
+/// Markers beyond open sides go, and over ranks all go to those that hold them now. How many there were, and how many have gone.
+template <int D>
+std::array<std::int64_t, 2> Water<D>::let_depart() {
+    if (!over_ranks()) {
+        const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
+        return {static_cast<std::int64_t>(all), static_cast<std::int64_t>(departed)};
+    }
+    bool open = false;
+    for (int a = 0; a < D; ++a) open = open || state_.sides.open(a, 0) || state_.sides.open(a, 1);
+    const auto [own, left] = markers_.migrate(frame_, cut_, open);
+    if (!open) return {own, 0};
+    return {sum_of_ranks(own), sum_of_ranks(left)};
+}
+
+/// Friction is solved for by everybody.
+template <int D>
+void Water<D>::rub(real dt) {
+    const auto timed = passes_.time("effect viscosity");
+    for (int a = 0; a < D; ++a) gather(state_.u[a]);
+    surface_.make_whole();
+    const AllPlanes all;
+    viscosity_->apply(state_, surface_, closed_, dt);
+}
+
+/// What is looked at in whole after each step of one process.
+template <int D>
+void Water<D>::check_own() const {
+    const auto is_finite = [](const Grid<real, D>& q) {
+        const int planes = q.extent()[D - 1], begin = detail::own_share.lower(0), end = detail::own_share.upper(planes);
+        const auto plane = static_cast<std::size_t>(q.stride(D - 1));
+        auto& most = detail::reduction_scratch(static_cast<std::size_t>(planes));
+        for_each_plane(0, planes, [&](int k) {
+            most[static_cast<std::size_t>(k)] = largest_magnitude(q.data() + static_cast<std::size_t>(k) * plane, plane);
+        });
+        return std::all_of(most.begin() + begin, most.begin() + end, [](real value) { return std::isfinite(value); });
+    };
+    enum { none, position, pressure, level_set, velocity };
+    int broken = none;
+    const auto see = [&](bool finite, int what) {
+        if (!finite) broken = std::max(broken, what);
+    };
+    for (int a = 0; a < D; ++a) see(is_finite(state_.u[a]), velocity);
+    see(is_finite(state_.p), pressure);
+    see(is_finite(surface_.phi), level_set);
+    const auto [first, last] = markers_.own(frame_);
+    int number = 0;
+    markers_.for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
+        see(std::isfinite(largest_magnitude(array.data() + begin, count)), number++ < D ? position : velocity);
+    });
+    broken = slabs().largest(broken);
+    if (broken == none) return;
+    const std::string name = broken == position    ? "position"
+                             : broken == pressure  ? "pressure"
+                             : broken == level_set ? level_set_name
+                                                   : "velocity";
+    throw NumericalFailure(name, name + " is no longer finite");
+}
+
+/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
+template <int D>
+void Water<D>::make_whole() const {
+    if (whole_) return;
+    const OwnPlanes mine(cut_);
+    auto& own = const_cast<Water&>(*this);  // what is written is what was not here: the state stays the same
+    for (int a = 0; a < D; ++a) gather(own.state_.u[a]);
+    gather(own.state_.p);
+    own.surface_.make_whole();
+    whole_ = true;
+}
+
+template <int D>
+void Water<D>::gather_markers() const {
+    if (cut_.empty() || markers_whole_) return;
+    const OwnPlanes mine(cut_);
+    markers_.gather(frame_, all_markers_);
+    markers_whole_ = true;
+}
+
+#define WEIR_INSTANTIATE(D)                                      \
+    template void Water<D>::bring_faces(real);                   \
+    template std::array<std::int64_t, 2> Water<D>::let_depart(); \
+    template void Water<D>::rub(real);                           \
+    template void Water<D>::check_own() const;                   \
+    template void Water<D>::make_whole() const;                  \
+    template void Water<D>::gather_markers() const;
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::water
