@@ -226,4 +226,24 @@ TEST("a particle whose place is not a number is caught in the step it appears: e
     EXPECT_TRUE(std::filesystem::exists(out / "last_good.weir"));
 }
 
+TEST("of a sweep the run that is refused is named with why, though the claim rests on another one") {
+    TemporaryFolder folder;
+    const auto one = folder.path() / "thin";
+    std::filesystem::create_directories(one);
+    std::ofstream(one / "case.toml")
+        << "question = \"q\"\nblind_to = \"b\"\nkind = \"benchmark\"\n"
+           "sweep = { key = \"grid.cells\", values = [4, 32] }\n"
+           "accept = [ { metric = \"total_smoke\", at_least = 0, why = \"smoke is let in, never taken out\" } ]\n";
+    std::ofstream(one / "scene.toml")
+        << "solver = \"mac\"\ndim = 2\ngrid = { cells = [32, 32], size = [1.0, 1.0] }\ntime = { end = 0.01, dt = 0.01 }\n"
+           "emitters = [ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.03, smoke = 1.0 } ]\n";
+    const auto answer = weir_says({"validate", one, "--out", folder.path() / "out"});
+    EXPECT_EQ(answer.code, 2) << answer.text;
+    EXPECT_NE(answer.text.find("1 of 1 claims hold"), std::string::npos) << answer.text;
+    const auto told = answer.text.find("thin at grid.cells = 4: refused: ");
+    ASSERT_NE(told, std::string::npos) << answer.text;
+    EXPECT_NE(answer.text.find("scene.toml:5:12: ", told), std::string::npos) << answer.text;
+    EXPECT_NE(answer.text.find("it covers the centre of no cell", told), std::string::npos) << answer.text;
+}
+
 }  // namespace

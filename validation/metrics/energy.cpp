@@ -30,6 +30,8 @@ void refuse_uncounted_work(const scene::Scene& scene) {
     const auto refuse = [](const std::string& what) {
         throw BadInput("energy_gain counts the work of gravity alone; " + what + " do work that no integral tells of");
     };
+    if (scene.has("bodies") && !scene.root().tables("bodies").empty())
+        throw BadInput("energy_gain counts the energy of the fluid alone, and bodies have their own: budget.energy_gain counts both");
     if (scene.has("emitters") && !scene.root().tables("emitters").empty()) refuse("emitters");
     if (scene.has("solids"))
         for (const scene::Table& solid : scene.root().tables("solids"))

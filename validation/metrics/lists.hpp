@@ -18,6 +18,7 @@ std::vector<Metric> lattice_metrics();
 std::vector<Metric> height_field_metrics();
 std::vector<Metric> procedural_metrics();
 std::vector<Metric> body_metrics();
+std::vector<Metric> body_budget_metrics();
 std::vector<Metric> ice_metrics();
 std::vector<Metric> pond_metrics();
 std::vector<Metric> substance_metrics();

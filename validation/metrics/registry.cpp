@@ -21,6 +21,7 @@ const std::vector<Metric>& metrics() {
                                  procedural_metrics(),
                                  pond_metrics(),
                                  body_metrics(),
+                                 body_budget_metrics(),
                                  ice_metrics(),
                                  substance_metrics(),
                                  melting_metrics(),

@@ -149,6 +149,7 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
         if (talk) std::fprintf(stderr, "\r\033[K");
         fmt::print("{}{}\n", claims_table(result), orders_table(result));
         std::fflush(stdout);
+        std::fputs(untold_failures(result).c_str(), stderr);
         write_outputs(result, options.out);
         for (const auto& verdict : verdicts_json(result)) verdicts.push_back(verdict);
         output::write_file(options.out / "verdicts.json", verdicts.dump(1) + "\n");  // after each case: a killed run keeps what it has

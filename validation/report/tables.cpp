@@ -60,6 +60,19 @@ std::string claims_table(const CaseResult& result) {
     return s;
 }
 
+std::string untold_failures(const CaseResult& result) {
+    std::string s;
+    for (const auto& v : result.variants)
+        for (const RunResult& run : v.runs) {
+            const auto tells = [&](const Verdict& verdict) { return verdict.at == run.label && verdict.note == *run.failure; };
+            if (!run.failure || std::any_of(v.verdicts.begin(), v.verdicts.end(), tells)) continue;
+            s += fmt::format("{}{}{}{}: {}: {}\n", result.plan.name, v.plan.name.empty() ? "" : ", ", v.plan.name,
+                             v.plan.sweep ? fmt::format(" at {} = {}", v.plan.sweep->key, run.label) : "",
+                             run.bad_input ? "refused" : "came to no end", *run.failure);
+        }
+    return s;
+}
+
 std::string orders_table(const CaseResult& result) {
     std::string s;
     for (const auto& v : result.variants) {
