@@ -59,18 +59,18 @@ inline void tally_clamps(ClampTally& tally, vf distance2, int count, const int* 
 inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int first) {
     const vf zero = broadcast(0);
     const vf x[3] = {i.x, i.y, i.z};
-    vf part[3] = {zero, zero, zero}, pull[3] = {zero, zero, zero};
+    vf part[3] = {zero, zero, zero}, lean[3] = {zero, zero, zero}, pull[3] = {zero, zero, zero}, steep[3] = {zero, zero, zero};
     bool any = solid != nullptr;
     for (int a = 0; a < 3; ++a) {
         const vf above = x[a] - w->lo[a], below = w->hi[a] - x[a];
         if (any_below(-wall_depth(above, w->inv_h), 0)) {
-            part[a] += wall_series(above, w->fraction, w->inv_h);
-            pull[a] -= wall_series(above, w->slope, w->inv_h);
+            const vf covers = wall_series(above, w->fraction, w->inv_h), slope = wall_series(above, w->slope, w->inv_h);
+            part[a] += covers, lean[a] -= covers * w->facing, pull[a] -= slope, steep[a] += slope * w->facing;
             any = true;
         }
         if (any_below(-wall_depth(below, w->inv_h), 0)) {
-            part[a] += wall_series(below, w->fraction, w->inv_h);
-            pull[a] += wall_series(below, w->slope, w->inv_h);
+            const vf covers = wall_series(below, w->fraction, w->inv_h), slope = wall_series(below, w->slope, w->inv_h);
+            part[a] += covers, lean[a] += covers * w->facing, pull[a] += slope, steep[a] += slope * w->facing;
             any = true;
         }
     }
@@ -80,7 +80,7 @@ inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int
         const Four s = load(solid, first);
         body[0] = s.x, body[1] = s.y, body[2] = s.z, body[3] = s.w;
     }
-    walls_combined(part, pull, body, out);
+    walls_combined(part, lean, pull, steep, body, out);
     return {out[0], out[1], out[2], out[3]};
 }
 

@@ -79,16 +79,17 @@ constexpr Functions functions[3] = {WEIR_FUNCTIONS(muller), WEIR_FUNCTIONS(splin
 
 /// Walls and solids at one particle: gradient, then part.
 std::array<double, 4> walls_at(const ReferencePairs& r, const Point& x, std::size_t i) {
-    double part[3], pull[3], solid[4] = {0, 0, 0, 0}, out[4];
+    double part[3], lean[3], pull[3], steep[3], solid[4] = {0, 0, 0, 0}, out[4];
     for (int a = 0; a < 3; ++a) {
-        part[a] = wall_part(x[static_cast<std::size_t>(a)], &r.walls, a);
-        pull[a] = wall_pull(x[static_cast<std::size_t>(a)], &r.walls, a);
+        const double at = x[static_cast<std::size_t>(a)];
+        part[a] = wall_part(at, &r.walls, a), lean[a] = wall_lean(at, &r.walls, a);
+        pull[a] = wall_pull(at, &r.walls, a), steep[a] = wall_steep(at, &r.walls, a);
     }
     if (!r.solid.empty()) {
         std::copy(r.solid[i].begin(), r.solid[i].end(), solid);
         solid[3] = r.solid_part[i];
     }
-    walls_combined(part, pull, solid, out);
+    walls_combined(part, lean, pull, steep, solid, out);
     return {out[0], out[1], out[2], out[3]};
 }
 
@@ -334,7 +335,12 @@ void meet_bodies(const ReferencePairs& reference, const Domain<D>& domain, const
         Meeting<D> m;
         m.particle = static_cast<int>(i), m.body = static_cast<std::ptrdiff_t>(domain.solids.nearest(at) - domain.first_body());
         m.at = at;
-        for (int a = 0; a < D; ++a) m.open *= 1 - wall_part(x[i][static_cast<std::size_t>(a)], &reference.walls, a);
+        double part[3], lean[3];
+        for (int a = 0; a < 3; ++a) {
+            const double place = x[i][static_cast<std::size_t>(a)];
+            part[a] = wall_part(place, &reference.walls, a), lean[a] = wall_lean(place, &reference.walls, a);
+        }
+        m.open = walls_leave(part, lean, reference.solid[i].data());
         m.pull = m.open * vec_of<D>(reference.solid[i]), m.part = m.open * reference.solid_part[i];
         to.push_back(m);
     }

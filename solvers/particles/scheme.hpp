@@ -16,6 +16,7 @@ struct Scheme {
     Smoothing smoothing = Smoothing::cubic;
     real support = 2;  // over the spacing
     backend::Choice backend{};
+    bool facing = false;  // how solids face walls counts for what each hides of the other (kernels/pair.inl)
 
     /// As the scene says.
     void read(const scene::Scene& scene);
@@ -40,7 +41,9 @@ Kernel<D> gradient_kernel(const Scheme& scheme, real spacing);
 /// The walls of the domain as the scheme's kernels see them. Params: single::WallParams or plain::WallParams.
 template <class Params, int D>
 Params wall_params(const Scheme& scheme, const Domain<D>& domain) {
-    return domain.template walls<Params>(density_kernel<D>(scheme, domain.spacing), gradient_kernel<D>(scheme, domain.spacing));
+    Params walls = domain.template walls<Params>(density_kernel<D>(scheme, domain.spacing), gradient_kernel<D>(scheme, domain.spacing));
+    walls.facing = scheme.facing ? 1 : 0;
+    return walls;
 }
 
 /// Times a bare profile of pair.inl: the density kernel, the gradient kernel's slope over r, the Laplacian of the one for viscosity.

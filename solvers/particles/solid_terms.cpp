@@ -59,7 +59,13 @@ void meet_bodies(const Domain<D>& domain, const plain::WallParams& walls, const 
         const std::size_t solid = domain.solids.nearest(m.at);
         if (solid < bodies) return;
         m.body = static_cast<std::ptrdiff_t>(solid - bodies);
-        for (int a = 0; a < D; ++a) m.open *= 1 - wall_part(static_cast<real>(positions[4 * k + a]), &walls, a);
+        real part[3] = {0, 0, 0}, lean[3] = {0, 0, 0};
+        for (int a = 0; a < D; ++a) {
+            const auto x = static_cast<real>(positions[4 * k + a]);
+            part[a] = wall_part(x, &walls, a), lean[a] = wall_lean(x, &walls, a);
+        }
+        const real way[3] = {static_cast<real>(term[0]), static_cast<real>(term[1]), static_cast<real>(term[2])};
+        m.open = walls_leave(part, lean, way);
         for (int a = 0; a < D; ++a) m.pull[a] = m.open * static_cast<real>(term[a]);
         m.part = m.open * static_cast<real>(term[3]);
     });

@@ -28,6 +28,9 @@ Options::Options(const scene::Scene& scene, real fastest) : Options() {
     tension = scene.flag("scheme.tension");
     const std::string& by = scene.text("scheme.density");
     continuity = by != "summation";
+    // A density that is summed counts all that stands behind two walls which a particle has no room between, and throws the one that can
+    // move.
+    facing = continuity;
     if (by == "delta") diffusion = delta_sph.diffusion, artificial = delta_sph.viscosity;
     if (scene.effect("viscosity")) viscosity = scene.number("fluid.viscosity");
     if (const auto* a = scene.effect("artificial_viscosity")) artificial = a->number("alpha");

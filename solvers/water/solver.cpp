@@ -11,7 +11,7 @@ StepReport Water<D>::step(real dt) {
     const OwnPlanes mine(cut_);
     bring_faces(dt);
     move_bodies(dt);
-    place_solids(state_.time + dt);
+    move_solids(state_.time + dt);
     move_surface(dt);                             // Dx/Dt = u for markers, Dφ/Dt = 0
     pour_and_drain(dt);                           // emitters, open sides
     redistribute_markers();                       // no holes, no heaps
@@ -40,6 +40,13 @@ void Water<D>::move_bodies(real dt) {
     if (!bodies_) return;
     const auto timed = passes_.time("bodies");
     bodies_->fly(solids_, dt);
+}
+
+template <int D>
+void Water<D>::move_solids(real t) {
+    if (!solids_.moving()) return;
+    const auto timed = passes_.time("solids");
+    place_solids(t);
 }
 
 template <int D>

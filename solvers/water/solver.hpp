@@ -89,6 +89,7 @@ private:
 
     // The passes of a step, in order (solver.cpp, sources.cpp)
     void move_bodies(real dt);
+    void move_solids(real t);
     void place_solids(real t);
     void move_surface(real dt);
     void pour_and_drain(real dt);

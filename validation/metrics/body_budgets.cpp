@@ -105,7 +105,7 @@ Metric momentum_metric(int axis) {
                 [=](const RunRecord& run, const Reference&) {
                     Curve bodies = run.series("bodies_momentum_" + letter), fluid = momentum_of_fluid(run, letter);
                     bodies.label = "bodies", fluid.label = "fluid";
-                    return Panel{.title = "Momentum along " + letter,
+                    return Panel{.title = "Momentum along " + letter + ", " + run.scene->solver(),
                                  .x = {"t [s]"},
                                  .y = {"[kg m/s]"},
                                  .curves = {bodies, fluid, missing_momentum(run, name, letter)}};
@@ -300,7 +300,7 @@ Panel energy_panel(const RunRecord& run, const Reference&) {
     for (real& y : all.y) y = 1 + (y - lost) / first;
     for (real& y : bodies.y) y /= first;
     bodies.label = "bodies, kinetic";
-    return {.title = "Energy over the first", .x = {"t [s]"}, .y = {"E/E0"}, .curves = {all, bodies}};
+    return {.title = "Energy over the first, " + run.scene->solver(), .x = {"t [s]"}, .y = {"E/E0"}, .curves = {all, bodies}};
 }
 
 }  // namespace

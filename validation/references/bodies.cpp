@@ -27,7 +27,7 @@ real level(const scene::Scene& scene) { return scene.root().tables("liquid").at(
 
 }  // namespace
 
-/// The height of the middle of an upright box, a disc or a ball afloat.
+/// The height of the middle of an upright box, a disc, a ball or a cylinder that lies or stands, afloat.
 REFERENCE(afloat) {
     const scene::Table& body = first_body(scene);
     const real s = density_ratio(scene);
@@ -37,10 +37,20 @@ REFERENCE(afloat) {
         ref.numbers["height"] = level(scene) + (0.5 - s) * height;
         return ref;
     }
+    bool round = scene.dim() == 2;  // it lies: a disc across
+    if (body.text("shape") == "cylinder") {
+        const real length = body.numbers("to").at(1) - body.numbers("from").at(1);
+        for (int a = 0; a < scene.dim(); a += 2) round = round || body.numbers("to").at(a) != body.numbers("from").at(a);
+        if (round && length != 0) throw BadInput("the draft of a cylinder that leans is not known here: it lies or stands");
+        if (!round) {
+            ref.numbers["height"] = level(scene) + (0.5 - s) * std::abs(length);
+            return ref;
+        }
+    }
     const real diameter = 2 * body.number("radius");
     const real draft = depth_where(s, [&](real e) {
         const real q = std::acos(1 - 2 * e);
-        return scene.dim() == 2 ? (q - std::sin(q) * std::cos(q)) / pi : 3 * e * e - 2 * e * e * e;
+        return round ? (q - std::sin(q) * std::cos(q)) / pi : 3 * e * e - 2 * e * e * e;
     });
     ref.numbers["height"] = level(scene) + (0.5 - draft) * diameter;
     return ref;

@@ -69,18 +69,18 @@ __kernel void find_neighbours(int count, int stride, int room, float radius2, __
 /* Walls and solids at sorted particle i (walls_combined): gradient, then part. Most particles have none near. */
 WEIR_FN float4 walls_at(float4 at, __constant WallParams* w, __global const float4* terms, int i) {
     const float x[3] = {at.x, at.y, at.z};
-    float part[3] = {0, 0, 0}, pull[3] = {0, 0, 0}, solid[4] = {0, 0, 0, 0}, out[4];
+    float part[3] = {0, 0, 0}, lean[3] = {0, 0, 0}, pull[3] = {0, 0, 0}, steep[3] = {0, 0, 0}, solid[4] = {0, 0, 0, 0}, out[4];
     int any = 0;
     for (int a = 0; a < WEIR_DIM; ++a) {
         const float above = x[a] - w->lo[a], below = w->hi[a] - x[a];
         if (wall_depth(above, w->inv_h) > 0) {
-            part[a] += wall_series(above, w->fraction, w->inv_h);
-            pull[a] -= wall_series(above, w->slope, w->inv_h);
+            const float covers = wall_series(above, w->fraction, w->inv_h), slope = wall_series(above, w->slope, w->inv_h);
+            part[a] += covers, lean[a] -= covers * w->facing, pull[a] -= slope, steep[a] += slope * w->facing;
             any = 1;
         }
         if (wall_depth(below, w->inv_h) > 0) {
-            part[a] += wall_series(below, w->fraction, w->inv_h);
-            pull[a] += wall_series(below, w->slope, w->inv_h);
+            const float covers = wall_series(below, w->fraction, w->inv_h), slope = wall_series(below, w->slope, w->inv_h);
+            part[a] += covers, lean[a] += covers * w->facing, pull[a] += slope, steep[a] += slope * w->facing;
             any = 1;
         }
     }
@@ -90,6 +90,6 @@ WEIR_FN float4 walls_at(float4 at, __constant WallParams* w, __global const floa
     any = any || body.w != 0;
 #endif
     if (!any) return (float4)(0.0f);
-    walls_combined(part, pull, solid, out);
+    walls_combined(part, lean, pull, steep, solid, out);
     return (float4)(out[0], out[1], out[2], out[3]);
 }

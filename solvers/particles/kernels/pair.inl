@@ -74,14 +74,48 @@ WEIR_FN REAL wall_pull(REAL x, WEIR_PARAM WallParams* w, int axis) {
     return wall_series(w->hi[axis] - x, w->slope, w->inv_h) - wall_series(x - w->lo[axis], w->slope, w->inv_h);
 }
 
-/* What walls and solids add at one particle: out[3] is their part of the kernel, out[0..2] its gradient. Where several stand near, parts
-   combine as 1 - product (1 - part): exact for one plane; at edges and corners exact for kernels that are products of their marginals.
-   part, pull: of the walls along each axis. solid: gradient x, y, z and part of the solids. */
-WEIR_FN void walls_combined(const REAL* part, const REAL* pull, const REAL* solid, REAL* out) {
+/* The same of the two walls, the upper one's less the lower one's: to which of them a particle is nearer. Nothing where how solids face
+   walls does not count. */
+WEIR_FN REAL wall_lean(REAL x, WEIR_PARAM WallParams* w, int axis) {
+    return (wall_series(w->hi[axis] - x, w->fraction, w->inv_h) - wall_series(x - w->lo[axis], w->fraction, w->inv_h)) * w->facing;
+}
+WEIR_FN REAL wall_steep(REAL x, WEIR_PARAM WallParams* w, int axis) {
+    return (wall_series(w->hi[axis] - x, w->slope, w->inv_h) + wall_series(x - w->lo[axis], w->slope, w->inv_h)) * w->facing;
+}
+
+/* What the walls along one axis leave of what a solid covers. Two half-spaces share, of the product of their parts, twice as much where
+   they face the same way, as much where they stand at right angles, and nothing where they face each other, as a floor and a body close
+   above it do: 1 + cos of the angle between them. Exact for these three where the particle touches both. Without a lean: the product, however
+   they face.
+   way: the direction into the solid along the axis. */
+WEIR_FN REAL wall_leaves(REAL part, REAL lean, REAL way) { return MAX0((SCALAR)1 - part - way * lean); }
+/* One over the length of a solid's gradient */
+WEIR_FN REAL solid_way(const REAL* solid) {
+    return RSQRT(dot3(solid[0], solid[1], solid[2], solid[0], solid[1], solid[2]) + (SCALAR)1e-30);
+}
+/* What all walls leave of it */
+WEIR_FN REAL walls_leave(const REAL* part, const REAL* lean, const REAL* solid) {
+    REAL way = solid_way(solid);
+    return wall_leaves(part[0], lean[0], solid[0] * way) * wall_leaves(part[1], lean[1], solid[1] * way) *
+           wall_leaves(part[2], lean[2], solid[2] * way);
+}
+
+/* What walls and solids add at one particle: out[3] is their part of the kernel, out[0..2] its gradient. Where several walls stand near,
+   parts combine as 1 - product (1 - part): exact for one plane; at edges and corners exact for kernels that are products of their
+   marginals. Of a solid what walls leave is added.
+   part, lean, pull, steep: of the walls along each axis. solid: gradient x, y, z and part of the solids. */
+WEIR_FN void walls_combined(const REAL* part, const REAL* lean, const REAL* pull, const REAL* steep, const REAL* solid, REAL* out) {
     REAL open_x = (SCALAR)1 - part[0], open_y = (SCALAR)1 - part[1], open_z = (SCALAR)1 - part[2], open_solid = (SCALAR)1 - solid[3];
     REAL open = open_x * open_y * open_z;
-    out[0] = pull[0] * open_y * open_z * open_solid + open * solid[0];
-    out[1] = open_x * pull[1] * open_z * open_solid + open * solid[1];
-    out[2] = open_x * open_y * pull[2] * open_solid + open * solid[2];
-    out[3] = (SCALAR)1 - open * open_solid;
+    REAL way = solid_way(solid), x = solid[0] * way, y = solid[1] * way, z = solid[2] * way;
+    REAL left_x = wall_leaves(part[0], lean[0], x), left_y = wall_leaves(part[1], lean[1], y), left_z = wall_leaves(part[2], lean[2], z);
+    REAL left = left_x * left_y * left_z;
+    /* the last term of each is 0 where a solid stands at right angles to the walls */
+    out[0] = pull[0] * open_y * open_z * open_solid + left * solid[0] +
+             solid[3] * (pull[0] * (open_y * open_z - left_y * left_z) - x * steep[0] * left_y * left_z);
+    out[1] = open_x * pull[1] * open_z * open_solid + left * solid[1] +
+             solid[3] * (pull[1] * (open_x * open_z - left_x * left_z) - y * steep[1] * left_x * left_z);
+    out[2] = open_x * open_y * pull[2] * open_solid + left * solid[2] +
+             solid[3] * (pull[2] * (open_x * open_y - left_x * left_y) - z * steep[2] * left_x * left_y);
+    out[3] = (SCALAR)1 - open * open_solid + solid[3] * (left - open);
 }

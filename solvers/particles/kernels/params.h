@@ -8,6 +8,7 @@ typedef struct {
     SCALAR lo[3], hi[3];              /* walls [m] */
     SCALAR keep_lo[3], keep_hi[3];    /* where particles are kept: a hair inside the walls [m] */
     SCALAR inv_h;                     /* 1 / support [1/m] */
+    SCALAR facing;                    /* 1: how solids face the walls counts for what each hides of the other; 0: it does not */
     SCALAR fraction[WEIR_WALL_TERMS]; /* u^2 T_k(2u - 1) coefficients, u = 1 - s/h, of the density kernel's part behind a wall [1] */
     SCALAR slope[WEIR_WALL_TERMS];    /* the same for the gradient kernel's integral over the wall's plane [1/m] */
 } WallParams;

@@ -172,7 +172,12 @@ TEST("a heavy body falls through the air as a stone, sinks, and lies still on th
 TEST("a scene without bodies holds no byte of them, and runs no pass") {
     const auto without = solver_of(tank(10, ""));
     without->step(0.01);
-    for (const auto& entry : without->passes().list()) EXPECT_NE(entry.name, "bodies");
+    for (const auto& entry : without->passes().list()) EXPECT_TRUE(entry.name != "bodies" && entry.name != "solids") << entry.name;
+    const auto with = solver_of(tank(10, "{ shape = \"box\", min = [0.4, 0.3], max = [0.6, 0.5], density = 500.0 }"));
+    with->step(0.01);
+    std::int64_t placed = 0;
+    for (const auto& entry : with->passes().list()) placed += entry.name == "solids" ? entry.calls : 0;
+    EXPECT_EQ(placed, 1) << "what bodies close of the grid is found anew once a step, and timed";
     EXPECT_EQ(without->fields().find(rigid::body_set_name, "position"), nullptr);
 }
 
