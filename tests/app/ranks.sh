@@ -61,6 +61,7 @@ particles_3d)
     ;;
 water)
     compare flip "$every" "$water"
+    grep -q '"every_rank_does":"the matrix of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
