@@ -77,7 +77,9 @@ std::string explain_ranks(const scene::Scene& scene) {
     if (cut.empty()) return text + " into as many particles each; every rank holds all particles and moves its own\n";
     text += " before planes";
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
-    return text + "; every rank holds the whole grids and computes its own planes of them\n";
+    text += "; every rank holds the whole grids and computes its own planes of them";
+    if (const std::string& by_all = sim::kind_named(scene.solver()).by_all; !by_all.empty()) text += ", but does alone: " + by_all;
+    return text + "\n";
 }
 
 /// Writes everything that a run leaves behind, and shows how it goes. Over ranks the first writes; what is looked at all look at.
@@ -88,7 +90,7 @@ public:
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
         by_first_rank([&] { frames_ = open_frames(simulation, folder, restarted); });
-        if (slabs().several()) log_.set_ranks(slabs().ranks(), cut_of_run(simulation.scene()), {});
+        tell_ranks(simulation, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
         if (restarted) log_.resume(simulation.steps());
@@ -112,7 +114,7 @@ public:
     }
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
-        if (slabs().several()) log_.set_ranks(slabs().ranks(), cut_of_run(simulation.scene()), of_ranks(slabs().traffic()));
+        tell_ranks(simulation, of_ranks(slabs().traffic()));
         if (measured_) log_.set_measured(measured_->values());
         by_first_rank([&] {
             probes_.update(simulation.probes());
@@ -134,6 +136,11 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
+    void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent) {
+        if (!slabs().several()) return;
+        const scene::Scene& scene = simulation.scene();
+        log_.set_ranks(slabs().ranks(), cut_of_run(scene), sim::kind_named(scene.solver()).by_all, sent);
+    }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
         probes_.update(simulation.probes());  // as they come: a run that is killed leaves all that it measured

@@ -78,9 +78,10 @@ void RunLog::add_step(std::int64_t step, real t, const StepReport& report, const
     steps_.push_back(j.dump());
 }
 
-void RunLog::set_ranks(int count, const Cut& cut, const std::vector<Traffic>& sent) {
+void RunLog::set_ranks(int count, const Cut& cut, const std::string& by_all, const std::vector<Traffic>& sent) {
     json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
     if (cut.empty()) ranks["cut"] = "as many particles to each", ranks["storage"] = "every rank holds all particles";
+    if (!by_all.empty()) ranks["every_rank_does"] = by_all;
     for (const Traffic& rank : sent) {
         ranks["messages"].push_back(rank.messages);
         ranks["bytes"].push_back(rank.bytes);

@@ -27,6 +27,8 @@ struct SolverKind {
     std::function<void(const Scene&)> over_ranks{};
     /// What each of several ranks takes its share of.
     Shared shared = Shared::by_planes;
+    /// What of a step every rank does alone, in a few words; nothing: all of it is shared.
+    std::string by_all{};
 };
 
 /// What each may be told.

@@ -111,7 +111,7 @@ void LevelSet<D>::advect(const MacVelocity<D>& u, real dt, int reach) {
         if (std::abs(to) < near) to = departed(u, I, dt);
     });
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
-    refresh(phi, frame_.periodic(D - 1), 2);  // markers one plane beyond a cut look at the cells around them
+    refresh(phi, frame_.periodic(D - 1), reach);  // markers one plane beyond a cut look at the cells around them, and where they come from
 }
 
 namespace {

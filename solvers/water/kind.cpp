@@ -100,7 +100,9 @@ scene::SolverKind kind() {
              {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
               "faces to markers"},
              "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-            over_ranks};
+            over_ranks,
+            scene::Shared::by_planes,
+            "the matrix of the pressure, which cells are of the level set's band and which faces continue the velocity, viscosity"};
 }
 
 }  // namespace weir::water

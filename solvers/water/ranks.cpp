@@ -13,7 +13,9 @@ void Water<D>::bring_faces(real dt) {
     if (!over_ranks()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
-    const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];
+    real fastest = max_magnitude(state_.u[D - 1]);
+    for (const auto& emitter : emitters_) fastest = larger_or_nan(fastest, std::abs(emitter.velocity[D - 1]));
+    const real cells = dt * fastest * frame_.inv_h[D - 1];
     reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
     refresh_faces(state_.u, frame_, reach_);
 }

@@ -71,6 +71,7 @@ particles_3d)
     ;;
 water)
     compare flip "$every" "$water"
+    grep -q '"every_rank_does":"the matrix of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
@@ -159,9 +160,9 @@ traffic) # what is sent is what must be, in the steps by which one run is longer
         # Cut before plane 16 of 40, with a plane of faces more at the end. A row of cells, and of faces along x.
         planes=$([ $rank = 0 ] && echo 16 || echo 24) faces=$([ $rank = 0 ] && echo 16 || echo 25)
         row=$((8 * 16)) both=$((8 * 17 + 8 * 16)) number_a_row=$((8 * (planes + faces)))
-        # The fastest flow; the velocity 3 rows deep; the level set as deep, and 2 rows of it; how many markers go; the 4 of each cell at the
-        # cut, with 4 numbers.
-        messages=6 bytes=$((8 * faces + 3 * both + 5 * row + 2 * 4 + 16 * 4 * 4 * 8))
+        # The fastest flow; the velocity 3 rows deep; the level set as deep, before and after it moves; how many markers go; the 4 of each cell
+        # at the cut, with 4 numbers.
+        messages=6 bytes=$((8 * faces + 3 * both + 6 * row + 2 * 4 + 16 * 4 * 4 * 8))
         # The level set: what is inside, a byte a cell; a row of it, twice for each of 4 layers, 2 at the end; all of it.
         messages=$((messages + 1 + 9 + 1 + 1)) bytes=$((bytes + planes * 16 + 11 * row + planes * row))
         # Faces, 2 layers on from the markers and 4 on from the liquid: what is known, a byte a face; 3 rows; for the second layer 3 more, for
