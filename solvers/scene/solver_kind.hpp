@@ -27,6 +27,8 @@ struct SolverKind {
     std::function<void(const Scene&)> over_ranks{};
     /// What each of several ranks takes its share of.
     Shared shared = Shared::by_planes;
+    /// Whether each of the ranks that there are would hold its own part of a scene alone. None: all hold everything.
+    std::function<bool(const Scene&)> holds_own_part{};
 };
 
 /// What each may be told.
