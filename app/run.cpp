@@ -22,6 +22,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -70,16 +72,36 @@ Cut cut_of_run(const scene::Scene& scene) {
     return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks());
 }
 
-std::string explain_ranks(const scene::Scene& scene) {
+std::string explain_ranks(const Simulation& simulation) {
+    const scene::Scene& scene = simulation.scene();
     if (!slabs().several()) return {};
     const Cut cut = cut_of_run(scene);
     std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, cut along " + (scene.dim() == 2 ? "y" : "z");
     if (cut.empty()) return text + " into as many particles each; every rank holds all particles and moves its own\n";
     text += " before planes";
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
-    text += "; every rank holds the whole grids and computes its own planes of them";
+    text += simulation.solver().holds_own_planes() ? "; every rank holds and computes its own planes of the grids"
+                                                   : "; every rank holds the whole grids and computes its own planes of them";
     if (const std::string& by_all = sim::kind_named(scene.solver()).by_all; !by_all.empty()) text += ", but does alone: " + by_all;
     return text + "\n";
+}
+
+/// What of this process stands in memory and in no file [bytes]; 0 where the system does not say.
+std::size_t resident_bytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string key; status >> key; status.ignore(std::numeric_limits<std::streamsize>::max(), '\n'))
+        if (std::size_t kilobytes = 0; key == "RssAnon:" && status >> kilobytes) return 1024 * kilobytes;
+    return 0;
+}
+
+/// Of this machine's memory, which ranks share for all that is known here: so much may one process need that holds all. Ranks that hold
+/// their own planes need it together, and at every cut what a step reads beyond it.
+double memory_for_all(const scene::Scene& scene) {
+    const double available = sim::available_memory(), ranks = slabs().ranks();
+    const auto& kind = sim::kind_named(scene.solver());
+    if (!slabs().several() || !kind.holds_own_part || !kind.holds_own_part(scene)) return available / ranks;
+    constexpr double planes_near_cuts = 9;  // of a rank, where nothing crosses more than a cell in a step: 4 beyond either, and one
+    return available / (1 + ranks * planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
 
 /// Writes everything that a run leaves behind, and shows how it goes. Over ranks the first writes; what is looked at all look at.
@@ -90,7 +112,7 @@ public:
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
         by_first_rank([&] { frames_ = open_frames(simulation, folder, restarted); });
-        tell_ranks(simulation, {});
+        tell_ranks(simulation, {}, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
         if (restarted) log_.resume(simulation.steps());
@@ -103,6 +125,9 @@ public:
         by_first_rank([&] { tell_step(simulation, report, seconds); });
     }
     void on_frame(const Simulation& simulation) override {
+        const auto brought = output::can_write_frames()
+                                 ? simulation.solver().bring_to_first(simulation.scene().root().texts("output.fields"))
+                                 : nullptr;  // until all is written
         const FieldSet fields = output::can_write_frames() ? simulation.fields() : FieldSet{};
         by_first_rank([&] {
             if (frames_) frames_->write(fields, simulation.time());
@@ -114,7 +139,8 @@ public:
     }
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
-        tell_ranks(simulation, of_ranks(slabs().traffic()));
+        const auto sent = of_ranks(slabs().traffic());  // before what this takes
+        tell_ranks(simulation, sent, of_ranks(output::RunLog::RankMemory{simulation.solver().bytes(), resident_bytes()}));
         if (measured_) log_.set_measured(measured_->values());
         by_first_rank([&] {
             probes_.update(simulation.probes());
@@ -136,10 +162,11 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
-    void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent) {
+    void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankMemory>& memory) {
         if (!slabs().several()) return;
         const scene::Scene& scene = simulation.scene();
-        log_.set_ranks(slabs().ranks(), cut_of_run(scene), sim::kind_named(scene.solver()).by_all, sent);
+        log_.set_ranks(slabs().ranks(), cut_of_run(scene), simulation.solver().holds_own_planes(), sim::kind_named(scene.solver()).by_all,
+                       sent, memory);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
@@ -222,9 +249,10 @@ int simulate(const RunArguments& arguments) {
     scene::Scene scene = arguments.scene.empty() ? scene_of(*checkpoint, overrides)
                                                  : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
     sim::require_ranks(scene, slabs().ranks());
-    if (!arguments.explain)  // ranks hold the whole grids each, and share a machine for all that is known here
+    if (!arguments.measure.empty()) slabs().hold_whole(true);  // metrics look at all of it
+    if (!arguments.explain)
         sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run,
-                            sim::available_memory() / slabs().ranks());
+                            memory_for_all(scene));
     Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
     for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
@@ -234,7 +262,7 @@ int simulate(const RunArguments& arguments) {
         std::fprintf(stderr, "%s: %s\n", simulation.scene().file().c_str(), remark.c_str());
     if (arguments.explain) {
         const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
-        std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation.scene())).c_str(), stdout);
+        std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation)).c_str(), stdout);
         return exit_success;
     }
     if (checkpoint && simulation.finished()) return tell_finished(simulation);

@@ -1,10 +1,12 @@
 #include "core/checkpoint.hpp"
 
 #include "core/error.hpp"
+#include "core/slabs.hpp"
 
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 namespace weir {
 
@@ -13,16 +15,32 @@ namespace {
 constexpr char magic[8] = {'w', 'e', 'i', 'r', 'c', 'p', '0', '1'};
 
 /// FNV-1a over 64 bits: finds truncation and altered bytes; no defence against an adversary.
-std::uint64_t checksum(const std::byte* data, std::size_t count) {
-    std::uint64_t hash = 0xcbf29ce484222325ull;
+constexpr std::uint64_t checksum_of_nothing = 0xcbf29ce484222325ull;
+std::uint64_t checksum(const std::byte* data, std::size_t count, std::uint64_t hash = checksum_of_nothing) {
     for (std::size_t i = 0; i < count; ++i) hash = (hash ^ std::to_integer<std::uint64_t>(data[i])) * 0x100000001b3ull;
     return hash;
 }
 
-void append(std::vector<std::byte>& to, const void* data, std::size_t count) {
-    const auto* bytes = static_cast<const std::byte*>(data);
-    to.insert(to.end(), bytes, bytes + count);
-}
+/// A file with its checksum behind it, as it is written.
+class Writer {
+public:
+    explicit Writer(const std::filesystem::path& path) : file_(path, std::ios::binary | std::ios::trunc) {}
+    void put(const void* data, std::size_t count) {
+        hash_ = checksum(static_cast<const std::byte*>(data), count, hash_);
+        file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(count));
+    }
+    /// Whether all of it has been written.
+    bool close() {
+        const std::uint64_t hash = hash_;
+        file_.write(reinterpret_cast<const char*>(&hash), sizeof hash);
+        file_.flush();
+        return static_cast<bool>(file_);
+    }
+
+private:
+    std::ofstream file_;
+    std::uint64_t hash_ = checksum_of_nothing;
+};
 
 /// Reads from a byte image; throws BadInput past its end.
 class Cursor {
@@ -50,33 +68,38 @@ private:
 }  // namespace
 
 void Checkpoint::write(const std::filesystem::path& path) const {
-    std::vector<std::byte> image;
-    append(image, magic, sizeof magic);
-    const auto append_number = [&](std::uint64_t n) { append(image, &n, sizeof n); };
-    append_number(blocks_.size());
-    for (const auto& [name, block] : blocks_) {
-        append_number(name.size());
-        append(image, name.data(), name.size());
-        append_number(block.size());
-        append(image, block.data(), block.size());
-    }
-    append_number(checksum(image.data(), image.size()));
-
     auto temporary = path;
     temporary += ".part";
-    {
-        std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-        file.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
-        file.flush();
-        if (!file) {
+    std::optional<Writer> file;
+    if (slabs().rank() == 0) file.emplace(temporary);
+    const auto put = [&](const void* data, std::size_t count) {
+        if (file) file->put(data, count);
+    };
+    const auto put_number = [&](std::uint64_t n) { put(&n, sizeof n); };
+    put(magic, sizeof magic);
+    put_number(blocks_.size());
+    for (const auto& [name, block] : blocks_) {
+        const auto part = parts_.find(name);
+        put_number(name.size());
+        put(name.data(), name.size());
+        put_number(part == parts_.end() ? block.size() : part->second.all);
+        if (part == parts_.end())
+            put(block.data(), block.size());
+        else
+            slabs().stream_to_first(block.data(), block.size(), put);
+    }
+    by_first_rank([&] {
+        const bool whole = file->close();
+        file.reset();
+        if (!whole) {
             std::error_code ignored;
             std::filesystem::remove(temporary, ignored);
             throw OutputError("cannot write checkpoint " + path.string() + ": disk full or folder not writable");
         }
-    }
-    std::error_code failed;
-    std::filesystem::rename(temporary, path, failed);
-    if (failed) throw OutputError("cannot write checkpoint " + path.string() + ": " + failed.message());
+        std::error_code failed;
+        std::filesystem::rename(temporary, path, failed);
+        if (failed) throw OutputError("cannot write checkpoint " + path.string() + ": " + failed.message());
+    });
 }
 
 Checkpoint Checkpoint::read(const std::filesystem::path& path) {

@@ -20,6 +20,7 @@ public:
         static_assert(std::is_trivially_copyable_v<T>);
         const auto bytes = std::as_bytes(values);
         blocks_[name].assign(bytes.begin(), bytes.end());
+        parts_.erase(name);
     }
     template <class T>
     requires std::is_trivially_copyable_v<T>
@@ -27,6 +28,24 @@ public:
     template <class T>
     requires std::is_trivially_copyable_v<T>
     void put_value(const std::string& name, const T& value) { put(name, std::span<const T>(&value, 1)); }
+
+    /// Over ranks: this one's entries of a block of `all`, the first of which is number `begin`. All ranks put theirs; the file holds all.
+    template <class T>
+    void put_part(const std::string& name, std::span<const T> own, std::size_t begin, std::size_t all) {
+        put(name, own);
+        parts_[name] = {begin * sizeof(T), all * sizeof(T)};
+    }
+    /// The same entries of a block that is whole, or of the part that was put.
+    template <class T>
+    void get_part(const std::string& name, std::span<T> own, std::size_t begin, std::size_t all) const {
+        const auto& block = find(name);
+        const auto part = parts_.find(name);
+        const std::size_t before = part == parts_.end() ? 0 : part->second.begin,
+                          whole = part == parts_.end() ? block.size() : part->second.all;
+        if (whole != all * sizeof(T) || begin * sizeof(T) < before || begin * sizeof(T) - before + own.size_bytes() > block.size())
+            throw std::runtime_error("checkpoint block \"" + name + "\" has another size");
+        if (!own.empty()) std::memcpy(own.data(), block.data() + (begin * sizeof(T) - before), own.size_bytes());
+    }
 
     bool has(const std::string& name) const { return blocks_.count(name) != 0; }
     /// Copies the block into `to`, which must have its exact size; throws std::runtime_error naming the block otherwise.
@@ -51,7 +70,7 @@ public:
         return value;
     }
 
-    /// Writes beside `path` and renames; throws OutputError.
+    /// Writes beside `path` and renames; throws OutputError. Over ranks by the first, and all call it together.
     void write(const std::filesystem::path& path) const;
     /// Throws BadInput when the file is missing, truncated, altered or of another version.
     static Checkpoint read(const std::filesystem::path& path);
@@ -62,7 +81,11 @@ private:
         if (at == blocks_.end()) throw std::runtime_error("checkpoint has no block \"" + name + "\"");
         return at->second;
     }
+    struct Part {
+        std::size_t begin, all;  // [bytes]
+    };
     std::map<std::string, std::vector<std::byte>> blocks_;
+    std::map<std::string, Part> parts_;  // of the blocks that are this rank's alone
 };
 
 }  // namespace weir

@@ -2,6 +2,7 @@
 // sums are taken plane by plane and then in order, so no result depends on the number of threads, nor of ranks (core/slabs.hpp).
 #pragma once
 #include "core/parallel.hpp"
+#include "core/plane_store.hpp"
 #include "core/slabs.hpp"
 #include "core/types.hpp"
 
@@ -16,11 +17,13 @@ template <class T, int D>
 class Grid {
 public:
     Grid() { extent_.fill(0); }
-    explicit Grid(const Index<D>& extent, const T& value = T{}) : extent_(extent), data_(product(extent), value) {}
+    /// `margin`: so many planes of it stand before the first and after the last of the cells.
+    explicit Grid(const Index<D>& extent, const T& value = T{}, int margin = 0)
+        : extent_(extent), data_(0, plane_of(extent), extent[D - 1] - 2 * margin, margin, value) {}
 
     const Index<D>& extent() const { return extent_; }
     std::size_t size() const { return data_.size(); }
-    bool empty() const { return data_.empty(); }
+    bool empty() const { return data_.size() == 0; }
     /// Distance in memory between neighbours along an axis.
     std::ptrdiff_t stride(int axis) const {
         std::ptrdiff_t s = 1;
@@ -37,23 +40,32 @@ public:
             if (I[d] < 0 || I[d] >= extent_[d]) return false;
         return true;
     }
-    T& operator()(const Index<D>& I) { return data_[linear(I)]; }
-    const T& operator()(const Index<D>& I) const { return data_[linear(I)]; }
-    T& operator[](std::size_t i) { return data_[i]; }
-    const T& operator[](std::size_t i) const { return data_[i]; }
+    T& operator()(const Index<D>& I) { return data_.data()[linear(I)]; }
+    const T& operator()(const Index<D>& I) const { return data_.data()[linear(I)]; }
+    T& operator[](std::size_t i) { return data_.data()[i]; }
+    const T& operator[](std::size_t i) const { return data_.data()[i]; }
     T* data() { return data_.data(); }
     const T* data() const { return data_.data(); }
-    std::span<const T> values() const { return data_; }
-    std::span<T> values() { return data_; }
-    void fill(const T& value) { std::fill(data_.begin(), data_.end(), value); }
+    std::span<const T> values() const { return {data_.data(), data_.size()}; }
+    std::span<T> values() { return {data_.data(), data_.size()}; }
+    void fill(const T& value) { data_.fill(value); }
+    std::size_t bytes() const { return data_.bytes(); }
+    /// Which planes this rank holds, and more of them: see PlaneStore.
+    const PlaneStore<T>& store() const { return data_; }
+    PlaneStore<T>& store() { return data_; }
     void swap(Grid& other) {
         std::swap(extent_, other.extent_);
         data_.swap(other.data_);
     }
 
 private:
+    static std::size_t plane_of(const Index<D>& extent) {
+        std::size_t entries = 1;
+        for (int d = 0; d + 1 < D; ++d) entries *= static_cast<std::size_t>(extent[d]);
+        return entries;
+    }
     Index<D> extent_;
-    std::vector<T> data_;
+    PlaneStore<T> data_;
 };
 
 /// f(plane) for the planes [lo, hi) that are this rank's, in contiguous blocks, one a thread.
@@ -87,17 +99,28 @@ real plane_max(int planes, F&& f) {
 
 template <class T, int D>
 Planes planes_of(Grid<T, D>& q) {
-    return {q.data(), sizeof(T) * static_cast<std::size_t>(q.stride(D - 1)), q.extent()[D - 1]};
+    return {q.data(), sizeof(T) * static_cast<std::size_t>(q.stride(D - 1)), q.extent()[D - 1], 0, q.store().held()};
 }
 /// The `deep` planes beyond this rank's cuts, from whoever owns them.
 template <class T, int D>
 void refresh(Grid<T, D>& q, bool ring, int deep = 1) {
-    if (over_ranks()) slabs().refresh(*detail::own_share.cut, planes_of(q), deep, ring);
+    if (!over_ranks()) return;
+    q.store().open(deep, ring);
+    slabs().refresh(*detail::own_share.cut, planes_of(q), deep, ring);
 }
 /// All planes, on all ranks.
 template <class T, int D>
 void gather(Grid<T, D>& q) {
-    if (over_ranks()) slabs().gather(*detail::own_share.cut, planes_of(q));
+    if (!over_ranks()) return;
+    q.store().open_all();
+    slabs().gather(*detail::own_share.cut, planes_of(q));
+}
+/// All planes, on the first rank alone.
+template <class T, int D>
+void gather_to_first(Grid<T, D>& q) {
+    if (!over_ranks()) return;
+    if (slabs().rank() == 0) q.store().open_all();
+    slabs().gather_to_first(*detail::own_share.cut, planes_of(q));
 }
 
 /// f(I) for every I in [lo, hi), threaded over the slowest axis; x runs innermost.
@@ -115,6 +138,21 @@ void for_each_in(const Index<D>& lo, const Index<D>& hi, F&& f) {
                 for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
         }
     });
+}
+
+/// The same; of an array that is this rank's alone, in all planes that it holds.
+template <class T, int D, class F>
+void for_each_held(const Grid<T, D>& q, const Index<D>& lo, const Index<D>& hi, F&& f) {
+    if (!q.store().windowed()) return for_each_in(lo, hi, f);
+    const auto before = detail::own_share;
+    for (int plane = lo[D - 1]; plane < hi[D - 1]; ++plane) {
+        if (!q.store().holds(plane)) continue;
+        Index<D> first = lo, last = hi;
+        first[D - 1] = plane, last[D - 1] = plane + 1;
+        detail::own_share.begin = plane, detail::own_share.end = plane + 1;
+        for_each_in(first, last, f);
+    }
+    detail::own_share = before;
 }
 
 /// f(I) for every entry of a box of `extent` entries.

@@ -18,13 +18,15 @@ Slabs& slabs() {
 
 void set_slabs(std::unique_ptr<Slabs> several) { of_process() = std::move(several); }
 
-OwnPlanes::OwnPlanes(const Cut& cut, int reach) : before_(detail::own_share) {
+OwnPlanes::OwnPlanes(const Cut& cut, int reach, int kept, bool ring) : before_(detail::own_share) {
     if (cut.empty()) return;
     const int rank = slabs().rank();
     detail::own_share = {.begin = rank == 0 ? INT_MIN : cut.begin(rank),
                          .end = rank + 1 == cut.ranks() ? INT_MAX : cut.end(rank, cut.planes()),
                          .cut = &cut,
-                         .reach = reach};
+                         .reach = reach,
+                         .kept = kept,
+                         .ring = ring};
 }
 
 }  // namespace weir

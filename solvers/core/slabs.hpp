@@ -5,10 +5,12 @@
 #include "core/error.hpp"
 #include "core/halo.hpp"
 
+#include <algorithm>
 #include <climits>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -23,6 +25,7 @@ struct Planes {
     std::size_t bytes;  // of a plane
     int count;
     int margin = 0;
+    const char* held = nullptr;  // of each plane whether there is memory behind it; none: behind all
 };
 
 /// What goes to another rank and what comes from it; both know how much beforehand. Of 0 bytes there is no message.
@@ -58,12 +61,22 @@ public:
     void refresh(const Cut& cut, const Planes& planes, int deep, bool ring) { refresh(cut, std::span(&planes, 1), deep, ring); }
     /// Brings every plane that this rank does not own.
     virtual void gather(const Cut&, const Planes&) {}
+    /// The same to the first rank alone.
+    virtual void gather_to_first(const Cut&, const Planes&) {}
+    /// Everybody's bytes in the order of the ranks, to the first: sink(data, count) there, piece by piece. What it throws comes when all
+    /// has been taken.
+    virtual void stream_to_first(const void* own, std::size_t bytes, const std::function<void(const void*, std::size_t)>& sink) {
+        sink(own, bytes);
+    }
     /// The same of pieces that are no planes: rank r owns the entries [begins[r], begins[r + 1]), of `bytes` each.
     virtual void gather_parts(void* /*entries*/, std::size_t /*bytes*/, std::span<const std::size_t> /*begins*/) {}
     /// Pieces that are no planes to and from other ranks, one parcel a rank at most.
     virtual void trade(std::span<const Parcel>) {}
     /// Whether what a rank has not been brought is to be made NaN, for a test: nothing may read it.
     virtual bool poisons() const { return false; }
+    /// Whether somebody looks at whole fields on all ranks, so that each is to hold them whole.
+    bool holds_whole() const { return holds_whole_; }
+    void hold_whole(bool yes) { holds_whole_ = yes; }
     /// The largest of the values that the ranks give.
     virtual int largest(int value) { return value; }
     /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never
@@ -77,6 +90,7 @@ protected:
 
 private:
     int rank_ = 0, ranks_ = 1;
+    bool holds_whole_ = false;
 };
 
 /// Those of this process: one rank, unless set_slabs has been called.
@@ -92,6 +106,17 @@ std::vector<T> of_ranks(const T& own) {
     std::iota(begins.begin(), begins.end(), std::size_t{0});
     slabs().gather_parts(list.data(), sizeof(T), begins);
     return list;
+}
+
+/// The lists that the ranks give, one after another.
+template <class T>
+std::vector<T> of_all_ranks(const std::vector<T>& own) {
+    std::vector<std::size_t> begins{0};
+    for (const std::size_t count : of_ranks(own.size())) begins.push_back(begins.back() + count);
+    std::vector<T> all(begins.back());
+    std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(begins[static_cast<std::size_t>(slabs().rank())]));
+    slabs().gather_parts(all.data(), sizeof(T), begins);
+    return all;
 }
 
 /// What one rank does for all, the first: writing. One fails, all fail, with the same exit code; its own words are shown.
@@ -116,6 +141,8 @@ struct OwnShare {
     int begin = INT_MIN, end = INT_MAX;
     const Cut* cut = nullptr;  // none: everything
     int reach = 0;             // planes beyond the cuts that ghosts are filled with
+    int kept = 0;              // planes beyond the cuts that an array made now has; 0: it is whole
+    bool ring = false;         // around the ends of the axis too
     int lower(int lo) const { return lo > begin ? lo : begin; }
     int upper(int hi) const { return hi < end ? hi : end; }
 };
@@ -123,13 +150,29 @@ inline OwnShare own_share;
 
 }  // namespace detail
 
-/// While it lives, loops over planes are of this rank's own, and sums over planes are of everybody's. An empty cut changes nothing.
+/// While it lives, loops over planes are of this rank's own, and sums over planes are of everybody's; and arrays that are made then have
+/// only these planes and `kept` beyond the cuts (core/plane_store.hpp), or all where that is 0. An empty cut changes nothing.
 class OwnPlanes {
 public:
-    explicit OwnPlanes(const Cut& cut, int reach = 1);
+    explicit OwnPlanes(const Cut& cut, int reach = 1, int kept = 0, bool ring = false);
     ~OwnPlanes() { detail::own_share = before_; }
     OwnPlanes(const OwnPlanes&) = delete;
     OwnPlanes& operator=(const OwnPlanes&) = delete;
+
+private:
+    detail::OwnShare before_;
+};
+
+/// While it lives, loops over planes are of as many planes more beyond both cuts: of what each rank finds there for itself.
+class WiderPlanes {
+public:
+    explicit WiderPlanes(int planes) : before_(detail::own_share) {
+        if (before_.begin != INT_MIN) detail::own_share.begin -= planes;
+        if (before_.end != INT_MAX) detail::own_share.end += planes;
+    }
+    ~WiderPlanes() { detail::own_share = before_; }
+    WiderPlanes(const WiderPlanes&) = delete;
+    WiderPlanes& operator=(const WiderPlanes&) = delete;
 
 private:
     detail::OwnShare before_;

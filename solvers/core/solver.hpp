@@ -8,6 +8,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 #include <vector>
 
 namespace weir {
+
+struct Cut;  // core/halo.hpp
 
 inline constexpr real not_applicable = std::numeric_limits<real>::quiet_NaN();
 
@@ -77,6 +80,8 @@ struct FieldSet {
     GridView grid;
     std::vector<FieldView> fields;
     std::vector<SheetView> sheets{};
+    /// Over ranks that hold their own planes alone: where they are cut. Each rank may then read its own planes and those beside them.
+    const Cut* cut = nullptr;
     const FieldView* find(std::string_view name) const {
         for (const auto& f : fields)
             if (f.name == name) return &f;
@@ -122,6 +127,15 @@ public:
     /// What is wrong with using the method on the state of the moment, in one line, with its numbers; empty where nothing is.
     virtual std::string concern() const { return {}; }
     virtual FieldSet fields() const = 0;
+    /// Over ranks that hold their own planes alone: while it lives, the first rank can read those of all in these fields (all where none is
+    /// named) as fields() showed them. All ranks ask for it together. Elsewhere nothing: whoever looks reads everything anyway.
+    class Brought {
+    public:
+        virtual ~Brought() = default;
+    };
+    virtual std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& /*names*/) const { return nullptr; }
+    /// Over ranks: does each hold its own planes alone?
+    virtual bool holds_own_planes() const { return false; }
     /// The components of a field at a point, from a solver that knows them without a grid; false: take them from fields().
     virtual bool answer(std::string_view /*field*/, const Vec<3>& /*at*/, std::span<real> /*values*/) const { return false; }
     /// Whether step() itself throws NumericalFailure where a field is no longer finite, so that nobody needs to look at all fields after

@@ -3,8 +3,11 @@
 #include "core/slabs.hpp"
 #include "distributed/mpi_entry.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <exception>
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -72,6 +75,58 @@ public:
         }
         gather_counted(planes.first, plane);
         count_message(planes.bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
+    }
+
+    void gather_to_first(const Cut& cut, const Planes& planes) override {
+        const PlaneType plane(planes.bytes);
+        requests_.clear();
+        for (int r = 1; r < ranks(); ++r) {
+            const int first = cut.begin(r), count = cut.end(r, planes.count) - first;
+            if (rank() == 0) {
+                requests_.emplace_back();
+                MPI_Irecv(plane_at(planes, first), count, plane.type, r, 0, MPI_COMM_WORLD, &requests_.back());
+            } else if (rank() == r) {
+                requests_.emplace_back();
+                MPI_Isend(plane_at(planes, first), count, plane.type, 0, 0, MPI_COMM_WORLD, &requests_.back());
+                count_message(planes.bytes * static_cast<std::size_t>(count));
+            }
+        }
+        wait_for_requests();
+    }
+
+    void stream_to_first(const void* own, std::size_t bytes, const std::function<void(const void*, std::size_t)>& sink) override {
+        std::vector<std::size_t> sizes(static_cast<std::size_t>(ranks()), bytes), begins(sizes.size() + 1);
+        std::iota(begins.begin(), begins.end(), std::size_t{0});
+        gather_parts(sizes.data(), sizeof(std::size_t), begins);
+        constexpr std::size_t piece = std::size_t{1} << 22;
+        std::exception_ptr failure;
+        const auto take = [&](const void* data, std::size_t count) {
+            if (!failure) try {
+                    sink(data, count);
+                } catch (...) {  // the others wait until they have sent all
+                    failure = std::current_exception();
+                }
+        };
+        if (rank() == 0) take(own, bytes);
+        std::vector<unsigned char> room(rank() == 0 ? piece : 0);
+        for (int r = 1; r < ranks(); ++r) {
+            if (rank() != 0 && rank() != r) continue;
+            for (std::size_t at = 0; at < sizes[static_cast<std::size_t>(r)]; at += piece) {
+                const std::size_t count = std::min(piece, sizes[static_cast<std::size_t>(r)] - at);
+                requests_.assign(1, MPI_REQUEST_NULL);
+                if (rank() == 0)
+                    MPI_Irecv(room.data(), static_cast<int>(count), MPI_BYTE, r, 0, MPI_COMM_WORLD, requests_.data());
+                else
+                    MPI_Isend(static_cast<const unsigned char*>(own) + at, static_cast<int>(count), MPI_BYTE, 0, 0, MPI_COMM_WORLD,
+                              requests_.data());
+                wait_for_requests();
+                if (rank() == 0)
+                    take(room.data(), count);
+                else
+                    count_message(count);
+            }
+        }
+        if (failure) std::rethrow_exception(failure);
     }
 
     void gather_parts(void* entries, std::size_t bytes, std::span<const std::size_t> begins) override {
@@ -219,7 +274,8 @@ private:
             for (int plane = message.planes.begin; !message.sends && plane < message.planes.end; ++plane)
                 known[static_cast<std::size_t>(plane)] = 1;
         for (int plane = 0; plane < planes.count; ++plane)
-            if (!known[static_cast<std::size_t>(plane)]) std::fill_n(plane_at(planes, plane), planes.bytes, poison_byte);
+            if (!known[static_cast<std::size_t>(plane)] && (planes.held == nullptr || planes.held[plane] != 0))
+                std::fill_n(plane_at(planes, plane), planes.bytes, poison_byte);
     }
 
     bool poisons_;

@@ -1,8 +1,7 @@
 #include "flow/emitters.hpp"
 
-#include "geometry/shape.hpp"
-
 #include <algorithm>
+#include <utility>
 
 namespace weir::flow {
 
@@ -10,9 +9,12 @@ namespace {
 
 constexpr std::array<const char*, 2> settable{"smoke", "temperature"};
 
-template <int D, class Position>
-std::vector<std::size_t> covered(const geometry::Shape<D>& shape, const Index<D>& extent, Position position) {
+/// The entries of a grid in a shape, and whether there are any; over ranks, of the planes that this one holds.
+template <int D, class T, class Position>
+std::pair<std::vector<std::size_t>, bool> covered(const geometry::Shape<D>& shape, const Grid<T, D>& grid, Position position) {
+    const Index<D>& extent = grid.extent();
     std::vector<std::size_t> entries;
+    bool any = false;
     for (std::size_t i = 0; i < product(extent); ++i) {
         Index<D> I;
         std::size_t rest = i;
@@ -20,9 +22,11 @@ std::vector<std::size_t> covered(const geometry::Shape<D>& shape, const Index<D>
             I[d] = static_cast<int>(rest % static_cast<std::size_t>(extent[d]));
             rest /= static_cast<std::size_t>(extent[d]);
         }
-        if (shape.contains(position(I))) entries.push_back(i);
+        if (!shape.contains(position(I))) continue;
+        any = true;
+        if (grid.store().holds(I[D - 1])) entries.push_back(i);
     }
-    return entries;
+    return {std::move(entries), any};
 }
 
 /// t < moment, where a sum of rounded steps that ends at the moment counts as there.
@@ -40,30 +44,34 @@ FieldPlan& Emitters<D>::needs(const scene::Scene& scene, FieldPlan& plan) {
 }
 
 template <int D>
-typename Emitters<D>::Emitter Emitters<D>::make(const scene::Table& table, const MacVelocity<D>& grid) {
+typename Emitters<D>::Emitter Emitters<D>::make(const scene::Table& table, const MacState<D>& s) {
+    const MacVelocity<D>& grid = s.u;
     Emitter emitter{table.number("start"), table.number_or("end", infinity), {}};
     const auto shape = geometry::make_shape<D>(table);
     for (const char* name : settable)
-        if (table.has(name))
-            emitter.sets.push_back(
-                {name, -1, table.number(name), covered(*shape, grid.cells, [&](const Index<D>& I) { return grid.cell_centre(I); })});
+        if (table.has(name)) {
+            auto [entries, any] = covered(*shape, s.cells, [&](const Index<D>& I) { return grid.cell_centre(I); });
+            emitter.sets.push_back({name, -1, table.number(name), std::move(entries), any});
+        }
     if (!table.has("velocity")) return emitter;
     const auto velocity = table.vec<D>("velocity");
-    for (int a = 0; a < D; ++a)
-        emitter.sets.push_back(
-            {"", a, velocity[a], covered(*shape, grid[a].extent(), [&](const Index<D>& I) { return grid.face_centre(a, I); })});
+    for (int a = 0; a < D; ++a) {
+        auto [entries, any] = covered(*shape, grid[a], [&](const Index<D>& I) { return grid.face_centre(a, I); });
+        emitter.sets.push_back({"", a, velocity[a], std::move(entries), any});
+    }
     return emitter;
 }
 
 template <int D>
-std::string Emitters<D>::idle(const Emitter& emitter, const std::vector<std::size_t>& cells, const MacState<D>& state) {
+std::string Emitters<D>::idle(const Emitter& emitter, const geometry::Shape<D>& shape, const MacState<D>& state) {
     if (emitter.sets.empty()) return "the emitter gives nothing: it names no velocity, smoke or temperature";
     for (const auto& set : emitter.sets)
-        if (set.entries.empty() && (set.axis < 0 || set.value != 0))
+        if (!set.any && (set.axis < 0 || set.value != 0))
             return std::string("the emitter is thinner than a cell: it covers the centre of no ") + (set.axis < 0 ? "cell" : "face") +
                    (set.axis < 0 ? "" : std::string(" along ") + "xyz"[set.axis]);
-    const auto solid = [&](std::size_t i) { return state.cells[i] == poisson::Cell::solid; };
-    if (!cells.empty() && std::all_of(cells.begin(), cells.end(), solid)) return "the emitter lies inside solids: nothing can leave it";
+    const auto [cells, any] = covered(shape, state.cells, [&](const Index<D>& I) { return state.u.cell_centre(I); });
+    const bool some = std::any_of(cells.begin(), cells.end(), [&](std::size_t i) { return state.cells[i] != poisson::Cell::solid; });
+    if (any && (over_ranks() ? slabs().largest(some) : some) == 0) return "the emitter lies inside solids: nothing can leave it";
     return {};
 }
 
@@ -71,9 +79,8 @@ template <int D>
 Emitters<D>::Emitters(const scene::Scene& scene, const MacState<D>& state) : cfl_(scene.number("time.cfl")) {
     const MacVelocity<D>& grid = state.u;
     for (const auto& table : scene.root().tables("emitters")) {
-        emitters_.push_back(make(table, grid));
-        const auto cells = covered(*geometry::make_shape<D>(table), grid.cells, [&](const Index<D>& I) { return grid.cell_centre(I); });
-        if (const auto why = idle(emitters_.back(), cells, state); !why.empty())
+        emitters_.push_back(make(table, state));
+        if (const auto why = idle(emitters_.back(), *geometry::make_shape<D>(table), state); !why.empty())
             scene.refuse("emitters[" + std::to_string(emitters_.size() - 1) + "]", why);
         for (const auto& set : emitters_.back().sets)
             if (set.axis >= 0) max_rate_ = std::max(max_rate_, std::abs(set.value) / grid.h[set.axis]);

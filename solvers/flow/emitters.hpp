@@ -1,6 +1,7 @@
 // Emitters: regions in which smoke, temperature and velocity are set to given values while they work.
 #pragma once
 #include "flow/effects.hpp"
+#include "geometry/shape.hpp"
 
 namespace weir::flow {
 
@@ -23,15 +24,16 @@ private:
         std::string field;  // empty: a velocity component
         int axis = -1;
         real value = 0;
-        std::vector<std::size_t> entries;
+        std::vector<std::size_t> entries;  // over ranks, of the planes that this one holds
+        bool any;                          // on all ranks
     };
     struct Emitter {
         real start = 0, end = infinity;
         std::vector<Set> sets;
     };
-    static Emitter make(const scene::Table& table, const MacVelocity<D>& grid);
+    static Emitter make(const scene::Table& table, const MacState<D>& s);
     /// Why nothing would come of it; empty where something does.
-    static std::string idle(const Emitter& emitter, const std::vector<std::size_t>& cells, const MacState<D>& state);
+    static std::string idle(const Emitter& emitter, const geometry::Shape<D>& shape, const MacState<D>& state);
 
     std::vector<Emitter> emitters_;
     real cfl_, max_rate_ = 0;

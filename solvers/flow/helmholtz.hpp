@@ -27,7 +27,7 @@ public:
     /// r on entry the right-hand side (zero outside nodes and mask), on return δ, to ‖residual‖₂ ≤ tolerance ‖r‖₂. δ = 0 in held cells.
     /// Throws NumericalFailure when that is not reached; `what` names the quantity.
     int solve(Grid<real, D>& r, real a, const Mask<D>& mask, std::span<const Held> held, const char* what);
-    std::size_t bytes() const { return direction_.bytes() + (image_.size() + solution_.size()) * sizeof(real); }
+    std::size_t bytes() const { return direction_.bytes() + image_.bytes() + solution_.bytes(); }
 
 private:
     real dot(const Grid<real, D>& x, const Grid<real, D>& y) const;

@@ -63,7 +63,9 @@ scene::SolverKind kind() {
     return {schema,
             make_without_surface<FlowSolver>,
             {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
-            over_ranks};
+            over_ranks,
+            scene::Shared::by_planes,
+            holds_own_planes};
 }
 
 }  // namespace weir::flow

@@ -16,7 +16,7 @@ namespace weir::flow {
 /// scheme. Enters and leaves with ∇·u = 0 to the projection's tolerance.
 template <int D>
 StepReport FlowSolver<D>::step(real dt) {
-    const OwnPlanes mine(cut_, ghost_layers);
+    const OwnPlanes mine = own_planes();
     whole_ = cut_.empty();
     real t = state_.time;
     apply(Stage::source, dt);  // emitters
@@ -54,20 +54,8 @@ FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& sc
     return plan;
 }
 
-/// While it lives, loops over planes are of as many planes more beyond both cuts: of what each rank finds there for itself.
-class WiderPlanes {
-public:
-    explicit WiderPlanes(int planes) : before_(detail::own_share) {
-        if (before_.begin != INT_MIN) detail::own_share.begin -= planes;
-        if (before_.end != INT_MAX) detail::own_share.end += planes;
-    }
-    ~WiderPlanes() { detail::own_share = before_; }
-    WiderPlanes(const WiderPlanes&) = delete;
-    WiderPlanes& operator=(const WiderPlanes&) = delete;
-
-private:
-    detail::OwnShare before_;
-};
+/// Beyond the cuts, of arrays that nobody asks for more of: a difference of differences looks so far.
+constexpr int planes_beside = 2;
 
 /// Planes beyond a cut that a path of so many cells reads, with the stencil at its end.
 int planes_reached(real cells, int planes) {
@@ -92,6 +80,19 @@ real ambient_temperature(const scene::Scene& scene) {
     return 0;
 }
 
+/// What the rank knows that owns one end of the cut axis: f() of it alone.
+template <class F>
+auto of_rank_at(int end, F&& f) -> decltype(f()) {
+    if (!over_ranks()) return f();
+    const int owner = end == 0 ? 0 : slabs().ranks() - 1;
+    decltype(f()) own{};
+    if (slabs().rank() == owner) {
+        const AllPlanes here;
+        own = f();
+    }
+    return of_ranks(own)[static_cast<std::size_t>(owner)];
+}
+
 /// What flows in must flow out: through an open side, or through another inflow that takes as much out. The sums' rounding is no inflow.
 template <int D>
 void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
@@ -111,8 +112,11 @@ void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
             };
             Index<D> side = s.u.cells;
             side[a] = 1;
-            net += sum_over(side, flux), faces += static_cast<real>(product(side));
-            gross += sum_over(side, [&](const Index<D>& I) { return std::abs(flux(I)); });
+            const auto sums = [&] {
+                return std::array<real, 2>{sum_over(side, flux), sum_over(side, [&](const Index<D>& I) { return std::abs(flux(I)); })};
+            };
+            const auto [through, either_way] = a == D - 1 ? of_rank_at(end, sums) : sums();
+            net += through, gross += either_way, faces += static_cast<real>(product(side));
         }
     if (!(std::abs(net) > faces * std::numeric_limits<real>::epsilon() * gross)) return;
     scene.refuse(first,
@@ -127,9 +131,32 @@ bool lists(const scene::Scene& scene, const std::string& field) {
 
 }  // namespace
 
+bool holds_own_planes(const scene::Scene& scene) {
+    if (!slabs().several() || slabs().holds_whole() || scene.root().number_or("time.stop_when_steady", 0) > 0) return false;
+    for (const auto& probe : scene.root().tables("probes"))
+        if (const auto& kind = probe.text("kind"); kind != "point" && kind != "line" && kind != "integral") return false;
+    if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
+    const auto shares = [&]<int D>() {
+        const Lattice<D> lattice(scene);
+        const geometry::Sides<D> sides(scene);
+        Vec<D> weight;
+        std::array<bool, D> periodic;
+        for (int a = 0; a < D; ++a) {
+            const real ratio = lattice.h[0] / lattice.h[a];
+            weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
+        }
+        return poisson::multigrid_shares<D>(lattice.cells, periodic, weight, cut_of(lattice.cells[D - 1], slabs().ranks()));
+    };
+    return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
+}
+
 template <int D>
 FlowSolver<D>::FlowSolver(const scene::Scene& scene)
-    : effects_(make_effects<D>(effect_kinds(), scene)),
+    : cut_(cut_of(scene.index<D>("grid.cells")[D - 1], slabs().ranks())),
+      ring_(geometry::Sides<D>(scene).periodic(D - 1)),
+      kept_(flow::holds_own_planes(scene) ? planes_beside : 0),
+      making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, ghost_layers, kept_, ring_) : nullptr),
+      effects_(make_effects<D>(effect_kinds(), scene)),
       state_(scene, field_plan(effects_, scene)),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
@@ -143,11 +170,9 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       side_rate_(fastest_side(state_)),
       wants_vorticity_(lists(scene, "vorticity")),
       wants_divergence_(lists(scene, "divergence")),
-      hand_(geometry::make_hand(scene, kinds_of_hand(scene))),
-      cut_(cut_of(state_.extent()[D - 1], slabs().ranks())) {
+      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
     if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::implicit));
-    const auto& cells = state_.cells.values();
-    if (std::none_of(cells.begin(), cells.end(), [](poisson::Cell c) { return c == poisson::Cell::fluid; }))
+    if (max_over(state_.extent(), [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::fluid ? 1.0 : 0.0; }) == 0)
         scene.refuse("solids", "the solids leave no cell for the fluid");
     if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_));
     state_.before = PaddedVelocity<D>(state_.u);
@@ -193,6 +218,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     }
     apply(Stage::source, 0);  // what is emitted from the start is there at the start: the first step knows its forces
     passes_.reset();
+    making_.reset();
+    whole_ = kept_ == 0;
 }
 
 template <int D>
@@ -212,6 +239,7 @@ void FlowSolver<D>::remember(real dt) {
     set_reach(planes_reached(dt * fastest, state_.extent()[D - 1]));
     fill_field_planes();
     fill_end_planes(remembered_, planes_to_extend());
+    solids_.know(state_, detail::own_share.reach + 3);
     solids_.extend_velocity(state_);
     extend_fields();
 }
@@ -468,16 +496,69 @@ void FlowSolver<D>::check_own_planes() const {
     for (const auto& field : state_.fields) check(field.values, field.name);
 }
 
-/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
+/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time. Where each holds its own
+/// alone, those beside them.
 template <int D>
 void FlowSolver<D>::make_whole() const {
     if (whole_) return;
+    if (kept_ > 0) return bring_beside();
     const OwnPlanes mine(cut_);
     auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
     for (auto& field : state.fields) gather(field.values);
     whole_ = true;
+}
+
+template <int D>
+void FlowSolver<D>::bring_beside() const {
+    const OwnPlanes mine = own_planes();
+    auto& state = const_cast<MacState<D>&>(state_);
+    std::vector<Planes> all;
+    for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
+    all.push_back(planes_of(state.p));
+    for (auto& field : state.fields) all.push_back(planes_of(field.values));
+    slabs().refresh(cut_, all, planes_beside, ring_);
+    whole_ = true;
+}
+
+/// The arrays of a field that is shown.
+template <int D>
+std::vector<Grid<real, D>*> FlowSolver<D>::shown(const std::string& field) const {
+    auto& state = const_cast<MacState<D>&>(state_);
+    std::vector<Grid<real, D>*> list;
+    if (field == "velocity")
+        for (int a = 0; a < D; ++a) list.push_back(&state.u[a]);
+    if (field == "pressure") list.push_back(&state.p);
+    if (auto* values = state.find(field)) list.push_back(values);
+    if (field == "vorticity")
+        for (auto& component : vorticity_) list.push_back(&component);
+    if (field == "divergence") list.push_back(&divergence_);
+    return list;
+}
+
+template <int D>
+std::unique_ptr<Solver::Brought> FlowSolver<D>::bring_to_first(const std::vector<std::string>& names) const {
+    if (kept_ == 0) return nullptr;
+    struct Lent final : Brought {
+        const FlowSolver& solver;
+        std::vector<Grid<real, D>*> grids{};
+        explicit Lent(const FlowSolver& s) : solver(s) {}
+        ~Lent() override {
+            const OwnPlanes mine = solver.own_planes();
+            for (auto* grid : grids) grid->store().close();
+        }
+    };
+    auto lent = std::make_unique<Lent>(*this);
+    const OwnPlanes mine = own_planes();
+    for (const FieldView& view : fields().fields) {
+        if (!names.empty() && std::find(names.begin(), names.end(), view.name) == names.end()) continue;
+        for (auto* grid : shown(view.name)) {
+            gather_to_first(*grid);
+            lent->grids.push_back(grid);
+        }
+    }
+    return lent;
 }
 
 template <int D>
@@ -501,7 +582,9 @@ StepLimit FlowSolver<D>::stable_dt() const {
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
     make_whole();
+    const OwnPlanes mine = looking_at_own();
     FieldSet set = field_set(state_);
+    if (kept_ > 0) set.cut = &cut_;
     if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
         vorticity(state_, vorticity_);
@@ -523,6 +606,7 @@ FieldSet FlowSolver<D>::fields() const {
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
     make_whole();
+    const OwnPlanes mine = looking_at_own();
     auto list = flow::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
@@ -545,7 +629,8 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
 
 template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
-    make_whole();
+    if (kept_ == 0) make_whole();
+    const OwnPlanes mine = looking_at_own();
     state_.save(to);
     if (bodies_) bodies_->save(to);
     to.put_value("impulse", impulse_);
@@ -556,11 +641,15 @@ void FlowSolver<D>::save(Checkpoint& to) const {
 
 template <int D>
 void FlowSolver<D>::restore(const Checkpoint& from) {
-    state_.restore(from);
+    {
+        const OwnPlanes mine = looking_at_own();
+        state_.restore(from);
+    }
     if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
     if (hand_ && from.has("hand")) hand_->restore(from);
-    whole_ = true;
+    whole_ = kept_ == 0;
+    make_whole();
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (from.has("smoke_in_solids")) {
@@ -579,7 +668,7 @@ std::size_t FlowSolver<D>::bytes() const {
     for (const auto& blend : velocity_blend_) total += blend.bytes();
     for (const auto& blend : field_blend_) total += blend.bytes();
     for (const auto& component : carried_.face) total += component.bytes();
-    total += was_solid_.size() + (bodies_ ? bodies_->bytes() : 0);
+    total += was_solid_.bytes() + (bodies_ ? bodies_->bytes() : 0);
     if (heat_) total += heat_->bytes();
     return total;
 }

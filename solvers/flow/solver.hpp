@@ -16,6 +16,10 @@
 
 namespace weir::flow {
 
+/// Over ranks: may each hold its own planes of a scene alone? Not where somebody looks at whole fields on all ranks, nor where each solves
+/// for the pressure itself.
+bool holds_own_planes(const scene::Scene& scene);
+
 /// The registered solver "mac".
 scene::SolverKind kind();
 
@@ -28,6 +32,8 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
+    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
+    bool holds_own_planes() const override { return kept_ > 0; }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     Hand* hand() const override { return hand_.get(); }
@@ -79,6 +85,20 @@ private:
     void check_own_planes() const;
     void make_whole() const;
 
+    OwnPlanes own_planes() const { return OwnPlanes(cut_, ghost_layers, kept_, ring_); }
+    /// For whoever looks: this rank's alone where it holds no more, else everything.
+    OwnPlanes looking_at_own() const { return OwnPlanes(kept_ > 0 ? cut_ : nowhere(), ghost_layers, kept_, ring_); }
+    static const Cut& nowhere() {
+        static const Cut none;
+        return none;
+    }
+    void bring_beside() const;
+    std::vector<Grid<real, D>*> shown(const std::string& field) const;
+
+    Cut cut_;                            // none in one process
+    bool ring_;                          // the cut axis is periodic
+    int kept_;                           // where each rank holds its own planes alone, so many beyond its cuts at least; else 0
+    std::unique_ptr<OwnPlanes> making_;  // until all is made
     Effects<MacState<D>> effects_;
     MacState<D> state_;
     std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none
@@ -107,8 +127,7 @@ private:
     std::vector<WithBoundary<D>> remembered_fields_, remembered_;  // uⁿ, qⁿ and both
     std::vector<WithBoundary<D>> carried_velocity_;
     std::vector<Planes> shared_;  // scratch: what travels together
-    Cut cut_;                     // none in one process
-    mutable bool whole_ = true;   // all planes stand here, not this rank's alone
+    mutable bool whole_ = true;   // all planes stand here, or those that this rank looks at, not its own alone
 };
 
 }  // namespace weir::flow

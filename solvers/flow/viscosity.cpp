@@ -55,7 +55,7 @@ public:
     Diffuser(const Nodes<D>& nodes, const MacState<D>& s, const Boundary<D>& boundary, Beyond beyond, const Index<D>& extent)
         : nodes_(nodes), h_(s.u.h), beyond_(beyond), mask_(), rhs_(extent), solver_(nodes, h_, boundary, beyond, extent) {}
     Mask<D>& mask() { return mask_; }
-    std::size_t bytes() const { return mask_.bytes() + rhs_.size() * sizeof(real) + solver_.bytes(); }
+    std::size_t bytes() const { return mask_.bytes() + rhs_.bytes() + solver_.bytes(); }
 
     void add(const Padded<D>& before, real dt_nu, Grid<real, D>& q) {
         laplacian(before, h_, nodes_, mask_, beyond_, rhs_);

@@ -28,9 +28,14 @@ public:
     void set_solver_bytes(std::size_t bytes) { solver_bytes_ = bytes; }
     /// What was measured of the finished run, by name. Numbers that are not finite are left out.
     void set_measured(std::map<std::string, double> values) { measured_ = std::move(values); }
-    /// Where the ranks of the run are cut (an empty cut: they share particles), what of a step each does alone (nothing said: all is
-    /// shared), and what each has sent; it is told of several ranks only.
-    void set_ranks(int count, const Cut& cut, const std::string& by_all, const std::vector<Traffic>& sent);
+    /// Of a rank: what its solver holds, and what of the process stands in memory that no file backs [bytes].
+    struct RankMemory {
+        std::size_t solver = 0, resident = 0;
+    };
+    /// Where the ranks of the run are cut (an empty cut: they share particles), whether each holds its own planes alone, what of a step
+    /// each does alone (nothing said: all is shared), and at the end what each has sent and holds; it is told of several ranks only.
+    void set_ranks(int count, const Cut& cut, bool own_planes, const std::string& by_all, const std::vector<Traffic>& sent,
+                   const std::vector<RankMemory>& memory);
     /// Takes over the steps up to `last` of an earlier run's file, where it can be read.
     void resume(std::int64_t last);
     /// Replaces the file. Throws OutputError.

@@ -12,8 +12,15 @@ public:
     Arena(const Arena&) = delete;
     Arena& operator=(const Arena&) = delete;
 
-    /// Makes room for `bytes`, all zero; forgets what was handed out. Keeps the block if it is the same size and `keep_contents`.
-    void reserve(std::size_t bytes);
+    /// Makes room for `bytes`, all zero; forgets what was handed out. `closed`: room that nobody may touch until it is opened.
+    void reserve(std::size_t bytes, bool closed = false);
+    /// Of a closed one, the entries [from, to) of a piece.
+    template <class T>
+    void open(const T* from, const T* to) {
+        open_bytes(reinterpret_cast<std::uintptr_t>(from), reinterpret_cast<std::uintptr_t>(to));
+    }
+    /// What has memory behind it.
+    std::size_t bytes() const { return closed_ ? opened_ : size_; }
     /// A piece for `count` elements on its own cache lines.
     template <class T>
     T* take(std::size_t count) {
@@ -32,7 +39,9 @@ private:
     static constexpr std::size_t line = 64;
     unsigned char* begin_ = nullptr;
     void* mapping_ = nullptr;
-    std::size_t size_ = 0, used_ = 0, mapped_ = 0;
+    std::size_t size_ = 0, used_ = 0, mapped_ = 0, opened_ = 0;
+    bool closed_ = false;
+    void open_bytes(std::uintptr_t from, std::uintptr_t to);
     void release();
 };
 

@@ -30,10 +30,12 @@ bool GeometricCg<D>::setup(const Natural<D>& problem) {
     const Layout<D>& at = hierarchy_.finest().at;
     const std::size_t entries = at.entries(), skip = static_cast<std::size_t>(at.stride + lanes);
     const std::size_t bytes = 2 * Arena::need<double>(entries) + 2 * Arena::need<float>(entries);
-    if (bytes != arena_.size() || x_[0] == nullptr) {
-        arena_.reserve(bytes);
-        for (auto& x : x_) x = arena_.take<double>(entries) + skip;
-        for (auto& p : p_) p = arena_.take<float>(entries) + skip;
+    const bool windowed = !hierarchy_.finest().held.empty();
+    if (bytes != arena_.size() || x_[0] == nullptr || windowed != windowed_) {
+        windowed_ = windowed;
+        arena_.reserve(bytes, windowed);
+        for (auto& x : x_) hierarchy_.finest().open(arena_, x = arena_.take<double>(entries) + skip, skip, entries);
+        for (auto& p : p_) hierarchy_.finest().open(arena_, p = arena_.take<float>(entries) + skip, skip, entries);
     }
     for (float* p : p_) clear_gaps(hierarchy_.finest(), p);
     sums_.assign(static_cast<std::size_t>(at.planes()), {});

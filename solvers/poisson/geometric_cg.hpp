@@ -22,7 +22,7 @@ public:
     /// Iterates on A p = b; fills the report but for times, bytes and components. Answers false if it stopped because convergence is slow:
     /// p then holds what has been reached.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);
-    std::size_t bytes() const { return arena_.size() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums); }
+    std::size_t bytes() const { return arena_.bytes() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums); }
     /// One cycle u = M r, for tests.
     void precondition(const Natural<D>& problem, const Grid<real, D>& r, Grid<real, D>& u);
 
@@ -60,6 +60,7 @@ private:
     Arena arena_;
     Coloured<double> x_{};
     Coloured<float> p_{};
+    bool windowed_ = false;
     bool at_zero_ = false;  // x is zero, whatever its memory holds
     std::vector<PlaneSums> sums_;
     real gamma_ = 0, delta_ = 0;

@@ -60,7 +60,9 @@ void coarsen_row(const Level<D>& fine, Level<D>& coarse, int Q, int J, const Row
 
 template <int D, class Rows>
 void coarsen_level(const Level<D>& fine, Level<D>& coarse, const Rows& rows) {
+    const bool pairs = fine.coarsened[D - 1];
     const auto plane = [&](int Q) {
+        if (!fine.owns(pairs ? 2 * Q : Q)) return;
         thread_local RowBuffers<D> buffers;
         for (int J = 0; J < coarse.at.rows_in_plane(); ++J) coarsen_row(fine, coarse, Q, J, rows, buffers);
     };
@@ -106,32 +108,74 @@ std::optional<Level<D>> halve(Level<D>& fine) {
     return coarse;
 }
 
+template <int D>
+Level<D> finest_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, bool by_count) {
+    Level<D> finest;
+    finest.at = Layout<D>(n, periodic);
+    finest.by_count = by_count;
+    for (std::size_t a = 0; a < D; ++a) finest.plain_weight[a] = static_cast<float>(axis_weight[static_cast<int>(a)]);
+    return finest;
+}
+
+/// The levels of such a problem without their memory; none where the shape does not suit.
+template <int D>
+std::vector<Level<D>> levels_below(Level<D> finest) {
+    for (int a = 0; a < D; ++a)
+        if (finest.at.periodic[static_cast<std::size_t>(a)] && finest.at.n[a] % 2 == 1) return {};
+    std::vector<Level<D>> levels;
+    levels.push_back(std::move(finest));
+    while (levels.back().cells() > direct_cells) {
+        std::optional<Level<D>> coarse = halve(levels.back());
+        if (!coarse) return {};
+        levels.push_back(std::move(*coarse));
+    }
+    if (levels.size() < 2) levels.clear();
+    return levels;
+}
+
 }  // namespace
 
 template <int D>
 bool Hierarchy<D>::plan(const Natural<D>& problem) {
-    Level<D> finest;
-    finest.at = Layout<D>(problem.extent(), problem.periodic());
-    finest.by_count = !problem.weighted();
-    for (std::size_t a = 0; a < D; ++a) finest.plain_weight[a] = static_cast<float>(problem.axis_weight()[static_cast<int>(a)]);
+    Level<D> finest = finest_of<D>(problem.extent(), problem.periodic(), problem.axis_weight(), !problem.weighted());
+    const bool windowed = detail::own_share.kept > 0;
     const auto same = [&](const Level<D>& other) {
         return other.at.n == finest.at.n && other.at.periodic == finest.at.periodic && other.plain_weight == finest.plain_weight &&
-               other.by_count == finest.by_count;
+               other.by_count == finest.by_count && windowed_ == windowed;
     };
     if (!levels_.empty() && same(levels_.front())) return true;
-    levels_.clear();
+    levels_ = levels_below(std::move(finest));
     shared_as_ = {};
-    for (int a = 0; a < D; ++a)
-        if (finest.at.periodic[static_cast<std::size_t>(a)] && finest.at.n[a] % 2 == 1) return false;
-    levels_.push_back(std::move(finest));
-    while (levels_.back().cells() > direct_cells) {
-        std::optional<Level<D>> coarse = halve(levels_.back());
-        if (!coarse) return false;
-        levels_.push_back(std::move(*coarse));
-    }
-    if (levels_.size() < 2) return false;
+    windowed_ = windowed;
+    if (levels_.empty()) return false;
+    window();
     lay_out();
     return true;
+}
+
+/// Where each rank holds its own planes alone, and those beside them, of the levels that are cut.
+template <int D>
+void Hierarchy<D>::window() {
+    for (auto& level : levels_) level.held.clear();
+    if (!windowed_) return;
+    share(detail::own_share.cut);
+    for (auto& level : levels_)
+        if (!level.cut.empty()) level.held = planes_held(level.cut, slabs().rank(), level.at.planes(), 0, 1, level.at.periodic[D - 1]);
+}
+
+/// The matrix of a level as far as others have made it: beside this rank's planes, or everywhere.
+template <int D>
+void Hierarchy<D>::bring_beside(std::size_t l) {
+    Level<D>& level = levels_[l];
+    const auto bring = [&](const Planes& planes) {
+        if (level.cut.empty())
+            slabs().gather(VCycle<D>::halved_cut(levels_[l - 1]), planes);
+        else
+            slabs().refresh(level.cut, planes, 1, level.at.periodic[D - 1]);
+    };
+    for (float* face : level.face) bring(level.natural_planes(face));
+    bring(level.natural_planes(level.zero));
+    bring(level.natural_planes(level.fluid));
 }
 
 template <int D>
@@ -141,7 +185,7 @@ void Hierarchy<D>::lay_out() {
         for (std::size_t l = 0; l < levels_.size(); ++l) {
             Level<D>& level = levels_[l];
             const std::size_t packed = level.at.entries(), natural = level.cells();
-            const auto vector = [&](auto*& p) { piece(p, packed, static_cast<std::size_t>(level.at.stride + lanes)); };
+            const auto vector = [&](auto*& p) { piece(level, p, packed, static_cast<std::size_t>(level.at.stride + lanes)); };
             for (auto* list : {&level.u, &level.r, level.by_count ? nullptr : &level.dinv})
                 if (list != nullptr)
                     for (auto& p : *list) vector(p);
@@ -149,17 +193,25 @@ void Hierarchy<D>::lay_out() {
                 for (auto& p : level.count) vector(p);
             else
                 for (auto& p : level.weight)
-                    piece(p, packed + static_cast<std::size_t>(level.at.side_rows() * level.at.stride),
+                    piece(level, p, packed + static_cast<std::size_t>(level.at.side_rows() * level.at.stride),
                           static_cast<std::size_t>(level.at.stride + lanes));
             if (l == 0) continue;
-            for (auto& p : level.face) piece(p, natural, std::size_t{0});
-            piece(level.zero, natural, std::size_t{0});
-            piece(level.fluid, natural, std::size_t{0});
+            for (auto& p : level.face) piece(level, p, natural, std::size_t{0});
+            piece(level, level.zero, natural, std::size_t{0});
+            piece(level, level.fluid, natural, std::size_t{0});
         }
     };
-    pieces([&](auto*& p, std::size_t count, std::size_t) { bytes += Arena::need<std::remove_reference_t<decltype(*p)>>(count); });
-    arena_.reserve(bytes);
-    pieces([&](auto*& p, std::size_t count, std::size_t skip) { p = arena_.take<std::remove_reference_t<decltype(*p)>>(count) + skip; });
+    pieces([&](const Level<D>&, auto*& p, std::size_t count, std::size_t) {
+        bytes += Arena::need<std::remove_reference_t<decltype(*p)>>(count);
+    });
+    arena_.reserve(bytes, windowed_);
+    pieces([&](const Level<D>& level, auto*& p, std::size_t count, std::size_t skip) {
+        p = arena_.take<std::remove_reference_t<decltype(*p)>>(count) + skip;
+        if (skip > 0)
+            level.open(arena_, p, skip, count);
+        else
+            level.open_natural(arena_, p);
+    });
 }
 
 template <int D>
@@ -174,6 +226,7 @@ void Hierarchy<D>::fill(const Natural<D>& problem, std::size_t l) {
         coarsen_level(level, levels_[1], DerivedRows<D>{problem});
     else
         coarsen_level(level, levels_[l + 1], StoredRows<D>{level});
+    if (!level.held.empty()) bring_beside(l + 1);
 }
 
 template <int D>
@@ -194,31 +247,47 @@ bool Hierarchy<D>::share(const Cut* cut) {
     const bool known = cut == nullptr ? shared_as_.empty() : shared_as_ == *cut;
     if (known) return !levels_.empty() && !levels_[0].cut.empty();
     shared_as_ = cut == nullptr ? Cut{} : *cut;
-    for (auto& level : levels_) level.cut = {};
-    if (shared_as_.empty() || levels_.empty()) return false;
-    levels_[0].cut = shared_as_;
-    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
-        Level<D>& level = levels_[l];
+    cut_levels(levels_, shared_as_);
+    return !levels_.empty() && !levels_[0].cut.empty();
+}
+
+template <int D>
+void Hierarchy<D>::cut_levels(std::vector<Level<D>>& levels, const Cut& cut) {
+    for (auto& level : levels) level.cut = {};
+    if (cut.empty() || levels.empty()) return;
+    levels[0].cut = cut;
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+        Level<D>& level = levels[l];
         const auto straddled = [&](int plane) { return plane % 2 == 1 && plane != level.cut.planes(); };
         const auto& at = level.cut.at;
         if (level.cells() < small_level || (level.coarsened[D - 1] && std::any_of(at.begin(), at.end(), straddled))) {
             level.cut = {};
             break;
         }
-        levels_[l + 1].cut = VCycle<D>::halved_cut(level);
+        levels[l + 1].cut = VCycle<D>::halved_cut(level);
     }
-    levels_.back().cut = {};
-    return !levels_[0].cut.empty();
+    levels.back().cut = {};
 }
 
 template <int D>
 std::size_t Hierarchy<D>::bytes() const {
-    std::size_t sum = arena_.size() + coarsest_.bytes() + coarsest_matrix_.bytes() + coarsest_components_.bytes() + finder_.bytes();
+    std::size_t sum = arena_.bytes() + coarsest_.bytes() + coarsest_matrix_.bytes() + coarsest_components_.bytes() + finder_.bytes();
     for (const auto& level : levels_)
         sum += level.plain.capacity() + level.span_start.capacity() * sizeof(int) + level.spans.capacity() * sizeof(Span) +
                level.work.capacity() * sizeof(std::int64_t);
     return sum;
 }
+
+template <int D>
+bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut) {
+    std::array<bool, D> wraps = periodic;
+    for (int a = 0; a < D; ++a) wraps[static_cast<std::size_t>(a)] = wraps[static_cast<std::size_t>(a)] && n[a] > 1;
+    auto levels = levels_below(finest_of<D>(n, wraps, axis_weight, true));
+    Hierarchy<D>::cut_levels(levels, cut);
+    return !levels.empty() && !levels[0].cut.empty();
+}
+template bool multigrid_shares<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Cut&);
+template bool multigrid_shares<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, const Cut&);
 
 template class Hierarchy<2>;
 template class Hierarchy<3>;

@@ -15,6 +15,8 @@ public:
     bool build(const Natural<D>& problem);
     std::vector<Level<D>>& levels() { return levels_; }
     Level<D>& finest() { return levels_.front(); }
+    /// Cuts the large ones as the finest is cut, or none.
+    static void cut_levels(std::vector<Level<D>>& levels, const Cut& cut);
     /// Cuts the large levels as the finest is cut, or none; answers whether the finest is.
     bool share(const Cut* cut);
     /// u = A⁻¹ r on the coarsest level.
@@ -23,12 +25,15 @@ public:
 
 private:
     bool plan(const Natural<D>& problem);
+    void window();
     void lay_out();
+    void bring_beside(std::size_t l);
     void fill(const Natural<D>& problem, std::size_t l);
     void build_coarsest();
 
     std::vector<Level<D>> levels_;
-    Cut shared_as_{};  // what the levels' cuts follow from
+    Cut shared_as_{};        // what the levels' cuts follow from
+    bool windowed_ = false;  // each rank holds its own planes alone of the levels that are cut
     Arena arena_;
     SparseCholesky coarsest_;
     Matrix coarsest_matrix_;

@@ -100,14 +100,44 @@ struct Level {
     float* zero = nullptr;
     std::uint8_t* fluid = nullptr;
 
-    Cut cut{};  // over ranks: who owns which planes; empty where every rank does all
+    Cut cut{};                 // over ranks: who owns which planes; empty where every rank does all
+    std::vector<char> held{};  // which planes this rank holds; empty where it holds all
 
     std::size_t cells() const { return product(at.n); }
     /// The planes of a packed vector. An entry earlier than their rows, as a periodic row keeps what its first entry reads before itself.
     template <class T>
     Planes planes_of(T* vector) const {
         const int rows = at.rows_in_plane();
-        return {vector - 1, sizeof(T) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(at.stride), at.planes()};
+        return {vector - 1, sizeof(T) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(at.stride), at.planes(), 0,
+                held.empty() ? nullptr : held.data()};
+    }
+    /// Of an array in natural order.
+    template <class T>
+    Planes natural_planes(T* array) const {
+        return {array, sizeof(T) * cells() / static_cast<std::size_t>(at.planes()), at.planes(), 0, held.empty() ? nullptr : held.data()};
+    }
+    bool holds(int plane) const { return held.empty() || held[static_cast<std::size_t>(plane)] != 0; }
+    /// Whether this rank computes a plane's matrix.
+    bool owns(int plane) const {
+        return held.empty() || (plane >= cut.begin(slabs().rank()) && plane < cut.end(slabs().rank(), at.planes()));
+    }
+    /// Opens what this rank holds of a packed vector that the arena has given, which begins `skip` entries before its first row; `size`:
+    /// with what comes after its rows.
+    template <class T>
+    void open(Arena& arena, const T* vector, std::size_t skip, std::size_t size) const {
+        const T* const first = vector - skip;
+        if (held.empty()) return arena.open(first, first + size);
+        const std::ptrdiff_t plane = at.offset(at.rows_in_plane());
+        arena.open(first, vector + lanes);
+        for (int q = 0; q < at.planes(); ++q)
+            if (holds(q)) arena.open(vector + q * plane - lanes, vector + (q + 1) * plane + lanes);
+        arena.open(vector + at.planes() * plane - lanes, first + size);
+    }
+    template <class T>
+    void open_natural(Arena& arena, const T* array) const {
+        const auto plane = static_cast<std::ptrdiff_t>(cells() / static_cast<std::size_t>(at.planes()));
+        for (int q = 0; q < at.planes(); ++q)
+            if (holds(q)) arena.open(array + q * plane, array + (q + 1) * plane);
     }
     /// Over ranks: the planes beside the cuts, after each of a sweep's stages has written them.
     template <class T>

@@ -62,17 +62,24 @@ public:
 private:
     /// Over ranks, by each of them.
     const Report& continue_alone(Grid<real, D>& p, const Grid<real, D>& b) {
-        whole_b_ = over_ranks() ? b : Grid<real, D>();
-        gather(p);
-        gather(whole_b_);
-        const bool several = over_ranks();
-        const AllPlanes all;
         if (algebraic_ == nullptr) set_up_algebraic();
-        return algebraic_->continue_solve(report_, p, several ? whole_b_ : b);
+        if (!over_ranks()) return algebraic_->continue_solve(report_, p, b);
+        Grid<real, D> whole_b = b;
+        gather(p);
+        gather(whole_b);
+        const poisson::Report* report = nullptr;
+        {
+            const AllPlanes all;
+            report = &algebraic_->continue_solve(report_, p, whole_b);
+        }
+        p.store().close();
+        return *report;
     }
     void set_up_algebraic() {
         algebraic_ = std::make_unique<ConjugateGradient<D, AlgebraicMultigrid>>(options_);
-        algebraic_->setup(problem_.as_operator());
+        const Operator<D> whole = problem_.as_operator();
+        const AllPlanes all;
+        algebraic_->setup(whole);
     }
 
     Options options_;
@@ -80,7 +87,6 @@ private:
     Natural<D> problem_;
     GeometricCg<D> geometric_;
     bool geometric_fits_ = false;
-    Grid<real, D> whole_b_;  // over ranks, where the geometric cycle has given up
     std::unique_ptr<ConjugateGradient<D, AlgebraicMultigrid>> algebraic_;
     Report report_;
 };

@@ -20,6 +20,9 @@ void Natural<D>::build(const Operator<D>& A) {
     const bool cubic = std::all_of(axis_weight_.begin(), axis_weight_.end(), [&](real w) { return w == axis_weight_[0]; });
     weighted_ = !A.weight[0].empty() || !cubic;
     for (int a = 0; a < D; ++a) periodic_[static_cast<std::size_t>(a)] = A.periodic[static_cast<std::size_t>(a)] && n_[a] > 1;
+    windowed_ = A.cells.store().windowed();
+    own_ = {0, planes()};
+    if (windowed_) own_ = {detail::own_share.lower(0), detail::own_share.upper(planes())};
     copy_cells(A);
     count_faces();
     clean_faces(A);
@@ -42,11 +45,13 @@ template <int D>
 void Natural<D>::copy_cells(const Operator<D>& A) {
     const int nx = n_[0], rows = planes() * rows_in_plane();
     const std::uint8_t outside = weighted_ ? air : solid;
-    cells_.resize(static_cast<std::size_t>(rows + 1) * static_cast<std::size_t>(nx + 2));
-    std::fill(cells_.begin(), cells_.begin() + nx + 2, outside);
+    const auto row_entries = static_cast<std::size_t>(nx + 2);
+    cells_.resize(row_entries, row_entries * static_cast<std::size_t>(rows_in_plane()), planes(), 0);
+    std::fill_n(cells_.data(), row_entries, outside);
     wet_.resize(static_cast<std::size_t>(rows));
     const Cell* from = A.cells.data();
     parallel_for(0, rows, [&](int r) {
+        if (!cells_.holds(r / rows_in_plane())) return;
         auto* to = cells_.data() + 1 + static_cast<std::ptrdiff_t>(r + 1) * (nx + 2);
         std::memcpy(to, from + static_cast<std::ptrdiff_t>(r) * nx, static_cast<std::size_t>(nx));
         to[-1] = periodic_[0] ? to[nx - 1] : outside;
@@ -59,8 +64,12 @@ void Natural<D>::copy_cells(const Operator<D>& A) {
 
 template <int D>
 void Natural<D>::count_faces() {
-    count_.resize(weighted_ ? 0 : product(n_));
-    parallel_for(0, weighted_ ? 0 : planes(), [&](int q) {
+    const auto plane = static_cast<std::size_t>(n_[0]) * static_cast<std::size_t>(rows_in_plane());
+    if (weighted_)
+        count_ = {};
+    else
+        count_.resize(0, plane, planes(), 0);
+    parallel_for(own_.begin, weighted_ ? own_.begin : own_.end, [&](int q) {
         for (int j = 0; j < rows_in_plane(); ++j) {
             const std::uint8_t* c = cells(row(q, j));
             std::array<const std::uint8_t*, 2 * D> beside{c - 1, c + 1};
@@ -81,17 +90,17 @@ void Natural<D>::clean_faces(const Operator<D>& A) {
     for (int a = 0; a < D; ++a) {
         auto& clean = faces_[static_cast<std::size_t>(a)];
         if (!weighted_) {
-            clean.clear();
+            clean = {};
             continue;
         }
         const auto& given = A.weight[static_cast<std::size_t>(a)];
-        clean.resize(product(n_ + e<D>(a)));
         const bool self = A.periodic[static_cast<std::size_t>(a)] && n_[a] == 1;
         const bool ring = periodic_[static_cast<std::size_t>(a)];
         const real scale = self ? 0 : axis_weight_[a];
         const int planes_of_faces = n_[D - 1] + (a == D - 1 ? 1 : 0), rows_of_faces = D == 2 ? 1 : n_[1] + (a == 1 ? 1 : 0);
         const int entries = n_[0] + (a == 0 ? 1 : 0);
-        parallel_for(0, planes_of_faces, [&](int q) {
+        clean.resize(0, static_cast<std::size_t>(entries) * static_cast<std::size_t>(rows_of_faces), planes_of_faces, 0);
+        parallel_for(own_.begin, own_.end + (a == D - 1 ? 1 : 0), [&](int q) {
             for (int j = 0; j < rows_of_faces; ++j) {
                 const int t = a == D - 1 ? q : j;  // index of the face along a > 0
                 const bool last = a > 0 && t == n_[a];
@@ -125,7 +134,7 @@ void Natural<D>::find_runs() {
     run_start_.assign(1, 0);
     runs_.clear();
     fluid_cells_ = 0;
-    for (int q = 0; q < planes(); ++q)
+    for (int q = own_.begin; q < own_.end; ++q)
         for (int j = 0; j < rows_in_plane(); ++j) {
             const auto* c = cells(row(q, j));
             const real* w = weighted_ ? faces(0, q, j) : nullptr;
@@ -139,7 +148,27 @@ void Natural<D>::find_runs() {
             }
             run_start_.push_back(static_cast<int>(runs_.size()));
         }
+    if (windowed_) gather_runs();
     refill_scratch<real>(sum_, runs_.size(), 0);
+}
+
+/// Over ranks, those of all of them: there are few in a row.
+template <int D>
+void Natural<D>::gather_runs() {
+    const Cut& cut = *detail::own_share.cut;
+    const auto rows = static_cast<std::size_t>(planes() * rows_in_plane());
+    std::vector<int> count(rows);
+    const auto first = static_cast<std::size_t>(own_.begin * rows_in_plane());
+    for (std::size_t r = 0; r + 1 < run_start_.size(); ++r) count[first + r] = run_start_[r + 1] - run_start_[r];
+    slabs().gather(cut, {count.data(), sizeof(int) * static_cast<std::size_t>(rows_in_plane()), planes()});
+    run_start_.assign(1, 0);
+    for (const int n : count) run_start_.push_back(run_start_.back() + n);
+    const std::vector<Run> own = std::move(runs_);
+    runs_.assign(static_cast<std::size_t>(run_start_.back()), Run{});
+    std::copy(own.begin(), own.end(), runs_.begin() + run_start_[first]);
+    gather_by_runs(runs_.data());
+    fluid_cells_ = 0;
+    for (const Run& run : runs_) fluid_cells_ += run.end - run.begin;
 }
 
 /// Union-find over runs of neighbouring rows that share an open face; components that no face joins to p = 0 are closed.
@@ -153,11 +182,17 @@ void Natural<D>::find_closed() {
             i = parent[static_cast<std::size_t>(i)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
         return i;
     };
-    const auto join = [&](const Run* a, const Run* b) {
-        const int i = root(static_cast<int>(a - runs_.data())), k = root(static_cast<int>(b - runs_.data()));
+    std::vector<std::array<int, 2>> joined;  // over ranks, by this one
+    const auto join_runs = [&](int a, int b) {
+        const int i = root(a), k = root(b);
         parent[static_cast<std::size_t>(std::max(i, k))] = std::min(i, k);
+        return i != k;
     };
-    for (int q = 0; q < planes(); ++q)
+    const auto join = [&](const Run* a, const Run* b) {
+        const auto i = static_cast<int>(a - runs_.data()), k = static_cast<int>(b - runs_.data());
+        if (join_runs(i, k) && windowed_) joined.push_back({i, k});
+    };
+    for (int q = own_.begin; q < own_.end; ++q)
         for (int j = 0; j < rows_in_plane(); ++j) {
             const int here = row(q, j);
             if (periodic_[0] && runs_begin(here) != runs_end(here)) {
@@ -179,8 +214,11 @@ void Natural<D>::find_closed() {
                 }
             }
         }
+    if (windowed_)
+        for (const auto& [i, k] : of_all_ranks(joined)) join_runs(i, k);
     for (std::size_t k = 0; k < parent.size(); ++k) parent[k] = root(static_cast<int>(k));
     mark_open();
+    if (windowed_) gather_open();
     refill_scratch(number_, runs_.size(), -1);
     closed_ = 0;
     for (std::size_t k = 0; k < runs_.size(); ++k)
@@ -197,7 +235,7 @@ void Natural<D>::find_closed() {
 template <int D>
 void Natural<D>::mark_open() {
     refill_scratch<char>(open_, runs_.size(), 0);
-    for (int q = 0; q < planes(); ++q)
+    for (int q = own_.begin; q < own_.end; ++q)
         for (int j = 0; j < rows_in_plane(); ++j)
             for (const Run* run = runs_begin(row(q, j)); run != runs_end(row(q, j)); ++run) {
                 auto& is_open = open_[static_cast<std::size_t>(root_[static_cast<std::size_t>(run - runs_.data())])];
@@ -216,25 +254,41 @@ void Natural<D>::mark_open() {
             }
 }
 
+/// Over ranks: a component is open where any of them has found it so.
+template <int D>
+void Natural<D>::gather_open() {
+    const std::vector<char> found = of_all_ranks(open_);
+    for (std::size_t k = 0; k < found.size(); ++k) open_[k % open_.size()] = static_cast<char>(open_[k % open_.size()] | found[k]);
+}
+
 template <int D>
 Operator<D> Natural<D>::as_operator() const {
+    const Cut* const cut = windowed_ ? detail::own_share.cut : nullptr;
+    const AllPlanes whole;
     Operator<D> A;
     A.cells = Grid<Cell, D>(n_);
-    for (int row = 0; row < planes() * rows_in_plane(); ++row)
+    for (int row = own_.begin * rows_in_plane(); row < own_.end * rows_in_plane(); ++row)
         std::memcpy(A.cells.data() + static_cast<std::ptrdiff_t>(row) * n_[0], cells(row), static_cast<std::size_t>(n_[0]));
     A.periodic = periodic_;
     if (!weighted_) A.axis_weight = axis_weight_;
     for (std::size_t a = 0; weighted_ && a < D; ++a) {
         A.weight[a] = Grid<real, D>(n_ + e<D>(static_cast<int>(a)));
-        std::copy(faces_[a].begin(), faces_[a].end(), A.weight[a].data());
+        if (!cut)
+            std::copy_n(faces_[a].data(), faces_[a].size(), A.weight[a].data());
+        else
+            std::copy_n(faces_[a].data() + face_offset(static_cast<int>(a), own_.begin, 0),
+                        face_offset(static_cast<int>(a), own_.end + (a == D - 1 ? 1 : 0) - own_.begin, 0),
+                        A.weight[a].data() + face_offset(static_cast<int>(a), own_.begin, 0));
+        if (cut) slabs().gather(*cut, planes_of(A.weight[a]));
     }
+    if (cut) slabs().gather(*cut, planes_of(A.cells));
     return A;
 }
 
 template <int D>
 std::size_t Natural<D>::bytes() const {
-    std::size_t sum = cells_.capacity() + count_.capacity() + run_start_.capacity() * sizeof(int) + runs_.capacity() * sizeof(Run);
-    for (const auto& f : faces_) sum += f.capacity() * sizeof(real);
+    std::size_t sum = cells_.bytes() + count_.bytes() + run_start_.capacity() * sizeof(int) + runs_.capacity() * sizeof(Run);
+    for (const auto& f : faces_) sum += f.bytes();
     sum += wet_.capacity() + (root_.capacity() + number_.capacity()) * sizeof(int) + open_.capacity();
     return sum + (size_.capacity() + mean_.capacity() + sum_.capacity()) * sizeof(real);
 }

@@ -19,7 +19,7 @@ class Natural {
 public:
     void build(const Operator<D>& A);
 
-    /// An operator with the same matrix.
+    /// An operator with the same matrix; over ranks, whole, on all of them.
     Operator<D> as_operator() const;
 
     const Index<D>& extent() const { return n_; }
@@ -80,6 +80,18 @@ private:
     void count_faces();
     void clean_faces(const Operator<D>& A);
     void find_runs();
+    void gather_runs();
+    void gather_open();
+    /// Over ranks, of the runs of others.
+    template <class T>
+    void gather_by_runs(T* values) const {
+        first_runs_.clear();
+        for (const int plane : detail::own_share.cut->at) {
+            const std::size_t row = static_cast<std::size_t>(plane) * static_cast<std::size_t>(rows_in_plane());
+            first_runs_.push_back(static_cast<std::size_t>(run_start_[row]));
+        }
+        slabs().gather_parts(values, sizeof(T), first_runs_);
+    }
     void find_closed();
     void mark_open();
     void gather_sums() const;
@@ -97,16 +109,19 @@ private:
     bool weighted_ = false;
     Vec<D> axis_weight_{};
     std::array<bool, D> periodic_{};
-    std::vector<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
-    std::vector<std::uint8_t> wet_;            // how much of each row is fluid
-    std::array<std::vector<real>, D> faces_;
+    PlaneStore<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
+    std::vector<std::uint8_t> wet_;           // how much of each row is fluid
+    std::array<PlaneStore<real>, D> faces_;
+    PlaneRange own_{0, 0};  // the planes that this rank makes, all where it holds all
+    bool windowed_ = false;
     std::vector<int> run_start_;
     std::vector<Run> runs_;
     int closed_ = 0;
     std::int64_t fluid_cells_ = 0;
-    std::vector<real> size_;                // cells of each closed component
-    mutable std::vector<real> mean_, sum_;  // of components, of runs
-    std::vector<int> root_, number_;        // scratch of find_closed: of each run its root, of each root its component
+    std::vector<real> size_;                       // cells of each closed component
+    mutable std::vector<real> mean_, sum_;         // of components, of runs
+    mutable std::vector<std::size_t> first_runs_;  // of each rank
+    std::vector<int> root_, number_;               // scratch of find_closed: of each run its root, of each root its component
     std::vector<char> open_;
 };
 

@@ -88,12 +88,7 @@ void Natural<D>::sum_row(int row, const real* values) const {
 template <int D>
 void Natural<D>::gather_sums() const {
     if (!over_ranks() || closed_ == 0) return;
-    const Cut& cut = *detail::own_share.cut;
-    thread_local std::vector<std::size_t> begins;
-    begins.clear();
-    for (const int plane : cut.at)
-        begins.push_back(static_cast<std::size_t>(run_start_[static_cast<std::size_t>(plane) * static_cast<std::size_t>(rows_in_plane())]));
-    slabs().gather_parts(sum_.data(), sizeof(real), begins);
+    gather_by_runs(sum_.data());
 }
 
 template <int D>

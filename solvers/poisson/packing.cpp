@@ -130,9 +130,12 @@ void pack_row(Level<D>& level, int q, int j, const RowView<D, T>& v, Buffers& bu
     level.plain[static_cast<std::size_t>(row)] = is_plain(level, v);
 }
 
+/// Over ranks, of this one's planes where it holds no others.
 template <int D, class F>
-void for_each_row(const Layout<D>& at, bool threaded, F&& f) {
+void for_each_row(const Level<D>& level, bool threaded, F&& f) {
+    const Layout<D>& at = level.at;
     const auto plane = [&](int q) {
+        if (!level.owns(q)) return;
         thread_local Buffers buffers;
         buffers.resize(at.n[0]);
         for (int j = 0; j < at.rows_in_plane(); ++j) f(q, j, buffers);
@@ -159,12 +162,14 @@ bool is_far_from_fluid(const Level<D>& level, int q, int j) {
 template <int D, class View>
 void pack_rows(Level<D>& level, bool threaded, const View& view_of) {
     level.plain.resize(static_cast<std::size_t>(level.at.rows()));
-    for_each_row(level.at, threaded, [&](int q, int j, Buffers& buffers) {
+    for_each_row(level, threaded, [&](int q, int j, Buffers& buffers) {
         if (is_far_from_fluid(level, q, j))
             level.plain[static_cast<std::size_t>(level.at.row(q, j))] = 1;
         else
             pack_row(level, q, j, view_of(q, j, buffers), buffers);
     });
+    if (!level.held.empty())  // black cells find their weights with their red neighbours
+        for (float* weight : level.weight) slabs().refresh(level.cut, level.planes_of(weight), 1, level.at.periodic[D - 1]);
 }
 
 /// Open faces of each cell of a row, packed: all faces that do not lead to a solid.
@@ -197,7 +202,9 @@ void find_spans(Level<D>& level, const Flags& flags) {
     level.work.assign(1, 0);
     for (int q = 0; q < at.planes(); ++q) {
         std::int64_t blocks = 0;
-        for (int j = 0; j < at.rows_in_plane(); ++j) {
+        if (!level.holds(q))
+            level.span_start.insert(level.span_start.end(), static_cast<std::size_t>(at.rows_in_plane()), level.span_start.back());
+        for (int j = 0; level.holds(q) && j < at.rows_in_plane(); ++j) {
             const std::uint8_t* c = flags(at.row(q, j));
             const auto first = static_cast<std::size_t>(level.span_start.back());
             for (int begin = 0; begin < at.width; begin += lanes) {
@@ -223,6 +230,7 @@ template <int D>
 void clear_gaps(const Level<D>& level, float* vector) {
     const Layout<D>& at = level.at;
     for (int row = 0; row < at.rows(); ++row) {
+        if (!level.holds(row / at.rows_in_plane())) continue;
         float* x = vector + at.offset(row);
         int from = 0;
         for (int k = level.span_start[static_cast<std::size_t>(row)]; k < level.span_start[static_cast<std::size_t>(row) + 1]; ++k) {
@@ -240,7 +248,7 @@ void pack_finest(Level<D>& level, const Natural<D>& problem) {
     if (level.by_count) {
         level.inverse.fill(0);
         for (std::size_t k = 1; k <= 2 * D; ++k) level.inverse[k] = 1 / (static_cast<float>(k) * level.plain_weight[0]);
-        for_each_row(level.at, true, [&](int q, int j, Buffers& buffers) { count_row(level, problem, q, j, buffers); });
+        for_each_row(level, true, [&](int q, int j, Buffers& buffers) { count_row(level, problem, q, j, buffers); });
         return;
     }
     pack_rows(level, true, [&](int q, int j, Buffers&) { return view(problem, q, j); });

@@ -92,6 +92,10 @@ bool has_petsc();
 template <int D>
 std::unique_ptr<Solver<D>> make_solver(std::string_view method, const Options& options);
 
+/// Over ranks that are cut so, does "multigrid" share the planes of such a grid, whatever the cells?
+template <int D>
+bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut);
+
 /// r = b − A p in double precision on fluid cells, zero elsewhere; b is taken as it stands.
 template <int D>
 void residual(const Operator<D>& A, const Grid<real, D>& p, const Grid<real, D>& b, Grid<real, D>& r);

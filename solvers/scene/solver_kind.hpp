@@ -29,6 +29,8 @@ struct SolverKind {
     Shared shared = Shared::by_planes;
     /// What of a step every rank does alone, in a few words; nothing: all of it is shared.
     std::string by_all{};
+    /// Whether each of the ranks that there are would hold its own part of a scene alone. None: all hold everything.
+    std::function<bool(const Scene&)> holds_own_part{};
 };
 
 /// What each may be told.

@@ -3,6 +3,7 @@
 #include "scene/steer.hpp"
 
 #include "core/error.hpp"
+#include "core/slabs.hpp"
 #include "geometry/shape.hpp"
 #include "reconstruction/contour.hpp"
 #include "reconstruction/reconstruction.hpp"
@@ -163,8 +164,20 @@ double particles_in(const FieldSet& fields) {
     return 0;
 }
 
+class WholeGrids {
+public:
+    WholeGrids() : before_(slabs().holds_whole()) { slabs().hold_whole(true); }
+    ~WholeGrids() { slabs().hold_whole(before_); }
+    WholeGrids(const WholeGrids&) = delete;
+    WholeGrids& operator=(const WholeGrids&) = delete;
+
+private:
+    bool before_;
+};
+
 /// Builds a scene and takes one step of it, as long as its first.
 Held hold(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+    const WholeGrids whole;  // over ranks too: what one process would hold
     Held held{.cells = scene.root().numbers("grid.cells"), .solver = kind_named(scene.solver(), kinds).make(scene)};
     Solver& solver = *held.solver;
     held.fields = static_cast<const Solver&>(solver).fields();

@@ -37,7 +37,7 @@ struct GoodState {
         "step " + std::to_string(failure.step) + ", t = " + brief(failure.time) + " s: " + failure.quantity + ": " + failure.what();
     try {
         std::filesystem::create_directories(folder);
-        by_first_rank([&] { good.state.write(last_good_file(folder)); });
+        good.state.write(last_good_file(folder));
         message += "\nThe last good state (step " + std::to_string(good.step) + ", t = " + brief(good.time) + " s) is saved in " +
                    last_good_file(folder).string();
     } catch (const std::exception& error) {
@@ -52,7 +52,7 @@ struct GoodState {
 void save(const Simulation& simulation, const std::filesystem::path& folder) {
     Checkpoint checkpoint;
     simulation.save(checkpoint);
-    by_first_rank([&] { checkpoint.write(checkpoint_file(folder)); });
+    checkpoint.write(checkpoint_file(folder));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "sim/probe_kinds.hpp"
 
+#include "core/slabs.hpp"
 #include "geometry/solids.hpp"
 #include "rigid/bodies.hpp"
 #include "sim/sampling.hpp"
@@ -19,6 +20,39 @@ std::string component_name(const std::string& field, int components, int compone
     return components == 1 ? field : field + '_' + "xyz"[component];
 }
 
+/// Where each rank holds its own planes alone: of every number the one that its owner knows.
+std::vector<real> of_owners(const std::vector<real>& own, const std::vector<int>& owners) {
+    const std::vector<real> all = of_all_ranks(own);
+    std::vector<real> list;
+    for (std::size_t i = 0; i < owners.size(); ++i) list.push_back(all[static_cast<std::size_t>(owners[i]) * own.size() + i]);
+    return list;
+}
+
+int owner_of(const Cut& cut, int plane) {
+    int rank = 0;
+    while (rank + 1 < cut.ranks() && plane >= cut.begin(rank + 1)) ++rank;
+    return rank;
+}
+
+/// The values of a cell field, added one after another; where each rank holds its own planes alone, they add theirs in turn.
+real sum_of(std::span<const real> values, const FieldSet& fields) {
+    const auto add = [&](real sum, std::size_t begin, std::size_t end) {
+        for (const real value : values.subspan(begin, end - begin)) sum += value;
+        return sum;
+    };
+    if (fields.cut == nullptr) return add(0, 0, values.size());
+    const int planes = fields.grid.cells[static_cast<std::size_t>(fields.grid.dim - 1)];
+    const std::size_t plane = values.size() / static_cast<std::size_t>(planes);
+    real sum = 0;
+    for (int r = 0; r < slabs().ranks(); ++r) {
+        if (slabs().rank() == r)
+            sum = add(sum, static_cast<std::size_t>(fields.cut->begin(r)) * plane,
+                      static_cast<std::size_t>(fields.cut->end(r, planes)) * plane);
+        sum = of_ranks(sum)[static_cast<std::size_t>(r)];
+    }
+    return sum;
+}
+
 /// A grid field at fixed points.
 class Points final : public ProbeKind {
 public:
@@ -34,13 +68,19 @@ public:
     std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
         const FieldView& field = *fields.find("", field_.name);
         std::vector<real> row, answer(static_cast<std::size_t>(components_));
+        std::vector<int> owners;
         for (const auto& x : points_) {
             const bool known = solver.answer(field_.name, x, answer);
-            for (int c = 0; c < components_; ++c)
-                row.push_back(known ? answer[static_cast<std::size_t>(c)]
-                                    : sample_to_wall(field.data[static_cast<std::size_t>(c)], Lattice::of(field, fields.grid, c), x));
+            for (int c = 0; c < components_; ++c) {
+                const Lattice lattice = Lattice::of(field, fields.grid, c);
+                if (fields.cut) owners.push_back(owner_of(*fields.cut, plane_below(lattice, fields.grid.dim - 1, x)));
+                const bool here = !fields.cut || owners.back() == slabs().rank();
+                row.push_back(known  ? answer[static_cast<std::size_t>(c)]
+                              : here ? sample_to_wall(field.data[static_cast<std::size_t>(c)], lattice, x)
+                                     : 0);
+            }
         }
-        return row;
+        return fields.cut ? of_owners(row, owners) : row;
     }
 
 private:
@@ -87,11 +127,7 @@ public:
         for (const auto& integral : solver.integrals())
             if (integral.name == name_) return {integral.value};
         std::vector<real> sums;
-        for (const auto& values : fields.find("", name_)->data) {
-            real sum = 0;
-            for (const real value : values) sum += value;
-            sums.push_back(sum * cell_volume(fields.grid));
-        }
+        for (const auto& values : fields.find("", name_)->data) sums.push_back(sum_of(values, fields) * cell_volume(fields.grid));
         return sums;
     }
 

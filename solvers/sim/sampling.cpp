@@ -52,6 +52,14 @@ real multilinear(std::span<const real> values, const Lattice& lattice, const Vec
 
 real sample(std::span<const real> values, const Lattice& lattice, const Vec<3>& x) { return multilinear(values, lattice, x, 0); }
 
+int plane_below(const Lattice& lattice, int axis, const Vec<3>& x) {
+    const auto a = static_cast<std::size_t>(axis);
+    const int last = lattice.n[a] - 1;
+    const real out = last > 0 ? 0.5 : 0;
+    const real place = std::clamp((x[a] - lattice.first[a]) / lattice.spacing[a], -out, last + out);
+    return std::clamp(static_cast<int>(std::floor(place)), 0, std::max(0, last - 1));
+}
+
 real sample_to_wall(std::span<const real> values, const Lattice& lattice, const Vec<3>& x) { return multilinear(values, lattice, x, 0.5); }
 
 real sample(const FieldView& field, const GridView& grid, int component, const Vec<3>& x) {

@@ -32,6 +32,8 @@ struct Lattice {
 real sample(std::span<const real> values, const Lattice& lattice, const Vec<3>& x);
 /// The same, but linear beyond the outermost samples too: from them to the walls, half a cell away.
 real sample_to_wall(std::span<const real> values, const Lattice& lattice, const Vec<3>& x);
+/// The first of the two planes across an axis from which that is found.
+int plane_below(const Lattice& lattice, int axis, const Vec<3>& x);
 /// One component of a cell or face field at x.
 real sample(const FieldView& field, const GridView& grid, int component, const Vec<3>& x);
 /// Upper corner of the domain [m].

@@ -83,12 +83,13 @@ void CharacteristicAdvection<D>::advect(const std::vector<Carried<D>>& quantitie
     const Motion motion{quantities, nodes, trace, dt, on_arrival};
     if (options_.scheme == Scheme::semi_lagrangian) return semi_lagrangian(motion);
     if (trace.is_near(dt) && options_.interpolation == Interpolation::linear) return follow_planes(motion);
-    prepare(motion, quantities[0].source->extent()[D - 1]);
-    predict(motion, 0);
+    const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(quantities[0].source->extent()[D - 1]);
+    prepare(motion, hi - lo);
+    predict(motion, lo);
     for (const auto& [values, boundary] : predicted_)
         for_each_plane(0, values->extent()[D - 1], [&](int plane) { fill_plane_ghosts(*values, *boundary, plane); });
     fill_end_planes(predicted_);
-    correct(motion, 0);
+    correct(motion, lo);
 }
 
 template <int D>

@@ -45,7 +45,7 @@ class StageBlend {
 public:
     /// value = before + γ (value − before) + ζ (the same difference of the stage before).
     void blend(const Substep& stage, const Padded<D>& before, Grid<real, D>& value);
-    std::size_t bytes() const { return increment_.size() * sizeof(real); }
+    std::size_t bytes() const { return increment_.bytes(); }
 
 private:
     Grid<real, D> increment_;

@@ -19,6 +19,7 @@ Index<D> side_extent(Index<D> extent, int axis) {
 /// Tangential values that an inflow with a profile imposes, one a node of the side.
 template <int D>
 std::vector<real> inflow_values(const geometry::Sides<D>& sides, const MacVelocity<D>& u, int component, int axis, int end, real nu) {
+    const AllPlanes whole;  // sides are small
     const Index<D> nodes = side_extent(u[component].extent(), axis);
     Grid<real, D> values(nodes);
     for_each_cell(nodes, [&](const Index<D>& I) {
@@ -42,12 +43,15 @@ EndRule velocity_rule(const geometry::Sides<D>& sides, const MacVelocity<D>& u, 
 
 /// Fills the layers beyond one end of one axis, for `count` lines of nodes along it that are neighbours in memory: `q` is the first inner
 /// node of the first line, n the number along each, v what Dirichlet's rule imposes.
-inline void fill_end(real* q, std::ptrdiff_t stride, int n, int end, EndRule::Kind kind, real v, int count) {
+template <class Holds>
+void fill_end(real* q, std::ptrdiff_t stride, int n, int end, EndRule::Kind kind, real v, int count, Holds&& holds) {
     const std::ptrdiff_t s = end == 0 ? stride : -stride;
     real* edge = end == 0 ? q : q + (n - 1) * stride;  // the inner node next to the side, or on it
     for (int k = 1; k <= ghost_layers; ++k) {
+        const int in = std::min(kind == Kind::odd_about_node ? k : k - 1, n - 1);
+        if (!holds(end == 0 ? -k : n - 1 + k) || !holds(end == 0 ? in : n - 1 - in)) continue;
         real* outer = edge - k * s;
-        const real* inner = edge + std::min(kind == Kind::odd_about_node ? k : k - 1, n - 1) * s;
+        const real* inner = edge + in * s;
         switch (kind) {
             case Kind::dirichlet:
 #pragma omp simd
@@ -70,24 +74,29 @@ inline void fill_end(real* q, std::ptrdiff_t stride, int n, int end, EndRule::Ki
 }
 
 /// Periodic axis of n cells: node m is node m + n, also where the grid stores n + 1 nodes.
-inline void wrap(real* q, std::ptrdiff_t stride, int nodes, int n, int count) {
-    for (int k = 1; k <= ghost_layers; ++k) std::copy_n(q + ((n - k) % n + n) % n * stride, count, q - k * stride);
-    for (int m = n; m < nodes + ghost_layers; ++m) std::copy_n(q + m % n * stride, count, q + m * stride);
+template <class Holds>
+void wrap(real* q, std::ptrdiff_t stride, int nodes, int n, int count, Holds&& holds) {
+    const auto copy = [&](int from, int to) {
+        if (holds(from) && holds(to)) std::copy_n(q + from * stride, count, q + to * stride);
+    };
+    for (int k = 1; k <= ghost_layers; ++k) copy(((n - k) % n + n) % n, -k);
+    for (int m = n; m < nodes + ghost_layers; ++m) copy(m % n, m);
 }
 
-/// The layers beyond both ends of `axis` for the lines from I, I + e₀ .. on.
+/// The layers beyond both ends of `axis` for the lines from I, I + e₀ .. on. Over ranks, across the cuts, of planes that this one holds.
 template <int D>
 void fill_lines(Padded<D>& q, int axis, const Boundary<D>& boundary, const Index<D>& I, int count) {
     const auto& ends = boundary.end[static_cast<std::size_t>(axis)];
     const int n = q.extent()[axis];
     real* first = q.at(I);
     const std::ptrdiff_t stride = q.stride(axis);
-    if (ends[0].kind == Kind::periodic) return wrap(first, stride, n, n - (axis == boundary.node_axis ? 1 : 0), count);
+    const auto holds = [&](int plane) { return axis != D - 1 || q.holds(plane); };
+    if (ends[0].kind == Kind::periodic) return wrap(first, stride, n, n - (axis == boundary.node_axis ? 1 : 0), count, holds);
     const Index<D> nodes = side_extent(q.extent(), axis);
     for (int end = 0; end < 2; ++end) {
         const EndRule& rule = ends[static_cast<std::size_t>(end)];
         if (rule.profile.empty()) {
-            fill_end(first, stride, n, end, rule.kind, rule.value, count);
+            fill_end(first, stride, n, end, rule.kind, rule.value, count, holds);
             continue;
         }
         for (int i = 0; i < count; ++i) {
@@ -95,7 +104,7 @@ void fill_lines(Padded<D>& q, int axis, const Boundary<D>& boundary, const Index
             for (int d = D - 1; d >= 0; --d)
                 side_node = side_node * static_cast<std::size_t>(nodes[d]) +
                             static_cast<std::size_t>(std::clamp(I[d] + (d == 0 ? i : 0), 0, nodes[d] - 1));
-            fill_end(first + i, stride, n, end, rule.kind, rule.value_at(side_node), 1);
+            fill_end(first + i, stride, n, end, rule.kind, rule.value_at(side_node), 1, holds);
         }
     }
 }
@@ -153,9 +162,10 @@ void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane) {
 
 namespace {
 
+int depth(int deep) { return deep > 0 ? deep : detail::own_share.reach; }
+
 void refresh_all(std::span<const Planes> planes, bool ring, int deep) {
-    const auto& share = detail::own_share;
-    slabs().refresh(*share.cut, planes, deep > 0 ? deep : share.reach, ring);
+    slabs().refresh(*detail::own_share.cut, planes, depth(deep), ring);
 }
 template <int D>
 bool repeats(const Boundary<D>& boundary) {
@@ -179,6 +189,7 @@ void fill_ends(Padded<D>& q, const Boundary<D>& boundary) {
 template <int D>
 void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep) {
     if (!over_ranks()) return;
+    q.open(depth(deep), repeats(boundary));
     const Planes planes = q.planes();
     refresh_all(std::span(&planes, 1), repeats(boundary), deep);
 }
@@ -188,7 +199,10 @@ void refresh(const std::vector<WithBoundary<D>>& list, int deep) {
     if (!over_ranks() || list.empty()) return;
     thread_local std::vector<Planes> planes;
     planes.clear();
-    for (const auto& one : list) planes.push_back(one.values->planes());
+    for (const auto& one : list) {
+        one.values->open(depth(deep), repeats(*one.boundary));
+        planes.push_back(one.values->planes());
+    }
     refresh_all(planes, repeats(*list[0].boundary), deep);
 }
 

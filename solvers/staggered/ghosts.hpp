@@ -20,7 +20,7 @@ template <int D>
 class Padded {
 public:
     Padded() { extent_.fill(0); }
-    explicit Padded(const Index<D>& extent) : extent_(extent), values_(extent + Index<D>::constant(2 * ghost_layers)) {}
+    explicit Padded(const Index<D>& extent) : extent_(extent), values_(extent + Index<D>::constant(2 * ghost_layers), 0, ghost_layers) {}
 
     const Index<D>& extent() const { return extent_; }
     bool empty() const { return values_.empty(); }
@@ -33,9 +33,13 @@ public:
     /// The planes of the slowest axis, each with the ghosts within it.
     Planes planes() {
         const std::ptrdiff_t plane = stride(D - 1);
-        return {values_.data() + ghost_layers * plane, sizeof(real) * static_cast<std::size_t>(plane), extent_[D - 1], ghost_layers};
+        return {values_.data() + ghost_layers * plane, sizeof(real) * static_cast<std::size_t>(plane), extent_[D - 1], ghost_layers,
+                values_.store().held()};
     }
-    std::size_t bytes() const { return values_.size() * sizeof(real); }
+    /// Over ranks, makes sure of so many planes beyond the cuts.
+    void open(int deep, bool ring) { values_.store().open(deep, ring); }
+    bool holds(int plane) const { return values_.store().holds(plane); }
+    std::size_t bytes() const { return values_.bytes(); }
 
 private:
     Index<D> extent_;

@@ -176,14 +176,16 @@ void set_initial_velocity(MacState<D>& s, const scene::Scene& scene) {
     sync_periodic(s.u, s.sides);
 }
 
-/// One cell after the other, since threads that ask a formula wait for one another. Refuses one that has no value somewhere.
+/// One cell after the other, since threads that ask a formula wait for one another. Refuses one that has no value somewhere, on all ranks.
 template <int D>
 static void set_by_formula(Grid<real, D>& q, const MacVelocity<D>& grid, const scene::Scene& scene, const std::string& path) {
     const auto value = scene::formula_of_place<D>(scene, path);
     for (std::size_t c = 0; c < product(q.extent()); ++c) {
-        const Vec<D> x = grid.cell_centre(index_of<D>(q.extent(), c));
-        q[c] = value(x);
-        if (std::isfinite(q[c])) continue;
+        const Index<D> I = index_of<D>(q.extent(), c);
+        const Vec<D> x = grid.cell_centre(I);
+        const real here = value(x);
+        if (q.store().holds(I[D - 1])) q[c] = here;
+        if (std::isfinite(here)) continue;
         std::string place;
         for (int a = 0; a < D; ++a) place += (a == 0 ? "" : ", ") + std::string(1, "xyz"[a]) + " = " + scene::number_text(x[a]);
         scene.refuse(path, path + " has no value at " + place);

@@ -158,7 +158,7 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
         const auto of_side = [&](int end) {  // 2: p = 0 half a cell away
             return s.sides.periodic(a) ? 1.0 : s.sides.open(a, end) ? 2.0 : 0.0;
         };
-        for_each_row(Index<D>{}, weight.extent(), [&](const Index<D>& first, int count) {
+        const auto set_row = [&](const Index<D>& first, int count) {
             real* to = &weight(first);
             const real side = a == 0 ? 1 : first[a] == 0 ? of_side(0) : first[a] == n ? of_side(1) : 1;
             for (int i = 0; i < count; ++i) to[i] = side;
@@ -166,7 +166,10 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
             if (a == 0 && first[0] + count > n) to[count - 1] = of_side(1);
             for (int i = 0; open && i < count; ++i) to[i] *= (&(*open)(first))[i];
             for (int i = 0; moves && i < count; ++i) to[i] *= (&(*moves)(first))[i];
-        });
+        };
+        Index<D> rows = weight.extent();
+        rows[0] = 1;
+        for_each_held(weight, Index<D>{}, rows, [&](const Index<D>& I) { for_each_block(I, weight.extent()[0], set_row); });
     }
     if (!s.mobility[0].empty()) leave_out_ice();
     solver_->setup(matrix_);
@@ -243,8 +246,8 @@ const poisson::Report& Projection<D>::project(MacState<D>& s, real dt, BodiesInF
 
 template <int D>
 std::size_t Projection<D>::bytes() const {
-    std::size_t total = solver_->bytes() + rhs_.size() * sizeof(real) + matrix_.cells.size();
-    for (const auto& weight : matrix_.weight) total += weight.size() * sizeof(real);
+    std::size_t total = solver_->bytes() + rhs_.bytes() + matrix_.cells.bytes();
+    for (const auto& weight : matrix_.weight) total += weight.bytes();
     return total;
 }
 

@@ -28,6 +28,14 @@ real fraction(const Grid<real, D>& corner, int a, const Index<D>& I) {
     return open < least_open_fraction ? 0 : open;
 }
 
+/// Does this rank hold a plane and those beside it?
+template <int D>
+bool is_amid(const Grid<real, D>& q, int plane) {
+    bool all = true;
+    for (int k = std::max(plane - 1, 0); k <= std::min(plane + 1, q.extent()[D - 1] - 1); ++k) all = all && q.store().holds(k);
+    return all;
+}
+
 /// Component b at a face along a: itself, or the mean of the four faces around it.
 template <int D>
 real component_at(const PaddedVelocity<D>& u, int b, int a, const Index<D>& I) {
@@ -43,8 +51,28 @@ SolidPlacement<D>::SolidPlacement(geometry::Solids<D> solids, MacState<D>& state
     if (!any()) return;
     state.allocate_solids();
     corner_ = Grid<real, D>(state.extent() + Index<D>::constant(1));
+    open(state, detail::own_share.kept);
     place(state, 0);
     placed_ = false;  // whoever keeps something of the solids in each cell has seen nothing of this yet
+}
+
+/// A cell is what its faces are, and a face what its corners are: those are known one plane farther each.
+template <int D>
+void SolidPlacement<D>::open(MacState<D>& s, int planes) {
+    known_ = planes;
+    const bool ring = s.sides.periodic(D - 1);
+    s.cells.store().open(planes, ring);
+    for (std::size_t a = 0; a < D; ++a) s.solid.open[a].store().open(planes + 1, ring), s.solid.velocity[a].store().open(planes + 1, ring);
+    corner_.store().open(planes + 2, ring);
+}
+
+template <int D>
+void SolidPlacement<D>::know(MacState<D>& s, int planes) {
+    if (!any() || moving() || !corner_.store().windowed() || planes <= known_) return;
+    open(s, planes);
+    placed_ = false;
+    place(s, s.time);
+    placed_ = false;
 }
 
 template <int D>
@@ -64,7 +92,7 @@ template <int D>
 void SolidPlacement<D>::place_corners(const MacState<D>& s, std::size_t box) {
     const real far = 2 * norm(s.u.h);
     solids_.find_near(changed_[box].ball(s.u.origin, s.u.h), far, near_[box]);
-    for_each_in(changed_[box].lo, changed_[box].hi + Index<D>::constant(1), [&](const Index<D>& I) {
+    for_each_held(corner_, changed_[box].lo, changed_[box].hi + Index<D>::constant(1), [&](const Index<D>& I) {
         Vec<D> x;
         for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
         corner_(I) = solids_.distance(x, near_[box], far);
@@ -76,12 +104,12 @@ void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
     const Index<D>&lo = changed_[box].lo, hi = changed_[box].hi;
     for (int a = 0; a < D; ++a) {
         auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
-        for_each_in(lo, hi + e<D>(a), [&](const Index<D>& I) {
+        for_each_held(open, lo, hi + e<D>(a), [&](const Index<D>& I) {
             open(I) = fraction(corner_, a, I);
             velocity(I) = open(I) < 1 ? solids_.velocity(s.u.face_centre(a, I), near_[box])[a] : 0;
         });
     }
-    for_each_in(lo, hi, [&](const Index<D>& I) {
+    for_each_held(s.cells, lo, hi, [&](const Index<D>& I) {
         real open = 0;
         for (int a = 0; a < D; ++a) {
             const auto& w = s.solid.open[static_cast<std::size_t>(a)];
@@ -150,7 +178,12 @@ void SolidPlacement<D>::find_extended(const MacState<D>& s) {
                 if (is_open(I - e<D>(b)) || is_open(I + e<D>(b))) return true;
             return false;
         };
+        const std::size_t plane = open.size() / static_cast<std::size_t>(open.extent()[D - 1]);
         for (std::size_t at = 0; at < open.size(); ++at) {
+            if (at % plane == 0 && !is_amid(open, static_cast<int>(at / plane))) {
+                at += plane - 1;
+                continue;
+            }
             if (open[at] > 0) continue;
             const Index<D> I = index_of<D>(open.extent(), at);
             if (I[a] == 0 || I[a] == s.u.cells[a] || !beside_open(I)) continue;
@@ -174,8 +207,11 @@ void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
     if (any() && !extends_) find_extended(s);
     if (extended_.empty()) return;
     const int count = static_cast<int>(extended_.size());
+    // over ranks: where the planes beside have been brought
+    const auto skips = [&](const Extended& f) { return !s.before[0].holds(f.face[D - 1] - 1) || !s.before[0].holds(f.face[D - 1] + 1); };
     parallel_for(0, count, [&](int i) {
         const Extended& f = extended_[static_cast<std::size_t>(i)];
+        if (skips(f)) return;
         const auto& open = s.solid.open[static_cast<std::size_t>(f.axis)];
         real sum = 0;
         int known = 0;
@@ -189,13 +225,14 @@ void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
     });
     parallel_for(0, count, [&](int i) {
         Extended& f = extended_[static_cast<std::size_t>(i)];
+        if (skips(f)) return;
         real through = 0;
         for (int b = 0; b < D; ++b) through += (component_at(s.before, b, f.axis, f.face) - f.velocity[b]) * f.normal[b];
         f.value = s.before[f.axis](f.face) - through * f.normal[f.axis];
     });
     parallel_for(0, count, [&](int i) {
         const Extended& f = extended_[static_cast<std::size_t>(i)];
-        s.before[f.axis](f.face) = f.value;
+        if (!skips(f)) s.before[f.axis](f.face) = f.value;
     });
 }
 

@@ -72,6 +72,8 @@ public:
     /// Open fractions, face velocities and cell flags at time t; those that the solids have not been near since they were placed last stay
     /// as they are.
     void place(MacState<D>& s, real t);
+    /// Over ranks, of solids that stand: from here on so many planes beyond the cuts are known too.
+    void know(MacState<D>& s, int planes);
     /// Where that was: boxes of cells that reach further from the solids than a cell's diagonal.
     const std::vector<CellBox<D>>& changed() const { return changed_; }
     /// The solids that are nearer to a box of these than two diagonals of a cell; all that are nearer to it than that.
@@ -88,7 +90,7 @@ public:
     void extend_field(const MacState<D>& s, Padded<D>& before) const;
     /// Largest |velocity| / h of a solid's face now [1/s].
     real max_rate(const MacState<D>& s) const;
-    std::size_t bytes() const { return corner_.size() * sizeof(real) + extended_.capacity() * sizeof(Extended); }
+    std::size_t bytes() const { return corner_.bytes() + extended_.capacity() * sizeof(Extended); }
 
 private:
     struct Extended {
@@ -97,6 +99,7 @@ private:
         Vec<D> normal, velocity;  // of the solid there
         real value;
     };
+    void open(MacState<D>& s, int planes);
     void find_changed(const MacState<D>& s);
     void place_corners(const MacState<D>& s, std::size_t box);
     void place_faces(MacState<D>& s, std::size_t box) const;
@@ -108,6 +111,7 @@ private:
     std::vector<CellBox<D>> changed_, held_;      // held_: around each solid that is free, when placed last
     std::vector<std::vector<std::size_t>> near_;  // of each box of changed_
     std::vector<Extended> extended_;
+    int known_ = 0;                          // planes beyond the cuts
     bool placed_ = false, extends_ = false;  // extends_: extended_ is of the solids as they stand
 };
 

@@ -23,6 +23,32 @@ bool asks_for_viscosity(const scene::Scene& scene, const geometry::Sides<D>& sid
     return asks;
 }
 
+/// The entries of this rank's planes; all where it holds all.
+template <class T, int D>
+PlaneRange own_entries(const Grid<T, D>& q) {
+    if (!q.store().windowed()) return {0, q.extent()[D - 1]};
+    const Cut& cut = *detail::own_share.cut;
+    return {cut.begin(slabs().rank()), cut.end(slabs().rank(), q.extent()[D - 1])};
+}
+
+template <class T, int D>
+void put(Checkpoint& to, const std::string& name, const Grid<T, D>& q) {
+    if (!q.store().windowed()) return to.put(name, q.values());
+    const auto plane = static_cast<std::size_t>(q.stride(D - 1));
+    const PlaneRange own = own_entries(q);
+    const auto begin = static_cast<std::size_t>(own.begin), count = static_cast<std::size_t>(own.end - own.begin);
+    to.put_part(name, q.values().subspan(begin * plane, count * plane), begin * plane, q.size());
+}
+
+template <class T, int D>
+void get(const Checkpoint& from, const std::string& name, Grid<T, D>& q) {
+    if (!q.store().windowed()) return from.get(name, q.values());
+    const auto plane = static_cast<std::size_t>(q.stride(D - 1));
+    const PlaneRange own = own_entries(q);
+    const auto begin = static_cast<std::size_t>(own.begin), count = static_cast<std::size_t>(own.end - own.begin);
+    from.get_part(name, q.values().subspan(begin * plane, count * plane), begin * plane, q.size());
+}
+
 }  // namespace
 
 template <int D>
@@ -81,30 +107,30 @@ void MacState<D>::allocate_solids() {
 
 template <int D>
 void MacState<D>::save(Checkpoint& to) const {
-    for (int a = 0; a < D; ++a) to.put(component_names[a], u[a].values());
-    to.put("p", p.values());
-    to.put("cells", cells.values());
-    for (const auto& field : fields) to.put("field." + field.name, field.values.values());
+    for (int a = 0; a < D; ++a) put(to, component_names[a], u[a]);
+    put(to, "p", p);
+    put(to, "cells", cells);
+    for (const auto& field : fields) put(to, "field." + field.name, field.values);
     to.put_value("time", time);
 }
 
 template <int D>
 void MacState<D>::restore(const Checkpoint& from) {
-    for (int a = 0; a < D; ++a) from.get(component_names[a], u[a].values());
-    from.get("p", p.values());
-    from.get("cells", cells.values());
-    for (auto& field : fields) from.get("field." + field.name, field.values.values());
+    for (int a = 0; a < D; ++a) get(from, component_names[a], u[a]);
+    get(from, "p", p);
+    get(from, "cells", cells);
+    for (auto& field : fields) get(from, "field." + field.name, field.values);
     time = from.template get_value<real>("time");
 }
 
 template <int D>
 std::size_t MacState<D>::bytes() const {
-    std::size_t total = u.bytes() + p.size() * sizeof(real) + cells.size();
-    for (const auto& grid : solid.open) total += 2 * grid.size() * sizeof(real);
-    for (const auto& grid : mobility) total += grid.size() * sizeof(real);
-    for (const auto& field : fields) total += field.values.size() * sizeof(real) + field.before.bytes() + field.held.size() * sizeof(Held);
+    std::size_t total = u.bytes() + p.bytes() + cells.bytes();
+    for (const auto& grid : solid.open) total += 2 * grid.bytes();
+    for (const auto& grid : mobility) total += grid.bytes();
+    for (const auto& field : fields) total += field.values.bytes() + field.before.bytes() + field.held.size() * sizeof(Held);
     for (const auto& component : before.face) total += component.bytes();
-    for (const auto& field : scratch) total += field.values.size() * sizeof(real);
+    for (const auto& field : scratch) total += field.values.bytes();
     return total;
 }
 

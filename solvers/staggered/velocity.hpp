@@ -41,9 +41,9 @@ struct MacVelocity {
         return v;
     }
     std::size_t bytes() const {
-        std::size_t count = 0;
-        for (const auto& component : face) count += component.size();
-        return count * sizeof(real);
+        std::size_t sum = 0;
+        for (const auto& component : face) sum += component.bytes();
+        return sum;
     }
 };
 

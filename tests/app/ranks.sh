@@ -103,6 +103,10 @@ particles_schemes)
 schemes)
     periodic='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},y_min={kind="periodic"},y_max={kind="periodic"}} --set emitters=[]'
     compare ring "2 1,3 2" "$flat" $periodic --set scheme.interpolation=monotone_cubic --set time.cfl=6 --set time.max_dt=0.04
+    # paths of several cells around the ends of the cut axis, beside a ball
+    compare ring_3d "3 1" "$deep" --set 'sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}' \
+        --set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64] --set 'initial.velocity={name="random",speed=3.0}' --set time.cfl=8
+    grep -q '"storage":"every rank holds its own planes' ring_3d-3-1/run.json || fail "a rank held more than its own planes"
     compare fluxes "3 1" "$flat" --set scheme.advection=conservative
     compare paths "3 1" "$flat" --set scheme.advection=semi_lagrangian --set effects.viscosity.scheme=implicit
     compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
@@ -206,6 +210,46 @@ traffic) # what is sent is what must be, in the steps by which one run is longer
         expect "$(sent messages $rank)" $messages "messages of rank $rank, mac"
         expect "$(sent bytes $rank)" $bytes "bytes of rank $rank, mac"
     done
+    ;;
+storage) # each rank holds its own planes and those near its cuts, by its own count and as the system sees it
+    cat >plume.toml <<-END
+	solver = "mac"
+	dim = 3
+	grid = { cells = [48, 48, 256], size = [0.48, 0.48, 2.56] }
+	time = { end = 0.003, max_dt = 0.001 }
+	effects = { buoyancy = { alpha = 0.1, beta = 0.2, ambient = 293.0 }, confinement = { epsilon = 0.2 } }
+	emitters = [ { shape = "sphere", centre = [0.25, 0.15, 1.24], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]
+	output = { every = 1.0, fields = ["smoke"] }
+	END
+    told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
+    at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
+    ends 0 "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out one
+    one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
+    cells=$((48 * 48)) # of a plane
+    for ranks in 2 4; do
+        ends 0 over $ranks "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
+        alike one parts-$ranks
+        grep -q '"storage":"every rank holds its own planes and those near its cuts"' parts-$ranks/run.json || fail "run.json tells of other storage"
+        ends 0 over $ranks "$weir" run plume.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,32]
+        for rank in $(seq 0 $((ranks - 1))); do
+            # Nothing crosses a cell in a step: 4 planes beyond either cut, and one. Whole are the pressure's levels of fewer than 20,000 cells,
+            # of 8/7 as many in all: 4 vectors, 1/diagonal, 6 weights of half the cells, faces, what leads to p = 0, flags: less than 64
+            # bytes a cell in rows twice as long as they are full.
+            held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
+            at_most "$held" $((one * (planes + 9) / 256 + 20000 * 8 / 7 * 128)) "rank $rank of $ranks"
+            # As the system sees it, beyond what a run of a few cells takes: that, the last good state (3 + 1 + 2 numbers and a flag a cell), a
+            # page at both ends of less than 128 arrays; the first rank may keep the room of a frame (the field, and 3 copies of a frame).
+            more=$(($(told parts-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
+            frame=$([ "$rank" -eq 0 ] && echo $((4 * 8 * cells * 256)) || echo 0)
+            at_most $more $((held + 49 * cells * planes + 128 * 2 * 4096 + frame)) "resident, rank $rank of $ranks"
+        done
+    done
+    # continued by others, and where somebody looks at all of it
+    ends 0 over 4 "$weir" run --restart parts-2 --checkpoint-every 1000 --quiet --set time.end=0.004
+    ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
+    alike one parts-2
+    ends 0 over 2 "$weir" run "$flat" --quiet --threads 1 --out watched --set time.stop_when_steady=1e-9 --set time.end=0.04
+    grep -q '"storage":"every rank holds whole grids"' watched/run.json || fail "run.json does not tell that grids are whole"
     ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
     ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one

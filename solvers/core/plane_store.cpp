@@ -1,0 +1,61 @@
+#include "core/plane_store.hpp"
+
+#include <new>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+namespace weir {
+
+namespace {
+
+std::size_t page() {
+    static const auto bytes = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    return bytes;
+}
+
+}  // namespace
+
+Reserved::Reserved(std::size_t bytes) : mapped_((bytes + page() - 1) / page() * page()) {
+    if (mapped_ == 0) return;
+    void* const at = mmap(nullptr, mapped_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    data_ = static_cast<unsigned char*>(at);
+}
+
+Reserved::~Reserved() {
+    if (data_ != nullptr) munmap(data_, mapped_);
+}
+
+void Reserved::open(std::size_t begin, std::size_t end) {
+    if (begin >= end) return;
+    begin = begin / page() * page();
+    end = std::min((end + page() - 1) / page() * page(), mapped_);
+    if (mprotect(data_ + begin, end - begin, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
+}
+
+void Reserved::close(std::size_t begin, std::size_t end) {
+    begin = (begin + page() - 1) / page() * page();
+    end = end / page() * page();
+    if (begin >= end) return;
+    madvise(data_ + begin, end - begin, MADV_DONTNEED);
+    mprotect(data_ + begin, end - begin, PROT_NONE);
+}
+
+std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int deep, bool ring) {
+    const int n = cut.planes(), begin = cut.begin(rank) - std::min(deep, n), end = cut.end(rank, n) + std::min(deep, n);
+    std::vector<char> held(static_cast<std::size_t>(count + 2 * margin), 0);
+    const auto hold = [&](int plane) {
+        if (plane >= -margin && plane < count + margin) held[static_cast<std::size_t>(plane + margin)] = 1;
+    };
+    for (int plane = begin <= 0 ? -margin : begin; plane <= (end >= n ? count + margin : end); ++plane) hold(plane);
+    for (int plane = begin; ring && plane <= end; ++plane)
+        if (plane < 0 || plane >= n) hold((plane % n + n) % n);
+    for (int k = 0; ring && k <= count - n + margin; ++k) {  // where a path goes around an end it meets what lies beyond the other
+        if (begin < 0) hold(n + k);
+        if (end >= n) hold(-1 - k);
+    }
+    return held;
+}
+
+}  // namespace weir

@@ -1,0 +1,192 @@
+// Memory of an array of planes. One rank: a vector. Over ranks that hold their own planes alone (OwnPlanes): address space for the whole
+// array, and memory behind this rank's planes and those beyond its cuts that it reads, so that every index means the same on all ranks, and
+// whoever looks farther faults (as sparse grids do: Setaluri, Aanjaneya, Bauer & Sifakis 2014).
+#pragma once
+#include "core/slabs.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace weir {
+
+/// Address space that may not be touched until some of it is opened. Memory comes page by page, zero, where it is first written.
+class Reserved {
+public:
+    explicit Reserved(std::size_t bytes);
+    ~Reserved();
+    Reserved(const Reserved&) = delete;
+    Reserved& operator=(const Reserved&) = delete;
+    unsigned char* data() const { return data_; }
+    void open(std::size_t begin, std::size_t end);
+    /// The whole pages within are given back.
+    void close(std::size_t begin, std::size_t end);
+
+private:
+    unsigned char* data_ = nullptr;
+    std::size_t mapped_ = 0;
+};
+
+/// Which planes of an array a rank holds: its own, `deep` beyond its cuts, around a periodic axis too, and what lies beyond the ends of the
+/// axis where it comes so near. `margin`: planes before the first and after the last. Entry 0 is of plane -margin.
+std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int deep, bool ring);
+
+namespace detail {
+/// Whether an array of so many planes that is made now is of this rank's alone.
+inline bool makes_window(int count) {
+    const OwnShare& share = own_share;
+    return share.kept > 0 && share.cut != nullptr && (count == share.cut->planes() || count == share.cut->planes() + 1);
+}
+}  // namespace detail
+
+template <class T>
+class PlaneStore {
+public:
+    PlaneStore() = default;
+    /// `head` entries that everybody holds, `margin` planes, `count` of them, `margin` more.
+    PlaneStore(std::size_t head, std::size_t plane, int count, int margin, const T& value) { make(head, plane, count, margin, value); }
+    PlaneStore(const PlaneStore& other) { copy(other); }
+    PlaneStore(PlaneStore&& other) noexcept { swap(other); }
+    PlaneStore& operator=(const PlaneStore& other) {
+        if (this != &other) copy(other);
+        return *this;
+    }
+    PlaneStore& operator=(PlaneStore&& other) noexcept {
+        PlaneStore moved(std::move(other));
+        swap(moved);
+        return *this;
+    }
+    ~PlaneStore() = default;
+
+    T* data() { return data_; }
+    const T* data() const { return data_; }
+    std::size_t size() const { return size_; }
+    /// What has memory behind it.
+    std::size_t bytes() const {
+        if (!window_) return size_ * sizeof(T);
+        const auto planes = static_cast<std::size_t>(std::count(window_->held.begin(), window_->held.end(), char{1}));
+        return (window_->head + planes * window_->plane) * sizeof(T);
+    }
+    bool windowed() const { return window_ != nullptr; }
+    bool holds(int plane) const { return !window_ || window_->held[static_cast<std::size_t>(plane + window_->margin)] != 0; }
+    /// For Planes: of plane 0; none where all are held.
+    const char* held() const { return window_ ? window_->held.data() + window_->margin : nullptr; }
+
+    /// What this rank does not hold yet of the planes so deep beyond its cuts.
+    void open(int deep, bool ring) {
+        if (!window_ || (deep <= window_->deep && (window_->ring || !ring))) return;
+        window_->deep = std::max(deep, window_->deep), window_->ring = window_->ring || ring;
+        open(planes_held(*detail::own_share.cut, slabs().rank(), window_->count, window_->margin, window_->deep, window_->ring));
+    }
+    void open_all() {
+        if (window_) open(std::vector<char>(window_->held.size(), 1));
+    }
+    /// Back to what it was before open_all(), with what stands there.
+    void close() {
+        if (!window_) return;
+        Window& w = *window_;
+        const auto kept = planes_held(*detail::own_share.cut, slabs().rank(), w.count, w.margin, w.deep, w.ring);
+        for (std::size_t k = 0, end = 0; k < kept.size(); k = end) {
+            for (end = k + 1; end < kept.size() && kept[end] == kept[k];) ++end;
+            if (kept[k] == 0) w.memory.close(w.at(k), w.at(end));
+        }
+        w.held = kept;
+    }
+    void fill(const T& value) {
+        if (!window_) return std::fill(whole_.begin(), whole_.end(), value);
+        std::fill_n(data_, window_->head, value);
+        each_run([&](T* from, std::size_t count) { std::fill_n(from, count, value); });
+    }
+    void swap(PlaneStore& other) noexcept {
+        whole_.swap(other.whole_);
+        window_.swap(other.window_);
+        std::swap(data_, other.data_);
+        std::swap(size_, other.size_);
+    }
+    /// As the constructor; memory that fits is kept, with what stands in it.
+    void resize(std::size_t head, std::size_t plane, int count, int margin) {
+        const std::size_t size = head + plane * static_cast<std::size_t>(count + 2 * margin);
+        if (detail::makes_window(count)) {
+            const bool same = window_ && size == size_ && window_->head == head && window_->plane == plane && window_->margin == margin;
+            if (!same) make(head, plane, count, margin, T{});
+            return;
+        }
+        window_.reset();
+        whole_.resize(size);
+        data_ = whole_.data(), size_ = size;
+    }
+
+private:
+    struct Window {
+        Window(std::size_t bytes) : memory(bytes) {}
+        Reserved memory;
+        std::size_t head = 0, plane = 0;
+        int count = 0, margin = 0, deep = -1;
+        bool ring = false;
+        std::vector<char> held{};
+        std::size_t at(std::size_t plane_from_margin) const { return (head + plane_from_margin * plane) * sizeof(T); }
+    };
+
+    void make(std::size_t head, std::size_t plane, int count, int margin, const T& value) {
+        size_ = head + plane * static_cast<std::size_t>(count + 2 * margin);
+        if (!detail::makes_window(count)) {
+            window_.reset();
+            whole_.assign(size_, value);
+            data_ = whole_.data();
+            return;
+        }
+        whole_ = {};
+        reserve(head, plane, count, margin);
+        window_->memory.open(0, head * sizeof(T));
+        open(detail::own_share.kept, detail::own_share.ring);
+        fill(value);
+    }
+    void reserve(std::size_t head, std::size_t plane, int count, int margin) {
+        window_ = std::make_unique<Window>(size_ * sizeof(T));
+        window_->head = head, window_->plane = plane, window_->count = count, window_->margin = margin;
+        window_->held.assign(static_cast<std::size_t>(count + 2 * margin), 0);
+        data_ = reinterpret_cast<T*>(window_->memory.data());
+    }
+    void open(const std::vector<char>& wanted) {
+        Window& w = *window_;
+        for (std::size_t k = 0, end = 0; k < wanted.size(); k = end) {
+            end = k + 1;
+            if (wanted[k] == 0) continue;
+            while (end < wanted.size() && wanted[end] != 0) ++end;
+            w.memory.open(w.at(k), w.at(end));
+        }
+        for (std::size_t k = 0; k < wanted.size(); ++k) w.held[k] = static_cast<char>(w.held[k] | wanted[k]);
+    }
+    template <class F>
+    void each_run(F&& f) const {
+        const Window& w = *window_;
+        for (std::size_t k = 0; k < w.held.size(); ++k)
+            if (w.held[k] != 0) f(data_ + w.head + k * w.plane, w.plane);
+    }
+    void copy(const PlaneStore& other) {
+        if (!other.window_) {
+            window_.reset();
+            whole_ = other.whole_;
+            data_ = whole_.data(), size_ = whole_.size();
+            return;
+        }
+        const Window& from = *other.window_;
+        whole_ = {};
+        size_ = other.size_;
+        reserve(from.head, from.plane, from.count, from.margin);
+        window_->deep = from.deep, window_->ring = from.ring;
+        window_->memory.open(0, from.head * sizeof(T));
+        open(from.held);
+        std::copy_n(other.data_, from.head, data_);
+        each_run([&](T* to, std::size_t count) { std::copy_n(other.data_ + (to - data_), count, to); });
+    }
+
+    std::vector<T> whole_;
+    std::unique_ptr<Window> window_;
+    T* data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+}  // namespace weir

@@ -1,0 +1,126 @@
+// Arrays of which a rank holds its own planes alone: which planes those are, that there is no memory behind the others, and that nothing is
+// lost where more are opened and given back.
+#include "core/plane_store.hpp"
+#include "core/grid.hpp"
+#include "support/test.hpp"
+
+#include <csignal>
+#include <vector>
+
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace weir {
+
+namespace {
+
+/// The second of three ranks, which never talks to the others.
+class Alone final : public Slabs {
+public:
+    Alone() : Slabs(1, 3) {}
+};
+
+/// While it lives there are three ranks of 24 planes.
+class ThreeRanks {
+public:
+    ThreeRanks() { set_slabs(std::make_unique<Alone>()); }
+    ~ThreeRanks() { set_slabs(nullptr); }
+    ThreeRanks(const ThreeRanks&) = delete;
+    ThreeRanks& operator=(const ThreeRanks&) = delete;
+    const Cut cut = cut_of(24, 3);
+};
+
+/// Does f die of looking where there is no memory?
+template <class F>
+bool faults(F&& f) {
+    const pid_t child = fork();
+    if (child == 0) {
+        std::signal(SIGSEGV, SIG_DFL);
+        f();
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV;
+}
+
+/// Bytes of an array that stand in memory.
+template <class T, int D>
+std::size_t resident(const Grid<T, D>& q) {
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    std::vector<unsigned char> in(q.size() * sizeof(T) / page + 1);
+    const auto begin = reinterpret_cast<std::uintptr_t>(q.data()) / page * page;
+    if (mincore(reinterpret_cast<void*>(begin), q.size() * sizeof(T), in.data()) != 0) return 0;
+    std::size_t bytes = 0;
+    for (const unsigned char here : in) bytes += (here & 1) * page;
+    return bytes;
+}
+
+TEST("a rank holds its planes and so many beyond its cuts, around a ring too, and what lies beyond an end that it comes to") {
+    const Cut cut{{0, 8, 16, 24}};
+    const auto list = [&](int rank, int count, int margin, int deep, bool ring) {
+        std::vector<int> planes;
+        const auto held = planes_held(cut, rank, count, margin, deep, ring);
+        for (int k = 0; k < static_cast<int>(held.size()); ++k)
+            if (held[static_cast<std::size_t>(k)] != 0) planes.push_back(k - margin);
+        return planes;
+    };
+    EXPECT_EQ(list(1, 24, 0, 2, false), (std::vector<int>{6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18}));
+    EXPECT_EQ(list(0, 24, 1, 1, false), (std::vector<int>{-1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+    EXPECT_EQ(list(2, 25, 1, 1, false), (std::vector<int>{15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25}));
+    EXPECT_EQ(list(0, 25, 0, 2, true), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 22, 23, 24}));  // 24: face 0 again
+    EXPECT_EQ(list(2, 24, 0, 1, true), (std::vector<int>{0, 1, 15, 16, 17, 18, 19, 20, 21, 22, 23}));
+}
+
+TEST("behind the planes of others there is no memory: whoever looks at them faults; those that are opened keep what stood there") {
+    const ThreeRanks three;
+    const Index<3> extent{{64, 32, 24}};
+    const std::size_t plane = 64 * 32 * sizeof(real);
+    {
+        const OwnPlanes mine(three.cut, 1, 2);
+        Grid<real, 3> q(extent, 7);
+        EXPECT_EQ(q.size(), product(extent));
+        EXPECT_EQ(q.bytes(), 13 * plane);
+        EXPECT_EQ(resident(q), 13 * plane);  // planes are whole pages here
+        EXPECT_EQ(q(Index<3>{{0, 0, 6}}), 7);
+        EXPECT_EQ(q(Index<3>{{63, 31, 18}}), 7);
+        EXPECT_TRUE(faults([&] { q(Index<3>{{63, 31, 5}}) = 1; }));
+        EXPECT_TRUE(faults([&] { q(Index<3>{{0, 0, 19}}) = 1; }));
+        EXPECT_FALSE(faults([&] { q(Index<3>{{0, 0, 18}}) = 1; }));
+        q.store().open(4, false);
+        EXPECT_EQ(q.bytes(), 17 * plane);
+        EXPECT_EQ(q(Index<3>{{5, 5, 6}}), 7);
+        EXPECT_EQ(q(Index<3>{{5, 5, 4}}), 0);
+        const Grid<real, 3> copy = q;
+        EXPECT_EQ(copy.bytes(), q.bytes());
+        EXPECT_EQ(copy(Index<3>{{5, 5, 6}}), 7);
+        q.store().open_all();
+        q.fill(3);
+        EXPECT_EQ(resident(q), 24 * plane);
+        q.store().close();
+        EXPECT_EQ(resident(q), 17 * plane);
+        EXPECT_EQ(q(Index<3>{{5, 5, 4}}), 3);
+        EXPECT_TRUE(faults([&] { q(Index<3>{{0, 0, 0}}) = 1; }));
+        int planes = 0;
+        for_each_held(q, Index<3>{}, Index<3>{{1, 1, 24}}, [&](const Index<3>&) { ++planes; });
+        EXPECT_EQ(planes, 17);
+    }
+}
+
+TEST("an array that has not the planes of the cut is whole, as all are where nobody asks for less") {
+    const ThreeRanks three;
+    {
+        const OwnPlanes mine(three.cut, 1, 2);
+        EXPECT_FALSE((Grid<real, 2>(Index<2>{{8, 23}}).store().windowed()));
+        EXPECT_TRUE((Grid<real, 2>(Index<2>{{8, 25}}).store().windowed()));  // faces
+        const AllPlanes all;
+        EXPECT_FALSE((Grid<real, 2>(Index<2>{{8, 24}}).store().windowed()));
+    }
+    const OwnPlanes mine(three.cut);
+    EXPECT_FALSE((Grid<real, 2>(Index<2>{{8, 24}}).store().windowed()));
+}
+
+}  // namespace
+
+}  // namespace weir
