@@ -60,12 +60,12 @@ scene::SolverKind kind() {
     for (Key& key : Heat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = schemas_of(effect_kinds());
     schema.effects.push_back(geometry::hand_schema());
-    return {schema,
-            make_without_surface<FlowSolver>,
-            {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
-            over_ranks,
-            scene::Shared::by_planes,
-            holds_own_planes};
+    scene::SolverKind mac{schema,
+                          make_without_surface<FlowSolver>,
+                          {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
+                          over_ranks};
+    mac.holds_own_part = holds_own_planes;
+    return mac;
 }
 
 }  // namespace weir::flow
