@@ -55,7 +55,7 @@ real norm_of(const Grid<real, D>& v) {
 TEST_IN_2D_AND_3D("with columns on top of the matrix the true residual meets the tolerance, and the right-hand side is as it was") {
     const auto extent = extent_of<D>(D == 2 ? 210 : 43, D == 2 ? 161 : 38, 49);
     const auto A = random_operator<D>(extent, 2, {.solid = 0.01, .air = 0.02});
-    for (const real scale : {1e-3, 0.1, 10.0}) {  // of a diagonal of 2 D
+    for (const real scale : {1e-3, 0.03, 0.3}) {  // of a diagonal of 2 D
         const auto more = random_columns<D>(A, scale);
         Grid<real, D> b(extent), none(extent), first;
         poisson::residual(A, none, random_values<D>(extent, 5), b);  // nothing where there is no fluid
@@ -77,6 +77,17 @@ TEST_IN_2D_AND_3D("with columns on top of the matrix the true residual meets the
         }
     }
     set_threads(1);
+}
+
+TEST_IN_2D_AND_3D("columns that make the matrix many times as hard are given up, and the right-hand side is as it was") {
+    const auto extent = extent_of<D>(D == 2 ? 210 : 43, D == 2 ? 161 : 38, 49);
+    const auto A = random_operator<D>(extent, 2, {.solid = 0.01, .air = 0.02});
+    Grid<real, D> p(extent), b = random_values<D>(extent, 5);
+    const auto given = b;
+    const auto solver = poisson::make_solver<D>("multigrid", {.tolerance = 1e-8});
+    solver->setup(A);
+    EXPECT_EQ(solver->solve(p, b, random_columns<D>(A, 1e4)), nullptr);
+    EXPECT_TRUE(std::equal(b.values().begin(), b.values().end(), given.values().begin()));
 }
 
 TEST_IN_2D_AND_3D("columns on top of a matrix without air, or of a method that knows none, are refused") {
