@@ -145,6 +145,17 @@ Vec<D> Solids<D>::push_out(const Vec<D>& x, real margin, real eps) const {
     return y;
 }
 
+template <int D>
+Vec<D> Solids<D>::push_out(const Vec<D>& x, real margin, real eps, std::span<const std::size_t> of) const {
+    Vec<D> y = x;
+    for (int newton = 0; newton < 2; ++newton) {
+        const real d = distance(y, of, margin);
+        if (d >= margin) break;
+        y += (margin - d) * normal(y, eps, of);
+    }
+    return y;
+}
+
 real fraction_positive(real a, real b) {
     if (a >= 0 && b >= 0) return 1;
     if (a < 0 && b < 0) return 0;

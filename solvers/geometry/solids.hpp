@@ -65,6 +65,7 @@ public:
     Vec<D> normal(const Vec<D>& x, real eps) const;
     /// x, or the nearest point at distance `margin` outside when x is closer than that (two Newton steps along the gradient).
     Vec<D> push_out(const Vec<D>& x, real margin, real eps) const;
+    Vec<D> push_out(const Vec<D>& x, real margin, real eps, std::span<const std::size_t> of) const;
     const Pose<D>& pose(std::size_t solid) const { return poses_[solid]; }
 
 private:

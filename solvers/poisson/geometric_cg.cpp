@@ -148,14 +148,43 @@ real GeometricCg<D>::iterate_down(real alpha, real beta) {
 template <int D>
 bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report) {
     problem.find_means(b);
+    return solve(problem, p, b, options, report, -1);
+}
+
+template <int D>
+bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, Grid<real, D>& b, const Options& options, Report& report,
+                           const LowRank& more) {
+    problem.clear_means();
+    const real b_norm = problem.norm(b);
+    problem.clean(p);
+    added_.begin(more, hierarchy_.finest().at, b);
+    added_.see(p);
+    added_.set_rhs();
+    const bool solved = solve(problem, p, b, options, report, b_norm);
+    added_.end();
+    return solved;
+}
+
+/// x as it stands is what the columns on top of the matrix see.
+template <int D>
+void GeometricCg<D>::see_answer() {
+    if (added_.empty()) return;
+    at_zero_ ? added_.see_zero() : added_.see(x_);
+}
+
+/// ‖b‖, or a negative number if it is not known.
+template <int D>
+bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
+                           real b_norm) {
     report.iterations = 0;
     report.history.clear();
     bool begun = problem.clean(p);  // has the cycle for r begun?
     refresh(p, hierarchy_.finest().at.periodic[D - 1]);
     real norm = std::sqrt(begun ? begin_at_zero(problem, b) : begin_at(problem, p, b));
-    const real b_norm = begun ? norm : problem.norm(b);
+    if (b_norm < 0) b_norm = begun ? norm : problem.norm(b);
     if (norm > b_norm || b_norm == 0) {
         p.fill(0);
+        if (!added_.empty()) added_.see_zero(), added_.set_rhs();
         norm = std::sqrt(begin_at_zero(problem, b));
         begun = true;
     }
@@ -183,6 +212,7 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
     Progress progress(options, report);
     const real factor = hierarchy_.finest().by_count ? replace_counted : replace_weighted;
     const auto replaced_norm = [&](bool begin_cycle, auto&& before) {
+        if (!added_.empty()) added_.set_rhs();
         return std::sqrt(replace_residual(problem, p, b, begin_cycle, before)) / start.b_norm;
     };
     real norm = start.norm, replaced = norm, gamma = 0, alpha = 0, reduction = usual_reduction;
@@ -190,25 +220,33 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
     while (progress.wants_more(norm)) {
         if (!begun) restart_cycle();
         finish_cycle();
+        if (!added_.empty()) delta_ += added_.energy(hierarchy_.finest().u);
         const real beta = gamma > 0 ? gamma_ / gamma : 0;
         alpha = gamma_ / (gamma > 0 ? delta_ - beta * gamma_ / alpha : delta_);
         gamma = gamma_;
         if (!(alpha > 0)) {
             if (!options.fixed_iterations) return false;
+            see_answer();
             norm = replaced_norm(false, [](int) {});  // converged to round-off before the iterations were spent
             break;
         }
         const real expected = norm * reduction, before = norm;
         const bool ends = progress.would_end(expected), replaces = ends || expected <= factor * replaced;
         begun = !ends;
-        if (replaces)
+        if (!added_.empty()) added_.turn(beta);
+        if (replaces) {
+            see_answer();
+            if (!added_.empty()) added_.move(alpha);
             norm = replaced = replaced_norm(begun, [&](int q) { turn_plane(q, beta), move_plane(q, alpha); });
-        else
+        } else {
+            if (!added_.empty()) added_.subtract_product(alpha, hierarchy_.finest().r);
             norm = std::sqrt(iterate_down(alpha, beta)) / start.b_norm;
+        }
         reduction = norm / before;
         progress.count(norm);
         const bool gives_up = !options.fixed_iterations && is_slow(report, norm, options.tolerance);
         if (!replaces && (gives_up || norm <= factor * replaced || !progress.wants_more(norm))) {
+            see_answer();
             norm = replaced = replaced_norm(false, [](int) {});
             begun = false;
         }

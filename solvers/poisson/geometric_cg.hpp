@@ -6,7 +6,11 @@
 //
 // p, r and the cycle are single precision; x and A p are double. r is replaced by the true b − A x each time it has fallen by a fixed
 // factor, and at the end: where the last reduction foretells that, the sweep down takes b − A x itself instead of r − α s.
+//
+// A matrix with a few columns on top, A + Σ U C Uᵀ, is solved with the cycle of A (added_columns.hpp): s and δ get their part, of the
+// numbers Uᵀ u of each direction alone.
 #pragma once
+#include "poisson/added_columns.hpp"
 #include "poisson/list_solver.hpp"
 #include "poisson/v_cycle.hpp"
 
@@ -22,7 +26,9 @@ public:
     /// Iterates on A p = b; fills the report but for times, bytes and components. Answers false if it stopped because convergence is slow:
     /// p then holds what has been reached.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);
-    std::size_t bytes() const { return arena_.bytes() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums); }
+    /// The same with columns on top of the matrix; b is changed meanwhile.
+    bool solve(const Natural<D>& problem, Grid<real, D>& p, Grid<real, D>& b, const Options& options, Report& report, const LowRank& more);
+    std::size_t bytes() const { return arena_.bytes() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums) + added_.bytes(); }
     /// One cycle u = M r, for tests.
     void precondition(const Natural<D>& problem, const Grid<real, D>& r, Grid<real, D>& u);
 
@@ -56,7 +62,11 @@ private:
     template <class F>
     real total(F&& of) const;
 
+    bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report, real b_norm);
+    void see_answer();
+
     Hierarchy<D> hierarchy_;
+    AddedColumns<D> added_;  // empty where there are none
     Arena arena_;
     Coloured<double> x_{};
     Coloured<float> p_{};

@@ -50,6 +50,18 @@ public:
         return report_;
     }
 
+    /// A component without air would need the columns' means taken out of them; the algebraic cycle knows nothing of them.
+    const Report* solve(Grid<real, D>& p, Grid<real, D>& b, const LowRank& more) override {
+        if (!geometric_fits_ || problem_.closed() > 0 || over_ranks()) return nullptr;
+        const Stopwatch watch;
+        const bool solved = geometric_.solve(problem_, p, b, options_, report_, more);
+        report_.solve_seconds = watch.seconds();
+        report_.bytes = bytes();
+        if (!solved) return nullptr;
+        judge(options_, report_);
+        return &report_;
+    }
+
     void aim(real tolerance) override {
         options_.tolerance = tolerance;
         if (algebraic_ != nullptr) algebraic_->aim(tolerance);

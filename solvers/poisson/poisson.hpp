@@ -9,6 +9,7 @@
 #pragma once
 #include "core/grid.hpp"
 #include "core/types.hpp"
+#include "poisson/low_rank.hpp"
 
 #include <array>
 #include <cstdint>
@@ -66,6 +67,9 @@ public:
     /// when the tolerance is missed after max_iterations (unless fixed_iterations) or when the residual is not finite.
     /// The reference stays valid until the next call; after the first, a solve with an unchanged structure allocates nothing.
     virtual const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) = 0;
+    /// Solves (A + Σ U C Uᵀ) p = b by iterations that converge for A, each a little dearer; b is as it was afterwards. None: this method,
+    /// or this problem, does not let itself be solved so, and p is a guess.
+    virtual const Report* solve(Grid<real, D>&, Grid<real, D>&, const LowRank&) { return nullptr; }
     /// Solves from now on may stop at this residual over the right-hand side. Methods that take no tolerance go on as before.
     virtual void aim(real) {}
     virtual std::size_t bytes() const = 0;

@@ -36,6 +36,8 @@ public:
     /// sides, and no joint comes apart. Marks the bodies that are touched. Of the same contacts again, it begins with the impulses that
     /// were found.
     void resolve(std::vector<Body<D>>& bodies, const Mobility& mobility, std::vector<real>& velocities, real dt, real gravity);
+    /// Adds what was found, of contacts and joints, to the impulses on the bodies.
+    void add_impulses(std::vector<real>& impulses) const { rows_.add_impulses(impulses); }
     /// The velocities of the next call have the impulses found so far.
     void carry_on() { carried_ = true, rows_.carry_on(); }
 

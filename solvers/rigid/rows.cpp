@@ -207,6 +207,16 @@ void Rows<D>::solve(std::vector<real>& velocities) {
     }
 }
 
+template <int D>
+void Rows<D>::add_impulses(std::vector<real>& impulses) const {
+    constexpr std::size_t n = freedoms<D>;
+    for (std::size_t i = 0; i < list_.size(); ++i)
+        for (std::size_t d = 0; d < n; ++d) {
+            impulses[list_[i].body * n + d] += list_[i].sees[d] * impulse_[i];
+            if (list_[i].other >= 0) impulses[static_cast<std::size_t>(list_[i].other) * n + d] += list_[i].sees[n + d] * impulse_[i];
+        }
+}
+
 #define WEIR_INSTANTIATE(D)                                                                                         \
     template void dry_mobility(const std::vector<Body<D>>&, Mobility&);                                             \
     template Twist<D> sees(const Body<D>&, const Vec<D>&, const Vec<D>&);                                           \

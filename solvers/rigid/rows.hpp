@@ -70,6 +70,8 @@ public:
     /// Of the body's point past the other side.
     real relative(const Row<D>& row, const std::vector<real>& velocities) const;
     void solve(std::vector<real>& velocities);
+    /// What the rows push the bodies by, to `freedoms<D>` numbers a body.
+    void add_impulses(std::vector<real>& impulses) const;
 
 private:
     real sweep(std::vector<real>& velocities);

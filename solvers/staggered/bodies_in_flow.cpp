@@ -24,8 +24,33 @@ constexpr real first_turn = 1e-2, of_change = 1e-2;
 /// A change tells the added mass if it is this much larger than the residual that was left before it.
 constexpr real differs = 5;
 
+/// A body whose added mass is up to this much of its own is part of the pressure's matrix, which it makes as much harder to solve; a
+/// lighter one takes turns with the pressure.
+constexpr real most_added = 60;
+
 /// Of a cell: how deep a body may dive into liquid that has not felt it yet.
 constexpr real unfelt = 0.1;
+
+/// The inverse of the rows and columns of m that are free, by elimination without pivots, as m is positive definite; zero in the others.
+template <int D>
+std::array<poisson::LowRank::Row, poisson::LowRank::columns> inverse_of(rigid::Block<D> m, const char* free) {
+    constexpr std::size_t n = rigid::freedoms<D>;
+    std::array<poisson::LowRank::Row, poisson::LowRank::columns> inverse{};
+    for (std::size_t k = 0; k < n; ++k) inverse[k][k] = free[k] ? 1 : 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!free[k]) continue;
+        const real pivot = 1 / m[k][k];
+        for (std::size_t l = 0; l < n; ++l) m[k][l] *= pivot, inverse[k][l] *= pivot;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i == k || !free[i]) continue;
+            const real factor = m[i][k];
+            for (std::size_t l = 0; l < n; ++l) m[i][l] -= factor * m[k][l], inverse[i][l] -= factor * inverse[k][l];
+        }
+    }
+    for (std::size_t k = 0; k < n; ++k)  // of round-off: the matrix of the pressure must be symmetric
+        for (std::size_t l = 0; l < k; ++l) inverse[k][l] = inverse[l][k] = 0.5 * (inverse[k][l] + inverse[l][k]);
+    return inverse;
+}
 
 }  // namespace
 
@@ -52,7 +77,8 @@ BodiesInFlow<D>::BodiesInFlow(const scene::Scene& scene)
     added_.resize(bodies_.count());
     masses_.resize(bodies_.count());
     free_.resize(n * bodies_.count());
-    for (auto* list : {&velocity_, &next_, &before_, &gained_, &heavy_, &met_, &last_, &change_, &missing_}) list->resize(free_.size());
+    for (auto* list : lists()) list->resize(free_.size());
+    joined_.resize(bodies_.count()), inverse_.resize(bodies_.count());
     for (std::size_t b = 0; b < bodies_.count(); ++b)
         for (std::size_t k = 0; k < n; ++k) free_[b * n + k] = !bodies_[b].held[k];
 }
@@ -408,7 +434,7 @@ void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
         const Twist<D> heavy = weight(i);
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t at = i * n + k;
-            before_[at] = velocity_[at] = body.velocity[k];
+            before_[at] = velocity_[at] = base_[at] = body.velocity[k];
             next_[at] = before_[at] + (body.wet > 0 && !body.touches ? dt * gained_[at] : 0);
             heavy_[at] = dt * heavy[k];
             if (k < D) heavy_[at] += dt * (masses_[i][k][k] - body.mass) * gravity_[k];
@@ -476,43 +502,120 @@ void BodiesInFlow<D>::move_under_forces() {
 }
 
 template <int D>
-void BodiesInFlow<D>::touch(const geometry::Solids<D>& solids, real dt, bool anew) {
-    if (anew) {
-        rigid::Surroundings<D> around = bodies_.surroundings(solids);
-        real fastest = 0;
-        for (std::size_t b = 0; b < bodies_.count(); ++b) {
-            real speed = 0, turning = 0;
-            for (std::size_t k = 0; k < n; ++k) (k < D ? speed : turning) += std::abs(next_[b * n + k]);
-            fastest = std::max(fastest, speed + turning * bodies_[b].radius);
-        }
-        around.reach = 2 * dt * fastest + 1e-2 * norm(h_);
-        contacts_.find(bodies_.all(), around);
+void BodiesInFlow<D>::find_contacts(const geometry::Solids<D>& solids, real dt) {
+    rigid::Surroundings<D> around = bodies_.surroundings(solids);
+    real fastest = 0;
+    for (std::size_t b = 0; b < bodies_.count(); ++b) {
+        real speed = 0, turning = 0;
+        for (std::size_t k = 0; k < n; ++k) (k < D ? speed : turning) += std::abs(next_[b * n + k]);
+        fastest = std::max(fastest, speed + turning * bodies_[b].radius);
     }
-    for (auto& body : bodies_.all()) body.touches = false;
-    if (!contacts_.empty()) contacts_.resolve(bodies_.all(), mobility_, next_, dt, norm(gravity_));
+    around.reach = 2 * dt * fastest + 1e-2 * norm(h_);
+    contacts_.find(bodies_.all(), around);
 }
 
-/// Takes the next velocities; answers by what that changes the right-hand side, ‖δb‖₂.
+template <int D>
+void BodiesInFlow<D>::touch(const geometry::Solids<D>& solids, real dt, bool anew) {
+    if (anew) find_contacts(solids, dt);
+    for (auto& body : bodies_.all()) body.touches = false;
+    std::fill(others_.begin(), others_.end(), 0.0);
+    if (contacts_.empty()) return;
+    contacts_.resolve(bodies_.all(), mobility_, next_, dt, norm(gravity_));
+    contacts_.add_impulses(others_);
+}
+
+/// Bodies that are heavy enough for it become part of the pressure's matrix: with V = base + dt M⁻¹ (push of p), where `base` is what all
+/// else gives them, A p = b − h² ρ/dt Σ D_k V_k is (A + U C Uᵀ) p = b − h² ρ/dt Σ D_k base_k with U = ΔV D and C = h² ρ/ΔV M⁻¹.
+template <int D>
+bool BodiesInFlow<D>::join_matrix(const MacState<D>& s) {
+    matrix_.clear();
+    const real scale = h2_ * s.rho / cell_;
+    bool any = false;
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+        joined_[i] = bodies_[i].wet > 0;
+        for (std::size_t k = 0; k < n; ++k)
+            if (free_[i * n + k] && added_.of(i)[k][k] > most_added * masses_[i][k][k]) joined_[i] = 0;
+        if (!joined_[i]) continue;
+        any = true;
+        inverse_[i] = inverse_of<D>(masses_[i], free_.data() + i * n);
+        const std::size_t begin = matrix_.entries.size();
+        for (const Cut& c : cuts_[i]) {
+            if (s.cells[c.cell] != Cell::fluid) continue;
+            matrix_.entries.push_back({c.cell, {}});
+            std::copy(c.out.begin(), c.out.end(), matrix_.entries.back().u.begin());
+        }
+        matrix_.blocks.push_back({begin, matrix_.entries.size(), inverse_[i]});
+        for (auto& row : matrix_.blocks.back().C)
+            for (real& entry : row) entry *= scale;
+    }
+    return any;
+}
+
+/// The impulses of all but the pressure's part that p decides.
+template <int D>
+Twist<D> BodiesInFlow<D>::impulse_without_pressure(const MacState<D>& s, std::size_t body, real dt) const {
+    Twist<D> sum{};
+    for (const Cut& c : cuts_[body])
+        for (std::size_t k = 0; s.cells[c.cell] == Cell::fluid && k < n; ++k) sum[k] += c.out[k] * c.below;
+    for (std::size_t k = 0; k < n; ++k) sum[k] = dt * s.rho * sum[k] + heavy_[body * n + k] + others_[body * n + k];
+    return sum;
+}
+
+/// What contacts are expected to give: where something touched a body in the last step, what would keep it going on as it does.
+template <int D>
+void BodiesInFlow<D>::expect_others(const MacState<D>& s, real dt) {
+    std::fill(others_.begin(), others_.end(), 0.0);
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+        if (!bodies_[i].touches) continue;
+        const Twist<D> f = force(s, i);
+        for (std::size_t k = 0; k < n; ++k) others_[i * n + k] = -heavy_[i * n + k] - dt * f[k];
+    }
+}
+
+/// Of a body that is part of the matrix what its velocity is without the pressure, of others the next velocity goes into the right-hand
+/// side. Answers by what that changes it, ‖δb‖₂.
 template <int D>
 real BodiesInFlow<D>::adopt(const MacState<D>& s, real dt, Grid<real, D>* b) {
-    real sum = 0;
+    real sum = 0, squares = 0;
     const real scale = h2_ * s.rho / (dt * cell_);
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
         Twist<D> change{};
+        const Twist<D> impulse = joined_[i] ? impulse_without_pressure(s, i, dt) : Twist<D>{};
         for (std::size_t k = 0; k < n; ++k) {
-            change_[i * n + k] = change[k] = next_[i * n + k] - velocity_[i * n + k];
-            velocity_[i * n + k] = next_[i * n + k];
+            real base = next_[i * n + k];
+            if (joined_[i]) base = before_[i * n + k];
+            for (std::size_t l = 0; joined_[i] && l < n; ++l) base += inverse_[i][k][l] * impulse[l];
+            change[k] = base - base_[i * n + k];
+            base_[i * n + k] = base;
         }
         if (!b || bodies_[i].wet == 0) continue;
         for (const Cut& c : cuts_[i]) {
             if (s.cells[c.cell] != Cell::fluid) continue;
             real out = 0;
             for (std::size_t k = 0; k < n; ++k) out += c.out[k] * change[k];
-            (*b)[c.cell] -= scale * out;
+            real& at = (*b)[c.cell];
+            squares -= at * at;
+            at -= scale * out;
+            squares += at * at;
             sum += scale * out * (scale * out);
         }
     }
+    b_squared_ += squares;
     return std::sqrt(sum);
+}
+
+/// The velocities that belong to the pressure found, and by how much they differ from those before.
+template <int D>
+void BodiesInFlow<D>::follow_pressure(const MacState<D>& s, real dt) {
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+        const Twist<D> f = joined_[i] ? push(i, s.p) : Twist<D>{};
+        for (std::size_t k = 0; k < n; ++k) {
+            real v = base_[i * n + k];
+            for (std::size_t l = 0; joined_[i] && l < n; ++l) v += dt * inverse_[i][k][l] * f[l];
+            change_[i * n + k] = v - velocity_[i * n + k];
+            velocity_[i * n + k] = v;
+        }
+    }
 }
 
 template <int D>
@@ -521,54 +624,55 @@ void BodiesInFlow<D>::learn() {
     added_.learn(change_, last_, masses_, free_, mobility_);
 }
 
-/// ‖b‖₂ over the fluid.
+/// ‖b‖₂² over the fluid.
 template <int D>
-real BodiesInFlow<D>::norm_of(const MacState<D>& s, const Grid<real, D>& b) const {
-    return std::sqrt(sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? b(I) * b(I) : 0; }));
+real BodiesInFlow<D>::square_of(const MacState<D>& s, const Grid<real, D>& b) const {
+    return sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? b(I) * b(I) : 0; });
 }
 
+/// The pressure as far as `tolerance` says, of ‖b‖ with the velocities that were expected. A matrix that bodies are part of may not let
+/// itself be solved: they take turns then.
 template <int D>
-void BodiesInFlow<D>::turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, const Grid<real, D>& b) {
-    solver.aim(tolerance);
-    const poisson::Report& report = solver.solve(s.p, b);
-    const int iterations = report_.iterations + report.iterations;
-    const real first = report_.iterations == 0 ? report.residual_before : report_.residual_before;
-    report_ = report;
+void BodiesInFlow<D>::turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b) {
+    const poisson::Report* report = nullptr;
+    if (!matrix_.blocks.empty()) {
+        solver.aim(tolerance * std::min(1.0, whole_ / std::sqrt(std::max(b_squared_, whole_ * whole_ * 1e-4))));
+        report = solver.solve(s.p, b, matrix_);
+        if (!report) {
+            leave_matrix();
+            adopt(s, dt, &b);
+        }
+    }
+    if (!report) {
+        solver.aim(tolerance);
+        report = &solver.solve(s.p, b);
+    }
+    const int iterations = report_.iterations + report->iterations;
+    const real first = report_.iterations == 0 ? report->residual_before : report_.residual_before;
+    report_ = *report;
     report_.iterations = iterations, report_.residual_before = first;
     ++turns_;
 }
 
 template <int D>
-const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>& placement, real dt, poisson::Solver<D>* solver,
-                                              real tolerance, Grid<real, D>* b) {
-    find_cuts(s, placement);
-    begin(s, solver != nullptr, dt);
-    const bool coupled = std::any_of(bodies_.all().begin(), bodies_.all().end(), [](const Body<D>& body) { return body.wet > 0; });
-    turns_ = report_.iterations = 0;
-    adopt(s, dt, b);
-    const real whole = coupled ? norm_of(s, *b) : 0, enough = coupled ? 0.5 * tolerance : tolerance;
-    real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: of the residual, before the last change
-    bool measured = false, again = false;
-    for (int count = 0, last = most_turns;; ++count) {
-        if (solver) turn(s, *solver, aim, *b);
-        std::swap(met_, last_);
-        pushed(s, met_, dt);
-        if (count > 0 && !again && change > differs * left) learn();
-        const real changed = change;
-        move_under_forces();
-        touch(placement.solids(), dt, count == 0);
-        const real added = adopt(s, dt, b);
-        left = aim, change = added == 0 ? 0 : added / whole;
-        if (!coupled || (change <= enough && aim <= enough)) break;
-        again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so far off that turns lead away
-        if (again) {
-            next_ = before_;
-            change = std::max(adopt(s, dt, b) / whole, enough);
-        }
-        if (!measured && (again || count == last)) measured = true, last = count + most_turns_measured, measure_added_mass(s, *solver);
-        if (measured && count == last) break;
-        aim = std::max(enough, of_change * std::min(change, 1.0));
-    }
+void BodiesInFlow<D>::leave_matrix() {
+    matrix_.clear();
+    std::fill(joined_.begin(), joined_.end(), 0);
+}
+
+/// Do all bodies that the fluid touches belong to the matrix, and touches nothing else any of them? Then the pressure decides all.
+template <int D>
+bool BodiesInFlow<D>::fluid_decides(const geometry::Solids<D>& solids, real dt) {
+    for (std::size_t i = 0; i < bodies_.count(); ++i)
+        if (bodies_[i].touches || (bodies_[i].wet > 0 && !joined_[i])) return false;
+    find_contacts(solids, dt);
+    return contacts_.empty();
+}
+
+/// The velocities found are the bodies'.
+template <int D>
+void BodiesInFlow<D>::take_velocities(MacState<D>& s, SolidPlacement<D>& placement, real dt) {
+    velocity_ = next_;
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
         Body<D>& body = bodies_[i];
         for (std::size_t k = 0; k < n; ++k) {
@@ -582,9 +686,52 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
         }
     }
     if (hand_) tell_hand();
-    if (solver) solver->aim(tolerance);
     bodies_.place(placement.solids());
     set_velocities(s);
+}
+
+template <int D>
+const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>& placement, real dt, poisson::Solver<D>* solver,
+                                              real tolerance, Grid<real, D>* b) {
+    find_cuts(s, placement);
+    begin(s, solver != nullptr, dt);
+    const bool coupled = std::any_of(bodies_.all().begin(), bodies_.all().end(), [](const Body<D>& body) { return body.wet > 0; });
+    turns_ = report_.iterations = 0;
+    leave_matrix();
+    adopt(s, dt, b);
+    b_squared_ = coupled ? square_of(s, *b) : 0, whole_ = std::sqrt(b_squared_);
+    const real enough = coupled ? 0.5 * tolerance : tolerance;
+    real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: of the residual, before the last change
+    if (coupled && join_matrix(s)) {
+        if (fluid_decides(placement.solids(), dt)) aim = enough;
+        expect_others(s, dt);
+        adopt(s, dt, b);
+    }
+    bool measured = false, again = false;
+    for (int count = 0, last = most_turns;; ++count) {
+        if (solver) turn(s, *solver, aim, dt, *b);
+        follow_pressure(s, dt);
+        std::swap(met_, last_);
+        pushed(s, met_, dt);
+        if (count > 0 && !again && change > differs * left) learn();
+        const real changed = change;
+        move_under_forces();
+        touch(placement.solids(), dt, count == 0);
+        const real added = adopt(s, dt, b);
+        left = aim, change = added == 0 ? 0 : added / whole_;
+        if (!coupled || (change <= enough && aim <= enough)) break;
+        again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so far off that turns lead away
+        if (again) {
+            next_ = before_;
+            std::fill(others_.begin(), others_.end(), 0.0);
+            change = std::max(adopt(s, dt, b) / whole_, enough);
+        }
+        if (!measured && (again || count == last)) measured = true, last = count + most_turns_measured, measure_added_mass(s, *solver);
+        if (measured && count == last) break;
+        aim = std::max(enough, of_change * std::min(change, 1.0));
+    }
+    take_velocities(s, placement, dt);
+    if (solver) solver->aim(tolerance);
     return report_;
 }
 
@@ -594,8 +741,8 @@ std::size_t BodiesInFlow<D>::bytes() const {
     for (const auto& faces : faces_) total += faces.capacity() * sizeof(Face);
     for (const auto& cuts : cuts_) total += cuts.capacity() * sizeof(Cut);
     total += mobility_.entries.capacity() * sizeof(real) + masses_.capacity() * sizeof(rigid::Block<D>) + free_.size();
-    for (const auto* list : {&velocity_, &next_, &before_, &gained_, &heavy_, &met_, &last_, &change_, &missing_})
-        total += list->capacity() * sizeof(real);
+    for (const auto* list : const_cast<BodiesInFlow*>(this)->lists()) total += list->capacity() * sizeof(real);
+    total += matrix_.bytes() + joined_.capacity() + inverse_.capacity() * sizeof(inverse_[0]) + near_.capacity() * sizeof(near_[0]);
     return total;
 }
 

@@ -4,11 +4,13 @@
 //     A p = −h² ρ/dt (∇·u* + Σ D_k V_k),      M (V − V*) = dt F,      F_k = ΔV Σ p D_k     [ΔV: volume of a cell]
 //
 // Eliminating p leaves (M + m) V with the grid's own added mass m_kl = ρ ΔV D_k·A⁻¹ h² D_l: well posed for bodies that are lighter than the
-// water, or weigh nothing. It is solved by turns, the pressure with the velocities that are known and the velocities with the pressure,
-// where an estimate of m that learns from every turn (rigid/added_mass.hpp) says how far to go; contacts are met in the same metric. The
-// pressure of a turn is solved as far as the velocities are known, so that all turns together cost little more than one solve. Of a wall
-// that cuts a cell the grid knows the pressure in the cell's middle alone: F takes it at the wall, by the gradient that water at rest has,
-// so that a flat bottom floats between the cells too.
+// water, or weigh nothing. Eliminating V leaves (A + U C Uᵀ) p with as few columns as the bodies have freedoms: the multigrid of A solves
+// it in an iteration or two more, as long as the added mass is not many times the body's own, and such bodies are part of the matrix. What
+// is lighter, and contacts, are met by turns, the pressure with the velocities that are known and the velocities with the pressure, where
+// an estimate of m that learns from every turn (rigid/added_mass.hpp) says how far to go; contacts are met in the same metric. The pressure
+// of a turn is solved as far as the velocities are known, so that all turns together cost little more than one solve. Of a wall that cuts a
+// cell the grid knows the pressure in the cell's middle alone: F takes it at the wall, by the gradient that water at rest has, so that a
+// flat bottom floats between the cells too.
 #pragma once
 #include "core/hand.hpp"
 #include "poisson/poisson.hpp"
@@ -96,10 +98,21 @@ private:
     void pushed(const MacState<D>& s, std::vector<real>& impulse, real dt) const;
     void learn();
     void move_under_forces();
+    void find_contacts(const geometry::Solids<D>& solids, real dt);
     void touch(const geometry::Solids<D>& solids, real dt, bool anew);
-    real norm_of(const MacState<D>& s, const Grid<real, D>& b) const;
+    bool join_matrix(const MacState<D>& s);
+    void leave_matrix();
+    bool fluid_decides(const geometry::Solids<D>& solids, real dt);
+    void expect_others(const MacState<D>& s, real dt);
+    rigid::Twist<D> impulse_without_pressure(const MacState<D>& s, std::size_t body, real dt) const;
+    void follow_pressure(const MacState<D>& s, real dt);
+    real square_of(const MacState<D>& s, const Grid<real, D>& b) const;
     real adopt(const MacState<D>& s, real dt, Grid<real, D>* b);
-    void turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, const Grid<real, D>& b);
+    void take_velocities(MacState<D>& s, SolidPlacement<D>& placement, real dt);
+    void turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b);
+    std::array<std::vector<real>*, 11> lists() {
+        return {&velocity_, &next_, &before_, &gained_, &heavy_, &met_, &last_, &change_, &missing_, &base_, &others_};
+    }
 
     rigid::Bodies<D> bodies_;
     std::unique_ptr<WallGrip<D>> grip_;  // none: nothing sticks
@@ -119,7 +132,13 @@ private:
     std::vector<real> before_, gained_;     // when the step began; what the last step changed them by, over dt
     std::vector<real> heavy_, met_, last_;  // weights; the pressure's impulses of this turn and of the last one
     std::vector<real> change_, missing_;
-    std::shared_ptr<Hand> hand_;  // none: nobody takes hold
+    std::vector<real> base_;    // what b has of the velocities
+    std::vector<real> others_;  // impulses of contacts and joints
+    std::vector<char> joined_;  // of each body: is it part of the pressure's matrix?
+    std::vector<std::array<poisson::LowRank::Row, poisson::LowRank::columns>> inverse_;  // of the mass, of those
+    poisson::LowRank matrix_;
+    real b_squared_ = 0, whole_ = 0;  // ‖b‖² now; ‖b‖ with the velocities that were expected
+    std::shared_ptr<Hand> hand_;      // none: nobody takes hold
     /// Of the body that it holds in this step: the impulse is weight (target − V).
     struct Hold {
         int body = -1;

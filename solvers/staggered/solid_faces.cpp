@@ -36,6 +36,33 @@ bool is_amid(const Grid<real, D>& q, int plane) {
     return all;
 }
 
+/// Of `count` faces of a row the fractions, 1 where no corner lies inside a solid and 0 elsewhere, and no velocity; answers whether all
+/// are 1.
+template <int D>
+bool open_row(const Grid<real, D>& corner, int a, const Index<D>& I, int count, real* open, real* velocity) {
+    std::array<const real*, 1 << (D - 1)> at;
+    at[0] = &corner(I), at[1] = &corner(I + e<D>((a + 1) % D));
+    if constexpr (D == 3) at[2] = &corner(I + e<D>((a + 2) % D)), at[3] = &corner(I + e<D>((a + 1) % D) + e<D>((a + 2) % D));
+    real least = 0;
+#pragma omp simd reduction(min : least)
+    for (int i = 0; i < count; ++i) {
+        real d = at[0][i] < at[1][i] ? at[0][i] : at[1][i];
+        for (std::size_t k = 2; k < at.size(); ++k) d = at[k][i] < d ? at[k][i] : d;
+        least = d < least ? d : least;
+        open[i] = d < 0 ? 0 : 1;
+        velocity[i] = 0;
+    }
+    return least >= 0;
+}
+
+/// f(I, count) for every row along x of a box, of the planes of q that are held here, threaded over the slowest axis.
+template <class T, int D, class F>
+void for_each_held_row(const Grid<T, D>& q, const Index<D>& lo, const Index<D>& hi, F&& f) {
+    Index<D> ends = hi;
+    ends[0] = lo[0] + 1;
+    if (lo[0] < hi[0]) for_each_held(q, lo, ends, [&](const Index<D>& I) { f(I, hi[0] - lo[0]); });
+}
+
 /// Component b at a face along a: itself, or the mean of the four faces around it.
 template <int D>
 real component_at(const PaddedVelocity<D>& u, int b, int a, const Index<D>& I) {
@@ -104,18 +131,28 @@ void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
     const Index<D>&lo = changed_[box].lo, hi = changed_[box].hi;
     for (int a = 0; a < D; ++a) {
         auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
-        for_each_held(open, lo, hi + e<D>(a), [&](const Index<D>& I) {
-            open(I) = fraction(corner_, a, I);
-            velocity(I) = open(I) < 1 ? solids_.velocity(s.u.face_centre(a, I), near_[box])[a] : 0;
+        for_each_held_row(open, lo, hi + e<D>(a), [&](Index<D> I, int count) {
+            real *w = &open(I), *v = &velocity(I);
+            const bool all_open = open_row(corner_, a, I, count, w, v);
+            for (int i = 0; !all_open && i < count; ++i, ++I[0]) {
+                if (w[i] == 1) continue;
+                w[i] = fraction(corner_, a, I);
+                if (w[i] < 1) v[i] = solids_.velocity(s.u.face_centre(a, I), near_[box])[a];
+            }
         });
     }
-    for_each_held(s.cells, lo, hi, [&](const Index<D>& I) {
-        real open = 0;
+    for_each_held_row(s.cells, lo, hi, [&](const Index<D>& I, int count) {
+        std::array<const real*, 2 * D> w;
         for (int a = 0; a < D; ++a) {
-            const auto& w = s.solid.open[static_cast<std::size_t>(a)];
-            open += w(I) + w(I + e<D>(a));
+            const auto& open = s.solid.open[static_cast<std::size_t>(a)];
+            w[static_cast<std::size_t>(2 * a)] = &open(I), w[static_cast<std::size_t>(2 * a + 1)] = &open(I + e<D>(a));
         }
-        s.cells(I) = open > 0 ? Cell::fluid : Cell::solid;
+        Cell* cell = &s.cells(I);
+        for (int i = 0; i < count; ++i) {
+            bool open = false;
+            for (std::size_t k = 0; k < 2 * D; ++k) open |= w[k][i] > 0;
+            cell[i] = open ? Cell::fluid : Cell::solid;
+        }
     });
 }
 
@@ -255,7 +292,9 @@ void SolidPlacement<D>::extend_field(const MacState<D>& s, Padded<D>& before) co
 
 template <int D>
 real SolidPlacement<D>::max_rate(const MacState<D>& s) const {
-    if (!any() || !moving()) return 0;
+    bool told = false;
+    for (std::size_t i = 0; i < solids_.count(); ++i) told = told || solids_[i].motion.moves();
+    if (!told) return 0;
     real rate = 0;
     for (int a = 0; a < D; ++a) {
         const auto& velocity = s.solid.velocity[static_cast<std::size_t>(a)];

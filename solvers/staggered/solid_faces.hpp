@@ -88,7 +88,7 @@ public:
     void extend_velocity(MacState<D>& s);
     /// Continues a field's `before` one cell into solids: the mean of the neighbours that are not solid.
     void extend_field(const MacState<D>& s, Padded<D>& before) const;
-    /// Largest |velocity| / h of a solid's face now [1/s].
+    /// Largest |velocity| / h of a solid's face now [1/s]; where all that moves is free, nothing: who moves it knows how fast.
     real max_rate(const MacState<D>& s) const;
     std::size_t bytes() const { return corner_.bytes() + extended_.capacity() * sizeof(Extended); }
 

@@ -5,14 +5,24 @@
 
 namespace weir::surface {
 
+/// Those that are, of a box that has changed. A corner is half a diagonal from the middle.
+template <int D>
+static void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, std::size_t box,
+                             Grid<std::uint8_t, D>& near_solid) {
+    const real diagonal = norm(frame.h);
+    const auto near = placement.near(box);
+    const std::uint8_t mark = near.size() == 1 && near.front() + 2 < 256 ? static_cast<std::uint8_t>(near.front() + 2) : 1;
+    for_each_in(placement.changed()[box].lo, placement.changed()[box].hi, [&](const Index<D>& I) {
+        const real corner = placement.corner_distance(I);
+        const bool is_near =
+            corner < 0 || (corner < 2 * diagonal && placement.solids().distance(frame.centre(I), near, diagonal) < diagonal);
+        near_solid(I) = is_near ? mark : 0;
+    });
+}
+
 template <int D>
 void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid) {
-    for (std::size_t box = 0; box < placement.changed().size(); ++box)
-        for_each_in(placement.changed()[box].lo, placement.changed()[box].hi, [&](const Index<D>& I) {
-            const real corner = placement.corner_distance(I);  // half a diagonal from the middle
-            near_solid(I) = corner < 0 || (corner < 2 * norm(frame.h) &&
-                                           placement.solids().distance(frame.centre(I), placement.near(box)) < norm(frame.h));
-        });
+    for (std::size_t box = 0; box < placement.changed().size(); ++box) mark_near_solids(placement, frame, box, near_solid);
 }
 
 namespace {
@@ -72,8 +82,10 @@ void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& 
     const real eps = 1e-3 * frame.h_min();  // of the finite differences that give a solid's normal
     const auto place = [&](std::size_t p, const Vec<D>& reached) {
         Vec<D> x = walls.keep_inside(frame, reached);
-        if (!near_solid.empty() && near_solid(frame.cell_of(x)))
-            x = walls.keep_inside(frame, solids.push_out(x, wall_margin * frame.h_min(), eps));
+        const std::uint8_t near = near_solid.empty() ? std::uint8_t{0} : near_solid(frame.cell_of(x));
+        const std::size_t only = near - 2u;
+        if (near == 1) x = walls.keep_inside(frame, solids.push_out(x, wall_margin * frame.h_min(), eps));
+        if (near > 1) x = walls.keep_inside(frame, solids.push_out(x, wall_margin * frame.h_min(), eps, {&only, 1}));
         markers.set_position(p, x);
     };
     markers.for_each_occupied_cell(frame, [&](const Index<D>& I, std::size_t begin, std::size_t end) {

@@ -44,7 +44,7 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
                 });
                 const auto of = alone ? std::span<const std::size_t>(&nearest, 1) : placement.near(box);
                 faces_[at].push_back(I);
-                solid_[at].push_back({solids.normal(x, eps, of), solids.pose(nearest).velocity_at(x), solids[nearest].no_slip});
+                solid_[at].push_back({solids.normal(x, eps, of), solids.pose(nearest).velocity_at(x), nearest, solids[nearest].no_slip});
             });
         if (!room) continue;
         faces_[at].reserve(2 * faces_[at].size());
@@ -56,7 +56,10 @@ template <int D>
 void FacesInSolids<D>::see_velocities(const geometry::Solids<D>& solids, const MacState<D>& state) {
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
-        for (std::size_t i = 0; i < solid_[at].size(); ++i) solid_[at][i].velocity = solids.velocity(state.u.face_centre(a, faces_[at][i]));
+        for (std::size_t i = 0; i < solid_[at].size(); ++i) {
+            SolidFace& face = solid_[at][i];
+            if (solids[face.solid].free) face.velocity = solids.pose(face.solid).velocity_at(state.u.face_centre(a, faces_[at][i]));
+        }
     }
 }
 

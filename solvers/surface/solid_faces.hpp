@@ -16,7 +16,7 @@ public:
     /// Of the solids as they stand, where that has changed. `room`: there is to be room for twice as many, for solids that move may come to
     /// cut more faces, so that no step allocates.
     void find(const SolidPlacement<D>& placement, const MacState<D>& state, const Frame<D>& frame, bool room);
-    /// The solids move at other speeds than when they were found.
+    /// Solids that are free move at other speeds than when they were found.
     void see_velocities(const geometry::Solids<D>& solids, const MacState<D>& state);
     /// Markers reach over a solid's surface with their hats, but what they leave there is not the liquid's velocity.
     void forget(FaceMarks<D>& known) const;
@@ -30,6 +30,7 @@ private:
     /// What a solid does to the liquid's velocity on a face inside it.
     struct SolidFace {
         Vec<D> normal, velocity;  // of the solid
+        std::size_t solid = 0;    // which one
         bool no_slip = false;
         real value = 0;  // what is to stand there
     };
