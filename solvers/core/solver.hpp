@@ -127,13 +127,12 @@ public:
     /// What is wrong with using the method on the state of the moment, in one line, with its numbers; empty where nothing is.
     virtual std::string concern() const { return {}; }
     virtual FieldSet fields() const = 0;
-    /// While it lives, the first rank can read the planes of all.
+    /// Over ranks that hold their own planes alone: while it lives, the first rank can read those of all in these fields (all where none is
+    /// named) as fields() showed them. All ranks ask for it together. Elsewhere nothing: whoever looks reads everything anyway.
     class Brought {
     public:
         virtual ~Brought() = default;
     };
-    /// Over ranks that hold their own planes alone: those of all in these fields (all where none is named) to the first rank, as fields()
-    /// showed them. All ranks ask for it together. Elsewhere nothing: whoever looks reads everything anyway.
     virtual std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& /*names*/) const { return nullptr; }
     /// Over ranks: does each hold its own planes alone?
     virtual bool holds_own_planes() const { return false; }
