@@ -79,6 +79,17 @@ Curve missing_momentum(const RunRecord& run, const std::string& metric, const st
     return missing;
 }
 
+/// For a figure: every so many of its points, and the last.
+Curve thinned(const Curve& c) {
+    constexpr std::size_t shown = 200;
+    const std::size_t each = c.size() / shown + 1;
+    Curve thin = c;
+    thin.x.clear(), thin.y.clear();
+    for (std::size_t i = 0; i < c.size(); ++i)
+        if (i % each == 0 || i + 1 == c.size()) thin.x.push_back(c.x[i]), thin.y.push_back(c.y[i]);
+    return thin;
+}
+
 /// NaN wherever one is.
 real greatest(const Curve& c) {
     real most = 0;
@@ -108,7 +119,7 @@ Metric momentum_metric(int axis) {
                     return Panel{.title = "Momentum along " + letter + ", " + run.scene->solver(),
                                  .x = {"t [s]"},
                                  .y = {"[kg m/s]"},
-                                 .curves = {bodies, fluid, missing_momentum(run, name, letter)}};
+                                 .curves = {thinned(bodies), thinned(fluid), thinned(missing_momentum(run, name, letter))}};
                 },
             .observe = [=](const FieldSet& fields, const scene::Scene&, real) { return force_on_walls(fields, axis); }};
 }
@@ -300,7 +311,7 @@ Panel energy_panel(const RunRecord& run, const Reference&) {
     for (real& y : all.y) y = 1 + (y - lost) / first;
     for (real& y : bodies.y) y /= first;
     bodies.label = "bodies, kinetic";
-    return {.title = "Energy over the first, " + run.scene->solver(), .x = {"t [s]"}, .y = {"E/E0"}, .curves = {all, bodies}};
+    return {.title = "Energy over the first, " + run.scene->solver(), .x = {"t [s]"}, .y = {"E/E0"}, .curves = {thinned(all), thinned(bodies)}};
 }
 
 }  // namespace
