@@ -81,7 +81,7 @@ Curve missing_momentum(const RunRecord& run, const std::string& metric, const st
 
 /// For a figure: every so many of its points, and the last.
 Curve thinned(const Curve& c) {
-    constexpr std::size_t shown = 200;
+    constexpr std::size_t shown = 80;
     const std::size_t each = c.size() / shown + 1;
     Curve thin = c;
     thin.x.clear(), thin.y.clear();
@@ -311,7 +311,8 @@ Panel energy_panel(const RunRecord& run, const Reference&) {
     for (real& y : all.y) y = 1 + (y - lost) / first;
     for (real& y : bodies.y) y /= first;
     bodies.label = "bodies, kinetic";
-    return {.title = "Energy over the first, " + run.scene->solver(), .x = {"t [s]"}, .y = {"E/E0"}, .curves = {thinned(all), thinned(bodies)}};
+    return {
+        .title = "Energy over the first, " + run.scene->solver(), .x = {"t [s]"}, .y = {"E/E0"}, .curves = {thinned(all), thinned(bodies)}};
 }
 
 }  // namespace
