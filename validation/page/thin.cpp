@@ -138,6 +138,26 @@ private:
     std::set<std::tuple<std::string, long, long>> seen_;
 };
 
+/// Of groups that hold nothing, or nothing but such groups, nothing is left.
+std::string without_empty_groups(const std::string& svg) {
+    constexpr std::string_view closes = "</g>";
+    std::string out;
+    for (std::size_t at = 0; at < svg.size();) {
+        const auto end = std::min(svg.find(closes, at), svg.size());
+        out.append(svg, at, end - at);
+        at = end + closes.size();
+        if (end == svg.size()) break;
+        const auto last = out.find_last_not_of(" \n"), begins = out.rfind('<');
+        const bool empty = last != std::string::npos && begins != std::string::npos && out[last] == '>' && out[last - 1] != '/' &&
+                           out.find('>', begins) == last && (out.compare(begins, 3, "<g ") == 0 || out.compare(begins, 3, "<g>") == 0);
+        if (empty)
+            out.erase(begins);
+        else
+            out += closes;
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string thin_svg(const std::string& svg) {
@@ -179,7 +199,9 @@ std::string inline_svg(const std::string& svg, std::string_view prefix) {
                                    {"stroke=\"black\"", "stroke=\"currentColor\""},
                                    {"rgb(  0,   0,   0)", "currentColor"},
                                    {"xlink:href", "href"},
-                                   {" font-family=\"sans\"", ""}})
+                                   {" font-family=\"sans\"", ""},
+                                   {" stroke-linecap=\"butt\"", ""},  // as without
+                                   {" stroke-linejoin=\"miter\"", ""}})
         replace_all(s, from, to);
     std::string one_line;  // no blank lines, no indentation
     bool line_begins = true;
@@ -188,7 +210,7 @@ std::string inline_svg(const std::string& svg, std::string_view prefix) {
         one_line += c;
         line_begins = c == '\n';
     }
-    return one_line;
+    return without_empty_groups(one_line);
 }
 
 }  // namespace weir::validation

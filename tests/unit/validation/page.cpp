@@ -163,6 +163,11 @@ TEST("a diagram holds every point that its axes can show, and a map one cell a r
     EXPECT_EQ(count(map_svg(map), "class=\"cell k0\"><rect x"), 2u);
 }
 
+TEST("an SVG in a page has no groups that hold nothing, and keeps the others") {
+    EXPECT_EQ(inline_svg("<svg>\n<g a=\"1\">\n\t<g>\n\t</g>\n</g>\n<g b=\"2\">\n<path/>\n<g></g>\n</g>\n</svg>", "x"),
+              "<svg>\n\n<g b=\"2\">\n<path/>\n\n</g>\n</svg>");
+}
+
 TEST("the README's results are written between its markers, the rest stays, and a second time changes nothing") {
     const weir::test::TemporaryFolder folder;
     results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2"), claim(false, 3, 2, "<= 2")}));
