@@ -31,6 +31,7 @@ void SurfaceViscosity<D>::for_each_unknown(F&& f) const {
 template <int D>
 void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
     const auto is_closed = [&](const Index<D>& I) { return !closed.empty() && closed(I); };
+    const auto by_body = [&](const Index<D>& I) { return bodies_ && bodies_->closes(I); };
     for_each_cell(frame_.cells, [&](const Index<D>& I) { cell_(I) = is_closed(I) ? 0 : surface.fraction(I); });
     // Whether a cell of the edge's four lies beyond a side, and whether shear acts there.
     for (int a = 0; a < D; ++a)
@@ -39,6 +40,7 @@ void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D
             for_each_cell(weight.extent(), [&](const Index<D>& I) {
                 real sum = 0;
                 bool shears = true;
+                int cells = 0, in_bodies = 0;
                 for (const int da : {-1, 0})
                     for (const int db : {-1, 0}) {
                         Index<D> J = I;
@@ -53,8 +55,14 @@ void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D
                             const auto& side = sides_->side(axis, i < 0 ? 0 : 1);
                             shears &= side.kind == SideKind::moving_wall || (side.kind == SideKind::wall && side.no_slip);
                         }
-                        if (inside) sum += cell_(J), shears &= solids_stick_ || !is_closed(J);
+                        if (!inside) continue;
+                        ++cells;
+                        if (by_body(J))
+                            ++in_bodies;  // as wet as what stands beside it
+                        else
+                            sum += cell_(J), shears &= solids_stick_ || !is_closed(J);
                     }
+                if (in_bodies > 0 && in_bodies < cells) sum *= static_cast<real>(cells) / (cells - in_bodies);
                 weight(I) = shears ? 0.25 * sum : 0;
             });
         }
@@ -67,6 +75,8 @@ void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D
             mass(I) = on_side || copy || shut ? -1 : 0.5 * (cell_(frame_.near(I, a, -1)) + cell_(frame_.near(I, a, 0)));
         });
     }
+    if (bodies_)
+        for (const InsideFace<D>& f : state.grip->inside) mass_[static_cast<std::size_t>(f.axis)](f.face) = -1;
 }
 
 /// ∂_b u_a + ∂_a u_b at the edge on the lower sides of cell I along a and b.
@@ -202,7 +212,7 @@ real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
 
 /// Conjugate gradients with the diagonal as preconditioner: ν dt/h² is moderate, a few iterations do.
 template <int D>
-void SurfaceViscosity<D>::solve(real dt_nu) {
+void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu) {
     const real s = theta_ * dt_nu;
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
@@ -211,7 +221,11 @@ void SurfaceViscosity<D>::solve(real dt_nu) {
         p_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
     });
     real rz = dot(r_, p_);
-    const real target = 1e-18 * rz;
+    if (bodies_) {
+        rz += bodies_->precondition();
+        bodies_->turn(state, 0, p_);
+    }
+    const real target = target_ * rz;
     iterations_ = 0;
     while (rz > target && rz > 0) {
         if (++iterations_ > 1000) throw NumericalFailure("velocity", "the viscous solve missed its tolerance after 1000 iterations");
@@ -219,34 +233,104 @@ void SurfaceViscosity<D>::solve(real dt_nu) {
             const auto at = static_cast<std::size_t>(a);
             ap_[at](I) = mass_[at](I) * p_[at](I) + s * stress_divergence(p_, a, I, 0);
         });
-        const real alpha = rz / dot(p_, ap_);
+        real met = 0;
+        if (bodies_) {
+            strain_inside(state, p_, s, 0, ap_);
+            met = bodies_->multiply(state, s, p_, ap_);
+        }
+        const real alpha = rz / (dot(p_, ap_) + met);
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
             x_[at](I) += alpha * p_[at](I);
             r_[at](I) -= alpha * ap_[at](I);
             ap_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
         });
-        const real rz_next = dot(r_, ap_), beta = rz_next / rz;
+        real rz_next = dot(r_, ap_);
+        if (bodies_) {
+            bodies_->walk(alpha);
+            rz_next += bodies_->precondition();
+        }
+        const real beta = rz_next / rz;
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
             p_[at](I) = ap_[at](I) + beta * p_[at](I);
         });
+        if (bodies_) bodies_->turn(state, beta, p_);
         rz = rz_next;
     }
 }
 
 template <int D>
+void SurfaceViscosity<D>::hold_bodies(const MacState<D>& state, const Vec<D>& gravity) {
+    bodies_ = std::make_unique<BodyRows<D>>(state);
+    gravity_ = gravity;
+}
+
+/// The walls of bodies beside unknown faces: as wet as the edge, or the cell, between the face and the one inside.
+template <int D>
+void SurfaceViscosity<D>::list_walls(const MacState<D>& state) {
+    for (const WallLink<D>& link : state.grip->links) {
+        if (mass_[static_cast<std::size_t>(link.axis)](link.node) < 0) continue;
+        const bool above = link.beyond[link.across] > link.node[link.across];
+        const int a = link.axis, b = link.across;
+        const real w = a == b ? cell_(frame_.near(link.node, a, above ? 0 : -1))
+                              : edge(std::min(a, b), std::max(a, b))(above ? link.beyond : link.node);
+        bodies_->add_wall(state, link, w);
+    }
+}
+
+/// u += dt (g − ∇p/ρ), of the pressure of before, as deep in the liquid as no surface has passed since.
+template <int D>
+void SurfaceViscosity<D>::push(MacState<D>& state, const LevelSet<D>& surface, real dt) const {
+    const real deep = -1.5 * frame_.h_max();
+    const auto is_deep = [&](const Index<D>& I) { return surface.phi(I) < deep && state.cells(I) == poisson::Cell::fluid; };
+    for_each_unknown([&](int a, const Index<D>& I) {
+        const Index<D> below = frame_.near(I, a, -1), above = frame_.near(I, a, 0);
+        if (is_deep(below) && is_deep(above))
+            state.u[a](I) += dt * (gravity_[a] - (state.p(above) - state.p(below)) * frame_.inv_h[a] / state.rho);
+    });
+}
+
+/// dt ν K u on the faces inside bodies.
+template <int D>
+void SurfaceViscosity<D>::strain_inside(const MacState<D>& state, const Faces& u, real dt_nu, real fixed, Faces& out) const {
+    const auto& inside = state.grip->inside;
+    parallel_for(0, static_cast<int>(inside.size()), [&](int i) {
+        const InsideFace<D>& f = inside[static_cast<std::size_t>(i)];
+        out[static_cast<std::size_t>(f.axis)](f.face) = dt_nu * stress_divergence(u, f.axis, f.face, fixed);
+    });
+}
+
+template <int D>
 void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt) {
+    const real dt_nu = dt * state.nu;
+    if (bodies_) bodies_->find(state, closed);
     set_weights(state, surface, closed);
     list_unknowns();
+    if (bodies_) {
+        list_walls(state);
+        bodies_->add_diagonal(state, dt_nu, diagonal_);
+        push(state, surface, dt);
+        bodies_->carry(state, state.u.face);
+    }
     for (int a = 0; a < D; ++a) {
         p_[static_cast<std::size_t>(a)].fill(0);
         x_[static_cast<std::size_t>(a)].fill(0);
     }
     for_each_unknown(
         [&](int a, const Index<D>& I) { r_[static_cast<std::size_t>(a)](I) = -dt * state.nu * stress_divergence(state.u.face, a, I, 1); });
-    solve(dt * state.nu);
+    if (bodies_) {
+        strain_inside(state, state.u.face, -dt_nu, 1, r_);
+        bodies_->begin(state, dt_nu, state.u.face, r_);
+    }
+    solve(state, dt_nu);
     for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += x_[static_cast<std::size_t>(a)](I); });
+    if (bodies_) {
+        bodies_->carry(state, state.u.face);
+        strain_inside(state, state.u.face, dt_nu, 1, ap_);
+        bodies_->finish(state, dt_nu, state.u.face, ap_);
+        push(state, surface, -dt);
+    }
     sync_periodic(state.u, state.sides);
 }
 
@@ -257,7 +341,7 @@ std::size_t SurfaceViscosity<D>::bytes() const {
     for (const auto& grid : mass_) total += 6 * grid.size();
     total *= sizeof(real);
     for (const auto& list : unknown_) total += list.capacity() * sizeof(Index<D>);
-    return total;
+    return total + (bodies_ ? bodies_->bytes() : 0);
 }
 
 template class SurfaceViscosity<2>;
