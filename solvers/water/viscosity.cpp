@@ -5,8 +5,6 @@
 
 namespace weir::water {
 
-using geometry::SideKind;
-
 template <int D>
 SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick)
     : frame_(frame), sides_(&state.sides), theta_(theta), solids_stick_(solids_stick), cell_(frame.cells) {
@@ -26,57 +24,6 @@ void SurfaceViscosity<D>::for_each_unknown(F&& f) const {
         const auto& list = unknown_[static_cast<std::size_t>(a)];
         parallel_for(0, static_cast<int>(list.size()), [&](int k) { f(a, list[static_cast<std::size_t>(k)]); });
     }
-}
-
-template <int D>
-void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
-    const auto is_closed = [&](const Index<D>& I) { return !closed.empty() && closed(I); };
-    const auto by_body = [&](const Index<D>& I) { return bodies_ && bodies_->closes(I); };
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { cell_(I) = is_closed(I) ? 0 : surface.fraction(I); });
-    // Whether a cell of the edge's four lies beyond a side, and whether shear acts there.
-    for (int a = 0; a < D; ++a)
-        for (int b = a + 1; b < D; ++b) {
-            auto& weight = edge_[static_cast<std::size_t>(a + b - 1)];
-            for_each_cell(weight.extent(), [&](const Index<D>& I) {
-                real sum = 0;
-                bool shears = true;
-                int cells = 0, in_bodies = 0;
-                for (const int da : {-1, 0})
-                    for (const int db : {-1, 0}) {
-                        Index<D> J = I;
-                        bool inside = true;
-                        for (const auto& [axis, by] : {std::pair{a, da}, std::pair{b, db}}) {
-                            const int i = I[axis] + by;
-                            if ((i >= 0 && i < frame_.cells[axis]) || frame_.periodic(axis)) {
-                                J[axis] = (i + frame_.cells[axis]) % frame_.cells[axis];
-                                continue;
-                            }
-                            inside = false;
-                            const auto& side = sides_->side(axis, i < 0 ? 0 : 1);
-                            shears &= side.kind == SideKind::moving_wall || (side.kind == SideKind::wall && side.no_slip);
-                        }
-                        if (!inside) continue;
-                        ++cells;
-                        if (by_body(J))
-                            ++in_bodies;  // as wet as what stands beside it
-                        else
-                            sum += cell_(J), shears &= solids_stick_ || !is_closed(J);
-                    }
-                if (in_bodies > 0 && in_bodies < cells) sum *= static_cast<real>(cells) / (cells - in_bodies);
-                weight(I) = shears ? 0.25 * sum : 0;
-            });
-        }
-    for (int a = 0; a < D; ++a) {
-        auto& mass = mass_[static_cast<std::size_t>(a)];
-        for_each_cell(mass.extent(), [&](const Index<D>& I) {
-            const bool on_side = !frame_.periodic(a) && (I[a] == 0 || I[a] == frame_.cells[a]);
-            const bool copy = frame_.periodic(a) && I[a] == frame_.cells[a];
-            const bool shut = state.solid.any() && state.solid.open[static_cast<std::size_t>(a)](I) == 0;
-            mass(I) = on_side || copy || shut ? -1 : 0.5 * (cell_(frame_.near(I, a, -1)) + cell_(frame_.near(I, a, 0)));
-        });
-    }
-    if (bodies_)
-        for (const InsideFace<D>& f : state.grip->inside) mass_[static_cast<std::size_t>(f.axis)](f.face) = -1;
 }
 
 /// ∂_b u_a + ∂_a u_b at the edge on the lower sides of cell I along a and b.
@@ -264,19 +211,6 @@ template <int D>
 void SurfaceViscosity<D>::hold_bodies(const MacState<D>& state, const Vec<D>& gravity) {
     bodies_ = std::make_unique<BodyRows<D>>(state);
     gravity_ = gravity;
-}
-
-/// The walls of bodies beside unknown faces: as wet as the edge, or the cell, between the face and the one inside.
-template <int D>
-void SurfaceViscosity<D>::list_walls(const MacState<D>& state) {
-    for (const WallLink<D>& link : state.grip->links) {
-        if (mass_[static_cast<std::size_t>(link.axis)](link.node) < 0) continue;
-        const bool above = link.beyond[link.across] > link.node[link.across];
-        const int a = link.axis, b = link.across;
-        const real w = a == b ? cell_(frame_.near(link.node, a, above ? 0 : -1))
-                              : edge(std::min(a, b), std::max(a, b))(above ? link.beyond : link.node);
-        bodies_->add_wall(state, link, w);
-    }
 }
 
 /// u += dt (g − ∇p/ρ), of the pressure of before, as deep in the liquid as no surface has passed since.

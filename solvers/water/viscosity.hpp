@@ -35,6 +35,7 @@ public:
 private:
     using Faces = std::array<Grid<real, D>, D>;
     void set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
+    real edge_weight(int a, int b, const Index<D>& I, const Grid<std::uint8_t, D>& closed) const;
     /// (K u)_a at a face [1/s² × fraction]; `fixed` 1: prescribed values of walls count, 0: they are zero (for corrections).
     real stress_divergence(const Faces& u, int a, const Index<D>& I, real fixed) const;
     bool is_inner(int a, const Index<D>& I) const;
