@@ -68,13 +68,18 @@ Water<D>::Water(const scene::Scene& scene)
     seed_markers();
 }
 
-/// Friction takes the pressure of before: water at rest under its weight, whose surface is at its highest cell.
+/// Friction takes the pressure of before: of liquid at rest under its weight, zero in its highest cell.
 template <int D>
 void Water<D>::stick_to_bodies(const scene::Scene& scene) {
     refuse_friction_of_before(*scene.effect("viscosity"), scene);
     const auto& all = bodies_->bodies().all();
     if (std::none_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; })) return;
     bodies_->stick(state_, true);
+    const auto is_liquid = [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::fluid; };
+    const real least = -max_over(state_.extent(), [&](const Index<D>& I) { return is_liquid(I) ? -state_.p(I) : -infinity; });
+    for_each_cell(state_.extent(), [&](const Index<D>& I) {
+        if (is_liquid(I)) state_.p(I) -= least;
+    });
     viscosity_->hold_bodies(state_, gravity_);
 }
 
