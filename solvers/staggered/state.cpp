@@ -23,30 +23,26 @@ bool asks_for_viscosity(const scene::Scene& scene, const geometry::Sides<D>& sid
     return asks;
 }
 
-/// The entries of this rank's planes; all where it holds all.
-template <class T, int D>
-PlaneRange own_entries(const Grid<T, D>& q) {
-    if (!q.store().windowed()) return {0, q.extent()[D - 1]};
+/// Of a windowed array, f(values, first): the entries of this rank's planes, and which of the whole is their first.
+template <int D, class Field, class F>
+void own_entries(Field& q, F&& f) {
+    constexpr int slowest = D - 1;
     const Cut& cut = *detail::own_share.cut;
-    return {cut.begin(slabs().rank()), cut.end(slabs().rank(), q.extent()[D - 1])};
+    const auto plane = static_cast<std::size_t>(q.stride(slowest)), begin = plane * static_cast<std::size_t>(cut.begin(slabs().rank())),
+               end = plane * static_cast<std::size_t>(cut.end(slabs().rank(), q.extent()[slowest]));
+    f(q.values().subspan(begin, end - begin), begin);
 }
 
 template <class T, int D>
 void put(Checkpoint& to, const std::string& name, const Grid<T, D>& q) {
     if (!q.store().windowed()) return to.put(name, q.values());
-    const auto plane = static_cast<std::size_t>(q.stride(D - 1));
-    const PlaneRange own = own_entries(q);
-    const auto begin = static_cast<std::size_t>(own.begin), count = static_cast<std::size_t>(own.end - own.begin);
-    to.put_part(name, q.values().subspan(begin * plane, count * plane), begin * plane, q.size());
+    own_entries<D>(q, [&](std::span<const T> values, std::size_t first) { to.put_part(name, values, first, q.size()); });
 }
 
 template <class T, int D>
 void get(const Checkpoint& from, const std::string& name, Grid<T, D>& q) {
     if (!q.store().windowed()) return from.get(name, q.values());
-    const auto plane = static_cast<std::size_t>(q.stride(D - 1));
-    const PlaneRange own = own_entries(q);
-    const auto begin = static_cast<std::size_t>(own.begin), count = static_cast<std::size_t>(own.end - own.begin);
-    from.get_part(name, q.values().subspan(begin * plane, count * plane), begin * plane, q.size());
+    own_entries<D>(q, [&](std::span<T> values, std::size_t first) { from.get_part(name, values, first, q.size()); });
 }
 
 }  // namespace
