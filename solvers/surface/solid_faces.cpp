@@ -29,7 +29,7 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
         forget_changed(changed, a);
         for (std::size_t box = 0; box < changed.size(); ++box)
             changed[box].faces(a).in_order([&](const Index<D>& I) {
-                if (open(I) >= least_trusted_fraction) return;
+                if (!state.u[a].store().holds(I[D - 1]) || open(I) >= least_trusted_fraction) return;
                 if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) return;  // the side's own
                 for (std::size_t other = 0; other < box; ++other)
                     if (changed[other].faces(a).holds(I)) return;  // found there
