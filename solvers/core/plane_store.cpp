@@ -64,11 +64,10 @@ std::vector<char> planes_near(int count, int deep, bool ring) {
     const int n = cut.planes(), rank = slabs().rank();
     std::vector<char> near(static_cast<std::size_t>(count), 0);
     deep = std::min(deep, n);
-    for (int plane = cut.begin(rank) - deep; plane < cut.end(rank, count) + deep; ++plane)
-        if (plane >= 0 && plane < count)
-            near[static_cast<std::size_t>(plane)] = 1;
-        else if (ring)
-            near[static_cast<std::size_t>((plane % n + n) % n)] = 1;
+    for (int plane = cut.begin(rank) - deep; plane < cut.end(rank, count) + deep; ++plane) {
+        if (plane >= 0 && plane < count) near[static_cast<std::size_t>(plane)] = 1;
+        if (ring && (plane < 0 || plane >= n)) near[static_cast<std::size_t>((plane % n + n) % n)] = 1;  // plane n of faces is plane 0
+    }
     return near;
 }
 

@@ -238,7 +238,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
         front_.clear();
         start_front(mark, a, surface, near);
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
-        for (int layer = 1; layer <= layers && !front_.empty(); ++layer) {
+        for (int layer = 1; layer <= layers && (over_ranks() || !front_.empty()); ++layer) {  // another rank may have a front
             if (layer > 1) refresh(u[a], frame_.periodic(D - 1), layer == 2 ? behind : 1);
             resize_scratch(value_, front_.size());
             for_each_own([&](int i) {

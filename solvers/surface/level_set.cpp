@@ -361,7 +361,10 @@ void LevelSet<D>::join_sphere(const Vec<D>& x, real radius) {
 
 template <int D>
 void LevelSet<D>::dilate(real shift) {
-    parallel_for(0, static_cast<int>(band_.size()), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) -= shift; });
+    parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
+        const Index<D>& I = band_[static_cast<std::size_t>(i)];
+        if (phi.store().holds(I[D - 1])) phi(I) -= shift;
+    });
 }
 
 template <int D>

@@ -370,7 +370,7 @@ real LevelSet<D>::sum_over_band(int layers, F&& f) const {
     const auto add = [&](real& sum, std::size_t at) {
         if (closed_.empty() || !closed_(band_[at])) sum += f(band_[at]);
     };
-    if (over_ranks()) return ranks_.sum_of_blocks(layers, layer_start_, add);
+    if (over_ranks() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
     constexpr std::size_t block = BandOfRanks::block;
     const std::size_t end = layer_end(layers);
     return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {

@@ -21,7 +21,8 @@ void SkinOfRanks<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& cl
             for (int d = 0; d < D; ++d)
                 for (const int by : {-1, 1}) {
                     Index<D> J = I;
-                    f(frame.step(J, d, by), closed.linear(J));
+                    const bool inside = frame.step(J, d, by);
+                    f(inside, closed.linear(J));
                 }
     };
     rim_.clear(), beside_.clear();

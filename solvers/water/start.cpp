@@ -135,6 +135,7 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
 template <int D>
 void Water<D>::seed_markers() {
     const std::size_t cells = product(frame_.cells);
+    refresh_faces(state_.u, frame_, 3);  // markers of a plane beyond the cuts look around themselves
     if (!over_ranks()) markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);
