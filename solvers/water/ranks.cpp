@@ -153,7 +153,7 @@ std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std:
         ~Lent() override {
             const OwnPlanes mine = solver.own_planes();
             for (auto* grid : grids) grid->store().close();
-            solver.all_markers_.for_each_array([](std::vector<real>& array) { array = {}; });
+            solver.all_markers_.for_each_array([](std::vector<real>& array) { std::vector<real>().swap(array); });
         }
     };
     auto lent = std::make_unique<Lent>(*this);
