@@ -1,5 +1,7 @@
 #include "staggered/state.hpp"
 
+#include "core/plane_checkpoint.hpp"
+
 #include <stdexcept>
 
 namespace weir::staggered {
@@ -21,28 +23,6 @@ bool asks_for_viscosity(const scene::Scene& scene, const geometry::Sides<D>& sid
     bool asks = scene.effect("viscosity") != nullptr || scene.root().text_or("initial.velocity.name", "") == "kovasznay";
     for (int a = 0; a < D; ++a) asks = asks || sides.side(a, 0).profile == "kovasznay" || sides.side(a, 1).profile == "kovasznay";
     return asks;
-}
-
-/// Of a windowed array, f(values, first): the entries of this rank's planes, and which of the whole is their first.
-template <int D, class Field, class F>
-void own_entries(Field& q, F&& f) {
-    constexpr int slowest = D - 1;
-    const Cut& cut = *detail::own_share.cut;
-    const auto plane = static_cast<std::size_t>(q.stride(slowest)), begin = plane * static_cast<std::size_t>(cut.begin(slabs().rank())),
-               end = plane * static_cast<std::size_t>(cut.end(slabs().rank(), q.extent()[slowest]));
-    f(q.values().subspan(begin, end - begin), begin);
-}
-
-template <class T, int D>
-void put(Checkpoint& to, const std::string& name, const Grid<T, D>& q) {
-    if (!q.store().windowed()) return to.put(name, q.values());
-    own_entries<D>(q, [&](std::span<const T> values, std::size_t first) { to.put_part(name, values, first, q.size()); });
-}
-
-template <class T, int D>
-void get(const Checkpoint& from, const std::string& name, Grid<T, D>& q) {
-    if (!q.store().windowed()) return from.get(name, q.values());
-    own_entries<D>(q, [&](std::span<T> values, std::size_t first) { from.get_part(name, values, first, q.size()); });
 }
 
 }  // namespace
@@ -103,19 +83,19 @@ void MacState<D>::allocate_solids() {
 
 template <int D>
 void MacState<D>::save(Checkpoint& to) const {
-    for (int a = 0; a < D; ++a) put(to, component_names[a], u[a]);
-    put(to, "p", p);
-    put(to, "cells", cells);
-    for (const auto& field : fields) put(to, "field." + field.name, field.values);
+    for (int a = 0; a < D; ++a) put_planes(to, component_names[a], u[a]);
+    put_planes(to, "p", p);
+    put_planes(to, "cells", cells);
+    for (const auto& field : fields) put_planes(to, "field." + field.name, field.values);
     to.put_value("time", time);
 }
 
 template <int D>
 void MacState<D>::restore(const Checkpoint& from) {
-    for (int a = 0; a < D; ++a) get(from, component_names[a], u[a]);
-    get(from, "p", p);
-    get(from, "cells", cells);
-    for (auto& field : fields) get(from, "field." + field.name, field.values);
+    for (int a = 0; a < D; ++a) get_planes(from, component_names[a], u[a]);
+    get_planes(from, "p", p);
+    get_planes(from, "cells", cells);
+    for (auto& field : fields) get_planes(from, "field." + field.name, field.values);
     time = from.template get_value<real>("time");
 }
 
