@@ -74,6 +74,7 @@ void Migration::choose_cut_points(const CellGrid& grid) {
     int behind = grid.cells[0] * grid.cells[1] * grid.cells[2];  // cells that share the leading digits
     for (std::size_t a = 3; a-- > 0;) {
         const int digits = grid.cells[a], width = behind / digits;
+        if (digits == 1) continue;
         std::vector<int> counts(cuts * static_cast<std::size_t>(digits), 0);
         for (const int c : cell_)
             for (std::size_t r = 0; r < cuts; ++r)
@@ -172,8 +173,9 @@ void Migration::apply(const Frame& frame, real radius, int dim, const HandOver::
 int Migration::before() const { return std::accumulate(counts_.begin(), counts_.begin() + slabs().rank(), 0); }
 
 void Migration::balance(real most) {
+    constexpr real few = 32;  // particles: what they take is less than a message
     for (const int count : counts_)
-        if (count > (1 + most) * total_ / static_cast<real>(counts_.size())) recut();
+        if (count > (1 + most) * total_ / static_cast<real>(counts_.size()) + few) recut();
 }
 
 std::size_t Migration::bytes() const { return cells_.bytes() + cell_.capacity() * sizeof(int) + hands_.bytes(); }

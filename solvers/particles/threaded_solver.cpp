@@ -8,7 +8,7 @@ namespace weir::particles {
 
 namespace {
 
-/// A rank with so much more than its share keeps the others waiting for longer than new cuts take, which are gathered in three messages.
+/// A rank with so much more than its share keeps the others waiting for longer than new cuts take, which are found in a message an axis.
 constexpr real worth_a_new_cut = 0.03;
 
 }  // namespace
