@@ -16,10 +16,6 @@
 
 namespace weir::flow {
 
-/// Over ranks: may each hold its own planes of a scene alone? Not where somebody looks at whole fields on all ranks, nor where each solves
-/// for the pressure itself.
-bool holds_own_planes(const scene::Scene& scene);
-
 /// The registered solver "mac".
 scene::SolverKind kind();
 

@@ -54,6 +54,7 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
                 solid_[at].push_back({solids.normal(x, eps, of), solids.pose(nearest).velocity_at(x), nearest, solids[nearest].no_slip});
             };
             changed[box].faces(a).rows([&](Index<D> I, int count) {
+                if (!state.u[a].store().holds(I[D - 1])) return;
                 const real* part = &open(I);
                 for (int i = 0; i < count; ++i, ++I[0])
                     if (part[i] < least_trusted_fraction) see(I);
@@ -63,6 +64,7 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
         faces_[at].reserve(2 * faces_[at].size());
         solid_[at].reserve(2 * solid_[at].size());
     }
+    any_ = sum_of_ranks(std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) > 0;
 }
 
 template <int D>
@@ -114,7 +116,7 @@ Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, cons
 /// Over ranks, each those of its own planes.
 template <int D>
 void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, const Frame<D>& frame) {
-    if (std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) refresh_faces(u, frame, 1);
+    if (any_) refresh_faces(u, frame, 1);
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         parallel_for(0, static_cast<int>(solid_[at].size()), [&](int i) {
