@@ -67,6 +67,7 @@ struct Wave final : Shape<D> {
         const real slope = amplitude * k * std::sin(k * x[0]);
         return (x[1] - level - amplitude * std::cos(k * x[0])) / std::sqrt(1 + slope * slope);
     }
+    real steepest() const override { return 2; }  // within a tenth of 1/(amplitude k²) from the surface; further away nobody looks
     Vec<D> centre() const override { return level * Vec<D>::unit(1); }
     std::string code() const override { return call("shape_wave", level, amplitude, k); }
 };
@@ -112,6 +113,11 @@ struct Union final : Shape<D> {
         for (const auto& part : parts) d = std::min(d, part->distance(x));
         return d;
     }
+    real steepest() const override {
+        real most = 1;
+        for (const auto& part : parts) most = std::max(most, part->steepest());
+        return most;
+    }
     Vec<D> centre() const override {
         Vec<D> sum{};
         for (const auto& part : parts) sum += part->centre();
@@ -134,6 +140,11 @@ struct Difference final : Shape<D> {
         for (const auto& hole : minus) d = std::max(d, -hole->distance(x));
         return d;
     }
+    real steepest() const override {
+        real most = from->steepest();
+        for (const auto& hole : minus) most = std::max(most, hole->steepest());
+        return most;
+    }
     Vec<D> centre() const override { return from->centre(); }
     std::string code() const override {
         std::string most = from->code();
@@ -146,6 +157,7 @@ struct OfTriangles final : Shape<3> {
     PosedMesh posed;
     explicit OfTriangles(PosedMesh p) : posed(std::move(p)) {}
     real distance(const Vec<3>& x) const override { return posed.scale * posed.mesh->distance(posed.to_file(x)); }
+    real steepest() const override { return std::sqrt(3.0); }  // linear between nodes whose own are exact
     Vec<3> centre() const override { return posed.to_scene(posed.mesh->centre()); }
     std::string code() const override {
         throw BadInput("a shape \"mesh\" is known to threads and not to devices: scheme.backend = \"threads\" runs it");

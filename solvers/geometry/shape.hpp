@@ -20,6 +20,8 @@ public:
     virtual ~Shape() = default;
     /// Signed distance from x to the surface [m], negative inside.
     virtual real distance(const Vec<D>& x) const = 0;
+    /// How fast the distance may grow with the way.
+    virtual real steepest() const { return 1; }
     /// Where moving shapes turn about when no centre is given.
     virtual Vec<D> centre() const = 0;
     /// distance(x) for devices: an expression of OpenCL C over the functions of particles/kernels/shapes.cl.

@@ -6,9 +6,6 @@ namespace weir::geometry {
 
 namespace {
 
-/// How fast a distance may grow with the way: 1 where it is exact, root 3 where it is interpolated between values that are.
-constexpr real steepest = 1.7320508075688772;
-
 /// Outward unit normal of a distance, by central differences.
 template <int D, class Distance>
 Vec<D> slope_of(const Vec<D>& x, real eps, const Distance& distance) {
@@ -99,14 +96,29 @@ Vec<D> Solids<D>::normal(const Vec<D>& x, real eps) const {
 }
 
 template <int D>
-void Solids<D>::find_near(const Ball<D>& where, real than, std::vector<std::size_t>& near) const {
+void Solids<D>::find_near(const Region<D>& where, real than, std::vector<std::size_t>& near) const {
     near.clear();
+    const Vec<D> middle = 0.5 * (where.min + where.max);
+    const real half = 0.5 * norm(where.max - where.min);
     for (std::size_t i = 0; i < solids_.size(); ++i) {
-        const bool held = balls_[i].radius < infinity;
-        const real least = held ? norm(where.middle - balls_[i].middle) - balls_[i].radius - where.radius
-                                : distance(i, where.middle) - steepest * where.radius;
+        const Ball<D>& ball = balls_[i];
+        real least = 0;
+        if (ball.radius < infinity) {
+            Vec<D> away;
+            for (int d = 0; d < D; ++d) away[d] = std::max({0.0, where.min[d] - ball.middle[d], ball.middle[d] - where.max[d]});
+            least = norm(away) - ball.radius;
+        } else {
+            least = distance(i, middle) - solids_[i].shape->steepest() * half;
+        }
         if (!(least >= than)) near.push_back(i);
     }
+}
+
+template <int D>
+real Solids<D>::steepest(std::span<const std::size_t> of) const {
+    real most = 1;
+    for (const std::size_t i : of) most = std::max(most, solids_[i].shape->steepest());
+    return most;
 }
 
 template <int D>

@@ -26,6 +26,12 @@ struct Ball {
     real radius = infinity;
 };
 
+/// A part of space.
+template <int D>
+struct Region {
+    Vec<D> min, max;
+};
+
 /// All solids; set_time() places them, every query speaks of that time.
 template <int D>
 class Solids {
@@ -51,9 +57,11 @@ public:
     real distance(std::size_t solid, const Vec<D>& x) const { return solids_[solid].shape->distance(poses_[solid].to_rest(x)); }
     /// The solid whose surface is nearest (deepest inside wins); needs at least one.
     std::size_t nearest(const Vec<D>& x) const;
-    /// Those that may be nearer than `than` to some point of a ball, in order. Where one of them is as near as that, the questions below,
+    /// Those that may be nearer than `than` to some point of a region, in order. Where one of them is as near as that, the questions below,
     /// asked of these alone, have the answer of all.
-    void find_near(const Ball<D>& where, real than, std::vector<std::size_t>& near) const;
+    void find_near(const Region<D>& where, real than, std::vector<std::size_t>& near) const;
+    /// How fast their distance may grow with the way.
+    real steepest(std::span<const std::size_t> of) const;
     /// `most`, or less.
     real distance(const Vec<D>& x, std::span<const std::size_t> of, real most = infinity) const;
     std::size_t nearest(const Vec<D>& x, std::span<const std::size_t> of) const;

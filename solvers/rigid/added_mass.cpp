@@ -15,6 +15,27 @@ constexpr real forgotten = 0.1;
 
 }  // namespace
 
+/// By elimination without pivots, which a positive definite matrix does not need.
+template <int D>
+Block<D> inverse_of(Block<D> m, const char* free) {
+    constexpr std::size_t n = freedoms<D>;
+    Block<D> inverse{};
+    for (std::size_t k = 0; k < n; ++k) inverse[k][k] = free[k] ? 1 : 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!free[k]) continue;
+        const real pivot = 1 / m[k][k];
+        for (std::size_t l = 0; l < n; ++l) m[k][l] *= pivot, inverse[k][l] *= pivot;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i == k || !free[i]) continue;
+            const real factor = m[i][k];
+            for (std::size_t l = 0; l < n; ++l) m[i][l] -= factor * m[k][l], inverse[i][l] -= factor * inverse[k][l];
+        }
+    }
+    for (std::size_t k = 0; k < n; ++k)  // of round-off
+        for (std::size_t l = 0; l < k; ++l) inverse[k][l] = inverse[l][k] = 0.5 * (inverse[k][l] + inverse[l][k]);
+    return inverse;
+}
+
 template <int D>
 void AddedMass<D>::see(std::size_t body, const Block<D>& guess) {
     Known& known = known_[body];
@@ -44,17 +65,13 @@ void AddedMass<D>::keep(Known& known) {
 template <int D>
 void AddedMass<D>::begin(const std::vector<Block<D>>& masses, const std::vector<char>& free, Mobility& mobility) const {
     mobility.resize(n * known_.size());
-    Mobility own, inverse;
-    std::vector<char> is_free(n);
-    own.resize(n);
     for (std::size_t b = 0; b < known_.size(); ++b) {
-        for (std::size_t k = 0; k < n; ++k) {
-            is_free[k] = free[b * n + k];
-            for (std::size_t l = 0; l < n; ++l) own(k, l) = masses[b][k][l] + known_[b].mass[k][l];
-        }
-        invert(own, is_free, inverse);
+        Block<D> whole = masses[b];
         for (std::size_t k = 0; k < n; ++k)
-            for (std::size_t l = 0; l < n; ++l) mobility(b * n + k, b * n + l) = inverse(k, l);
+            for (std::size_t l = 0; l < n; ++l) whole[k][l] += known_[b].mass[k][l];
+        const Block<D> inverse = inverse_of<D>(whole, free.data() + b * n);
+        for (std::size_t k = 0; k < n; ++k)
+            for (std::size_t l = 0; l < n; ++l) mobility(b * n + k, b * n + l) = inverse[k][l];
     }
 }
 
@@ -133,6 +150,8 @@ void AddedMass<D>::restore(const Checkpoint& from, const std::string& name) {
     }
 }
 
+template Block<2> inverse_of<2>(Block<2>, const char*);
+template Block<3> inverse_of<3>(Block<3>, const char*);
 template class AddedMass<2>;
 template class AddedMass<3>;
 

@@ -14,6 +14,10 @@ namespace weir::rigid {
 template <int D>
 using Block = std::array<Twist<D>, freedoms<D>>;
 
+/// The inverse of the rows and columns of a positive definite matrix that are free, symmetric to the last bit; zero in the others.
+template <int D>
+Block<D> inverse_of(Block<D> m, const char* free);
+
 template <int D>
 class AddedMass {
 public:

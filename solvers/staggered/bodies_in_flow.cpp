@@ -28,29 +28,12 @@ constexpr real differs = 5;
 /// lighter one takes turns with the pressure.
 constexpr real most_added = 60;
 
+/// Of a cell's diagonal: gaps that are larger do not close in a step, in which no body crosses more than two cells. What the first turn
+/// says of the velocities may be more.
+constexpr real most_reach = 4;
+
 /// Of a cell: how deep a body may dive into liquid that has not felt it yet.
 constexpr real unfelt = 0.1;
-
-/// The inverse of the rows and columns of m that are free, by elimination without pivots, as m is positive definite; zero in the others.
-template <int D>
-std::array<poisson::LowRank::Row, poisson::LowRank::columns> inverse_of(rigid::Block<D> m, const char* free) {
-    constexpr std::size_t n = rigid::freedoms<D>;
-    std::array<poisson::LowRank::Row, poisson::LowRank::columns> inverse{};
-    for (std::size_t k = 0; k < n; ++k) inverse[k][k] = free[k] ? 1 : 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        if (!free[k]) continue;
-        const real pivot = 1 / m[k][k];
-        for (std::size_t l = 0; l < n; ++l) m[k][l] *= pivot, inverse[k][l] *= pivot;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (i == k || !free[i]) continue;
-            const real factor = m[i][k];
-            for (std::size_t l = 0; l < n; ++l) m[i][l] -= factor * m[k][l], inverse[i][l] -= factor * inverse[k][l];
-        }
-    }
-    for (std::size_t k = 0; k < n; ++k)  // of round-off: the matrix of the pressure must be symmetric
-        for (std::size_t l = 0; l < k; ++l) inverse[k][l] = inverse[l][k] = 0.5 * (inverse[k][l] + inverse[l][k]);
-    return inverse;
-}
 
 }  // namespace
 
@@ -269,8 +252,8 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
     const Body<D>& body = bodies_[b];
     faces_[b].clear(), cuts_[b].clear();
     near_.reserve(solids.count());
-    const Vec<D> reach = Vec<D>::constant(body.radius) + 3.0 * h_;  // of the faces that are looked at
-    solids.find_near({body.at, norm(reach)}, norm(h_), near_);      // a solid that cuts one is as near as that
+    const Vec<D> reach = Vec<D>::constant(body.radius) + 3.0 * h_;          // of the faces that are looked at
+    solids.find_near({body.at - reach, body.at + reach}, norm(h_), near_);  // a solid that cuts one is as near as that
     for (int a = 0; a < D; ++a) {
         const auto& open = s.solid.open[static_cast<std::size_t>(a)];
         Index<D> lo, hi;
@@ -280,8 +263,7 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
             if (lo[d] >= hi[d]) return;  // outside the domain
         }
         const real area = cell_ / h_[a];
-        CellBox<D>{lo, hi}.in_order([&](const Index<D>& I) {
-            if (open(I) == 1) return;
+        const auto see = [&](const Index<D>& I) {
             const Vec<D> x = s.u.face_centre(a, I), r = x - body.at;
             if (solids.nearest(x, near_) != own) return;
             const Face f{a, open.linear(I), moves_at<D>(a, r)};
@@ -294,6 +276,11 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
             };
             if (I[a] > 0) count(I - e<D>(a), closed);
             if (I[a] < s.u.cells[a]) count(I, -closed);
+        };
+        CellBox<D>{lo, hi}.rows([&](Index<D> I, int count) {
+            const real* part = &open(I);
+            for (int i = 0; i < count; ++i, ++I[0])
+                if (part[i] != 1) see(I);
         });
     }
 }
@@ -517,7 +504,7 @@ void BodiesInFlow<D>::find_contacts(const geometry::Solids<D>& solids, real dt) 
         for (std::size_t k = 0; k < n; ++k) (k < D ? speed : turning) += std::abs(next_[b * n + k]);
         fastest = std::max(fastest, speed + turning * bodies_[b].radius);
     }
-    around.reach = 2 * dt * fastest + 1e-2 * norm(h_);
+    around.reach = std::min(2 * dt * fastest, most_reach * norm(h_)) + 1e-2 * norm(h_);
     contacts_.find(bodies_.all(), around);
 }
 
@@ -544,16 +531,16 @@ bool BodiesInFlow<D>::join_matrix(const MacState<D>& s) {
             if (free_[i * n + k] && added_.of(i)[k][k] > most_added * masses_[i][k][k]) joined_[i] = 0;
         if (!joined_[i]) continue;
         any = true;
-        inverse_[i] = inverse_of<D>(masses_[i], free_.data() + i * n);
+        inverse_[i] = rigid::inverse_of<D>(masses_[i], free_.data() + i * n);
         const std::size_t begin = matrix_.entries.size();
         for (const Cut& c : cuts_[i]) {
             if (s.cells[c.cell] != Cell::fluid) continue;
             matrix_.entries.push_back({c.cell, {}});
             std::copy(c.out.begin(), c.out.end(), matrix_.entries.back().u.begin());
         }
-        matrix_.blocks.push_back({begin, matrix_.entries.size(), inverse_[i]});
-        for (auto& row : matrix_.blocks.back().C)
-            for (real& entry : row) entry *= scale;
+        matrix_.blocks.push_back({begin, matrix_.entries.size(), {}});
+        for (std::size_t k = 0; k < n; ++k)
+            for (std::size_t l = 0; l < n; ++l) matrix_.blocks.back().C[k][l] = scale * inverse_[i][k][l];
     }
     return any;
 }
@@ -634,7 +621,16 @@ void BodiesInFlow<D>::learn() {
 /// ‖b‖₂² over the fluid.
 template <int D>
 real BodiesInFlow<D>::square_of(const MacState<D>& s, const Grid<real, D>& b) const {
-    return sum_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? b(I) * b(I) : 0; });
+    const std::size_t plane = b.size() / static_cast<std::size_t>(s.extent()[D - 1]);
+    return plane_sum(s.extent()[D - 1], [&](int k) {
+        const std::size_t first = static_cast<std::size_t>(k) * plane;
+        const Cell* cell = s.cells.data() + first;
+        const real* value = b.data() + first;
+        real sum = 0;
+#pragma omp simd reduction(+ : sum)
+        for (std::size_t i = 0; i < plane; ++i) sum += cell[i] == Cell::fluid ? value[i] * value[i] : 0;
+        return sum;
+    });
 }
 
 /// The pressure as far as `tolerance` says, of ‖b‖ with the velocities that were expected. A matrix that bodies are part of may not let

@@ -137,10 +137,10 @@ private:
     std::vector<real> before_, gained_;     // when the step began; what the last step changed them by, over dt
     std::vector<real> heavy_, met_, last_;  // weights; the pressure's impulses of this turn and of the last one
     std::vector<real> change_, missing_;
-    std::vector<real> base_;    // what b has of the velocities
-    std::vector<real> others_;  // impulses of contacts and joints
-    std::vector<char> joined_;  // of each body: is it part of the pressure's matrix?
-    std::vector<std::array<poisson::LowRank::Row, poisson::LowRank::columns>> inverse_;  // of the mass, of those
+    std::vector<real> base_;                // what b has of the velocities
+    std::vector<real> others_;              // impulses of contacts and joints
+    std::vector<char> joined_;              // of each body: is it part of the pressure's matrix?
+    std::vector<rigid::Block<D>> inverse_;  // of the mass, of those
     poisson::LowRank matrix_;
     real b_squared_ = 0, whole_ = 0;  // ‖b‖² now; ‖b‖ with the velocities that were expected
     std::shared_ptr<Hand> hand_;      // none: nobody takes hold

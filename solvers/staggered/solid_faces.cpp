@@ -117,8 +117,8 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
 /// The distances at the corners of a box, as far as anybody asks for them.
 template <int D>
 void SolidPlacement<D>::place_corners(const MacState<D>& s, std::size_t box) {
-    const real far = 2 * norm(s.u.h);
-    solids_.find_near(changed_[box].ball(s.u.origin, s.u.h), far, near_[box]);
+    solids_.find_near(changed_[box].region(s.u.origin, s.u.h), 2 * norm(s.u.h), near_[box]);
+    const real far = 2 * reach(s.u.h, solids_.steepest(near_[box]));
     for_each_held(corner_, changed_[box].lo, changed_[box].hi + Index<D>::constant(1), [&](const Index<D>& I) {
         Vec<D> x;
         for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
@@ -156,15 +156,15 @@ void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
     });
 }
 
+/// Cells that have a corner in the ball that holds a solid.
 template <int D>
-CellBox<D> SolidPlacement<D>::box_around(const MacState<D>& s, std::size_t solid) const {
+CellBox<D> SolidPlacement<D>::cells_of(const MacState<D>& s, std::size_t solid) const {
     const geometry::Ball<D>& ball = solids_.ball(solid);
     CellBox<D> box;
     for (int d = 0; d < D; ++d) {
-        const int margin = static_cast<int>(norm(s.u.h) / s.u.h[d]) + 1, n = s.u.cells[d];
-        const auto cell = [&](real x) { return static_cast<int>(std::clamp(std::floor((x - s.u.origin[d]) / s.u.h[d]), -1e6, 1e6)); };
-        box.lo[d] = std::clamp(cell(ball.middle[d] - ball.radius) - margin, 0, n);
-        box.hi[d] = std::clamp(cell(ball.middle[d] + ball.radius) + 1 + margin, 0, n);
+        const auto line = [&](real x) { return std::clamp((x - s.u.origin[d]) / s.u.h[d], -1e6, 1e6); };
+        box.lo[d] = static_cast<int>(std::ceil(line(ball.middle[d] - ball.radius))) - 1;
+        box.hi[d] = static_cast<int>(std::floor(line(ball.middle[d] + ball.radius))) + 1;
     }
     return box;
 }
@@ -178,12 +178,15 @@ void SolidPlacement<D>::find_changed(const MacState<D>& s) {
     held_.resize(solids_.count());
     for (std::size_t i = 0; i < solids_.count(); ++i) {
         if (!solids_[i].free) continue;
-        const CellBox<D> now = box_around(s, i);
+        const CellBox<D> now = cells_of(s, i);
         CellBox<D> both = now;
         for (int d = 0; placed_ && d < D; ++d)
             both.lo[d] = std::min(both.lo[d], held_[i].lo[d]), both.hi[d] = std::max(both.hi[d], held_[i].hi[d]);
         held_[i] = now;
-        if (!everything) changed_.push_back(both);
+        if (everything) continue;
+        Index<D> margin;  // a cell that far out has its middle half a cell less away
+        for (int d = 0; d < D; ++d) margin[d] = static_cast<int>(reach(s.u.h, solids_[i].shape->steepest()) / s.u.h[d] + 0.5);
+        changed_.push_back(both.grown(margin, s.extent()));
     }
     if (everything) changed_.push_back({Index<D>{}, s.extent()});
     if (near_.size() < changed_.size()) near_.resize(changed_.size());

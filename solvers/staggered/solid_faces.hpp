@@ -28,13 +28,16 @@ struct CellBox {
     }
     /// Its faces along an axis, as the cells above them.
     CellBox faces(int a) const { return {lo, hi + e<D>(a)}; }
-    /// Cell middles and corners of it lie in this ball.
-    geometry::Ball<D> ball(const Vec<D>& origin, const Vec<D>& h) const {
-        geometry::Ball<D> b;
-        for (int d = 0; d < D; ++d) b.middle[d] = origin[d] + 0.5 * h[d] * (lo[d] + hi[d]);
-        Vec<D> half;
-        for (int d = 0; d < D; ++d) half[d] = 0.5 * h[d] * (hi[d] - lo[d]);
-        b.radius = norm(half);
+    /// Where they are.
+    geometry::Region<D> region(const Vec<D>& origin, const Vec<D>& h) const {
+        geometry::Region<D> r;
+        for (int d = 0; d < D; ++d) r.min[d] = origin[d] + h[d] * lo[d], r.max[d] = origin[d] + h[d] * hi[d];
+        return r;
+    }
+    /// So many cells more on all sides, and of all these those of a grid.
+    CellBox grown(const Index<D>& by, const Index<D>& cells) const {
+        CellBox b;
+        for (int d = 0; d < D; ++d) b.lo[d] = std::clamp(lo[d] - by[d], 0, cells[d]), b.hi[d] = std::clamp(hi[d] + by[d], 0, cells[d]);
         return b;
     }
     /// f(I, count) for its rows along the first axis, one after another.
@@ -74,11 +77,15 @@ public:
     void place(MacState<D>& s, real t);
     /// Over ranks, of solids that stand: from here on so many planes beyond the cuts are known too.
     void know(MacState<D>& s, int planes);
-    /// Where that was: boxes of cells that reach further from the solids than a cell's diagonal.
+    /// Where that was: boxes of cells that reach further from the solids than reach().
     const std::vector<CellBox<D>>& changed() const { return changed_; }
+    /// Cells whose middle is this far from the solids hold no point that is a hundredth of a cell from them or nearer; by how fast
+    /// distances may grow. Half the diagonal of a face is less: of a face that one solid cuts, another is not nearest that is this far
+    /// away.
+    static real reach(const Vec<D>& h, real steepest) { return 0.5 * steepest * norm(h) + 0.01 * *std::min_element(h.begin(), h.end()); }
     /// The solids that are nearer to a box of these than two diagonals of a cell; all that are nearer to it than that.
     std::span<const std::size_t> near(std::size_t box) const { return near_[box]; }
-    /// Distance from the lower corner of a cell, or two diagonals of a cell if it is more; as it was when solids were near last.
+    /// Distance from the lower corner of a cell, or two of reach() if it is more; as it was when solids were near last.
     real corner_distance(const Index<D>& I) const { return corner_(I); }
     /// u·n = u_solid·n on closed faces.
     void set_faces(MacState<D>& s) const;
@@ -103,12 +110,13 @@ private:
     void find_changed(const MacState<D>& s);
     void place_corners(const MacState<D>& s, std::size_t box);
     void place_faces(MacState<D>& s, std::size_t box) const;
-    CellBox<D> box_around(const MacState<D>& s, std::size_t solid) const;
+    CellBox<D> cells_of(const MacState<D>& s, std::size_t solid) const;
     void find_extended(const MacState<D>& s);
 
     geometry::Solids<D> solids_;
-    Grid<real, D> corner_;                        // signed distance at the corners of cells
-    std::vector<CellBox<D>> changed_, held_;      // held_: around each solid that is free, when placed last
+    Grid<real, D> corner_;  // signed distance at the corners of cells
+    std::vector<CellBox<D>> changed_;
+    std::vector<CellBox<D>> held_;  // of each solid that is free the cells that it touched when placed last, in the grid or not
     std::vector<std::vector<std::size_t>> near_;  // of each box of changed_
     std::vector<Extended> extended_;
     int known_ = 0;                          // planes beyond the cuts

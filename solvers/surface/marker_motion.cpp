@@ -5,17 +5,17 @@
 
 namespace weir::surface {
 
-/// Those that are, of a box that has changed. A corner is half a diagonal from the middle.
+/// Those that are, of a box that has changed. A corner is half a diagonal from the middle: none is nearer than that to what is further
+/// from the corner than twice the reach.
 template <int D>
 static void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, std::size_t box,
                              Grid<std::uint8_t, D>& near_solid) {
-    const real diagonal = norm(frame.h);
     const auto near = placement.near(box);
+    const real reach = SolidPlacement<D>::reach(frame.h, placement.solids().steepest(near));
     const std::uint8_t mark = near.size() == 1 && near.front() + 2 < 256 ? static_cast<std::uint8_t>(near.front() + 2) : 1;
     for_each_held(near_solid, placement.changed()[box].lo, placement.changed()[box].hi, [&](const Index<D>& I) {
         const real corner = placement.corner_distance(I);
-        const bool is_near =
-            corner < 0 || (corner < 2 * diagonal && placement.solids().distance(frame.centre(I), near, diagonal) < diagonal);
+        const bool is_near = corner < 0 || (corner < 2 * reach && placement.solids().distance(frame.centre(I), near, reach) < reach);
         near_solid(I) = is_near ? mark : 0;
     });
 }

@@ -9,9 +9,16 @@ template <int D>
 void FacesInSolids<D>::forget_changed(const std::vector<CellBox<D>>& changed, int a) {
     auto& faces = faces_[static_cast<std::size_t>(a)];
     auto& solid = solid_[static_cast<std::size_t>(a)];
+    if (changed.empty()) return;
+    CellBox<D> all = changed.front();
+    for (const CellBox<D>& box : changed)
+        for (int d = 0; d < D; ++d) all.lo[d] = std::min(all.lo[d], box.lo[d]), all.hi[d] = std::max(all.hi[d], box.hi[d]);
+    all = all.faces(a);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        if (std::any_of(changed.begin(), changed.end(), [&](const CellBox<D>& box) { return box.faces(a).holds(faces[i]); })) continue;
+        if (all.holds(faces[i]) &&
+            std::any_of(changed.begin(), changed.end(), [&](const CellBox<D>& box) { return box.faces(a).holds(faces[i]); }))
+            continue;
         faces[kept] = faces[i], solid[kept] = solid[i];
         ++kept;
     }
@@ -27,25 +34,32 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
         const auto at = static_cast<std::size_t>(a);
         const auto& open = state.solid.open[at];
         forget_changed(changed, a);
-        for (std::size_t box = 0; box < changed.size(); ++box)
-            changed[box].faces(a).in_order([&](const Index<D>& I) {
-                if (!state.u[a].store().holds(I[D - 1]) || open(I) >= least_trusted_fraction) return;
+        for (std::size_t box = 0; box < changed.size(); ++box) {
+            const auto near = placement.near(box);
+            const auto see = [&](const Index<D>& I) {
                 if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) return;  // the side's own
                 for (std::size_t other = 0; other < box; ++other)
                     if (changed[other].faces(a).holds(I)) return;  // found there
                 const Vec<D> x = state.u.face_centre(a, I);
-                const std::size_t nearest = solids.nearest(x, placement.near(box));
+                const std::size_t nearest = solids.nearest(x, near);
                 const real distance = solids.distance(nearest, x);
                 if (distance < deepest) return;
                 // No other that is further than this is nearest within eps of x.
-                const bool alone = std::none_of(placement.near(box).begin(), placement.near(box).end(), [&](std::size_t other) {
+                const bool alone = std::none_of(near.begin(), near.end(), [&](std::size_t other) {
                     const geometry::Ball<D>& ball = solids.ball(other);
                     return other != nearest && norm(x - ball.middle) - ball.radius < distance + 4 * eps;
                 });
-                const auto of = alone ? std::span<const std::size_t>(&nearest, 1) : placement.near(box);
+                const auto of = alone ? std::span<const std::size_t>(&nearest, 1) : near;
                 faces_[at].push_back(I);
                 solid_[at].push_back({solids.normal(x, eps, of), solids.pose(nearest).velocity_at(x), nearest, solids[nearest].no_slip});
+            };
+            changed[box].faces(a).rows([&](Index<D> I, int count) {
+                if (!state.u[a].store().holds(I[D - 1])) return;
+                const real* part = &open(I);
+                for (int i = 0; i < count; ++i, ++I[0])
+                    if (part[i] < least_trusted_fraction) see(I);
             });
+        }
         if (!room) continue;
         faces_[at].reserve(2 * faces_[at].size());
         solid_[at].reserve(2 * solid_[at].size());
