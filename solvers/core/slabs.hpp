@@ -77,6 +77,9 @@ public:
     /// Whether somebody looks at whole fields on all ranks, so that each is to hold them whole.
     bool holds_whole() const { return holds_whole_; }
     void hold_whole(bool yes) { holds_whole_ = yes; }
+    /// Whether what is built now is of this rank alone, as in one process: to see what it takes.
+    bool builds_alone() const { return builds_alone_; }
+    void build_alone(bool yes) { builds_alone_ = yes; }
     /// The largest of the values that the ranks give.
     virtual int largest(int value) { return value; }
     /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never
@@ -90,7 +93,7 @@ protected:
 
 private:
     int rank_ = 0, ranks_ = 1;
-    bool holds_whole_ = false;
+    bool holds_whole_ = false, builds_alone_ = false;
 };
 
 /// Those of this process: one rank, unless set_slabs has been called.
@@ -108,11 +111,17 @@ std::vector<T> of_ranks(const T& own) {
     return list;
 }
 
+/// Where the lists of the ranks begin when they stand one after another, this rank's of `count` entries; and where the last one ends.
+inline std::vector<std::size_t> begins_of_ranks(std::size_t count) {
+    std::vector<std::size_t> begins{0};
+    for (const std::size_t entries : of_ranks(count)) begins.push_back(begins.back() + entries);
+    return begins;
+}
+
 /// The lists that the ranks give, one after another.
 template <class T>
 std::vector<T> of_all_ranks(const std::vector<T>& own) {
-    std::vector<std::size_t> begins{0};
-    for (const std::size_t count : of_ranks(own.size())) begins.push_back(begins.back() + count);
+    const std::vector<std::size_t> begins = begins_of_ranks(own.size());
     std::vector<T> all(begins.back());
     std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(begins[static_cast<std::size_t>(slabs().rank())]));
     slabs().gather_parts(all.data(), sizeof(T), begins);

@@ -144,22 +144,31 @@ traffic) # what is sent is what must be, in the steps by which one run is longer
     expect() { [ "$1" -eq "$2" ] || fail "$3: $1, and $2 by the formula"; }
     # 34 rows of 16. Cells are two spacings wide and a hair more: the first of an axis holds 3, the others 2, the eighth along x 1. Rank 0
     # has 17 rows, 8 whole rows of cells; 1 reads the last of these and the cell before it, 0 the first row of 1's and the cell behind it.
-    own=$((17 * 16)) to_1=$((2 * 16 + 2 * 1)) to_0=$((2 * 16 + 2 * 3))
-    # A step: velocities to the neighbour (2 numbers a particle), everybody's largest acceleration, positions, velocities, pressure and
-    # density of all own (6), what walls corrected (2); and the run: whether rank 0 could write, and whether anybody was asked to end.
+    to_1=$((2 * 16 + 2 * 1)) to_0=$((2 * 16 + 2 * 3))
+    # A step: the box and the number of own particles (7 numbers); how many go to each rank, and are shown to it (2 of 4 bytes); to the
+    # neighbour position, place, velocity and density of those shown (6); then their new velocities (2), or their summed densities, single;
+    # how the step went (the sum of compression in 16 bytes, its largest, what walls corrected, three more, and a word: padded to 80); and the
+    # run: whether rank 0 could write, and whether anybody was asked to end. None changes hands.
     for density in continuity summation; do
-        both still.toml --set scheme.density=$density
-        halo=$([ $density = continuity ] && echo 1 || echo 0) # else everybody's densities, single, and no velocities
+        both still.toml --set scheme.density=$density --set scheme.sound_speed=1e-3 # so that nothing moves as far as that hair
+        after=$([ $density = continuity ] && echo 16 || echo 4)
         for rank in 0 1; do
             beside=$([ $rank = 0 ] && echo $to_1 || echo $to_0)
-            expect "$(sent messages $rank)" $((20 * 6)) "messages of rank $rank, $density"
-            expect "$(sent bytes $rank)" $((20 * (halo * beside * 2 * 8 + (1 - halo) * own * 4 + 8 + own * (5 + halo) * 8 + 16 + 2 * 4))) \
-                "bytes of rank $rank, $density"
+            expect "$(sent messages $rank)" $((20 * 7)) "messages of rank $rank, $density"
+            expect "$(sent bytes $rank)" $((20 * (56 + 2 * 8 + beside * (6 * 8 + after) + 80 + 2 * 4))) "bytes of rank $rank, $density"
         done
     done
-    # PBF: two halos an iteration, densities, positions and velocities, what walls corrected, and the run
+    # PBF: as much, but of those shown position and place (3), and two halos an iteration, of 4 single numbers. It moves particles over the hair:
+    # of the cell at the end of the two rows there may be any part.
     both still.toml --set solver=pbf --set scheme.iterations=5 --set scheme.warm_start=0
-    for rank in 0 1; do expect "$(sent messages $rank)" $((20 * (2 * 5 + 3 + 2))) "messages of rank $rank, pbf"; done
+    for rank in 0 1; do
+        expect "$(sent messages $rank)" $((20 * (2 * 5 + 4 + 2))) "messages of rank $rank, pbf"
+        shown=$(sent bytes $rank) each=$((3 * 8 + 2 * 5 * 16))
+        shown=$((shown - 20 * (56 + 2 * 8 + 80 + 2 * 4)))
+        expect $((shown % each)) 0 "bytes of rank $rank, pbf, that are of no particle"
+        beside=$((shown / each / 20))
+        [ $beside -ge $((2 * 16)) ] && [ $beside -le $((2 * 16 + 3 * 3)) ] || fail "$beside particles are shown by rank $rank, pbf"
+    done
     # A pool at rest: its pressure is everybody's, of gathered numbers.
     cat >pool.toml <<-END
 	solver = "mac_water"
