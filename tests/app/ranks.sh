@@ -278,7 +278,7 @@ storage_water) # the same of liquid with markers, as much of it in every plane
 	dim = 3
 	grid = { cells = [32, 32, 256], size = [0.32, 0.32, 2.56] }
 	time = { end = 0.003, max_dt = 0.001 }
-	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.32, 0.16, 2.56] } ]
+	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.32, 0.16, 2.56] } ] # and walls at both ends of the cut axis
 	solids = [ { shape = "cylinder", from = [0.16, 0.05, -0.1], to = [0.16, 0.05, 2.7], radius = 0.04 } ]
 	initial.velocity = { name = "random", speed = 0.1 }
 	effects = { surface_tension = { sigma = 0.07 }, volume_control = {} }
