@@ -55,11 +55,11 @@ private:
     real steepest_ = 0, h_min_ = 0;
     std::vector<Index<D>> front_, next_;
     std::vector<real> value_;
-    std::vector<int> own_;             // over ranks: places in the front of this rank's own faces
+    std::vector<int> own_;                      // over ranks: places in the front of this rank's own faces
     std::array<std::vector<char>, 2> near_of_;  // and in which planes of faces along other axes and along the last it looks for layers
     std::vector<char> near_;                    // those of the faces at work
-    std::vector<Extent> band_rows_;    // of every row of cells: its part in the layers from which the first front starts
-    std::vector<std::uint8_t> joins_;  // of one row of faces
+    std::vector<Extent> band_rows_;             // of every row of cells: its part in the layers from which the first front starts
+    std::vector<std::uint8_t> joins_;           // of one row of faces
 };
 
 }  // namespace weir::surface

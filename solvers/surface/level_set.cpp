@@ -55,7 +55,8 @@ static void copy_held(const Grid<std::uint8_t, D>& from, Grid<std::uint8_t, D>& 
     const auto entries = static_cast<std::size_t>(from.stride(D - 1));
     for (int plane = 0; plane < from.extent()[D - 1]; ++plane)
         if (from.store().holds(plane) && to.store().holds(plane))
-            std::copy_n(from.data() + entries * static_cast<std::size_t>(plane), entries, to.data() + entries * static_cast<std::size_t>(plane));
+            std::copy_n(from.data() + entries * static_cast<std::size_t>(plane), entries,
+                        to.data() + entries * static_cast<std::size_t>(plane));
 }
 
 /// Over ranks the solids stand, and their skin is found once: of all cells, which everybody gets to see for that.

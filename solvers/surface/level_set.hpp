@@ -8,8 +8,8 @@
 // The level set is thus the smooth part of the markers' shape: second order where the grid resolves it, and at rest exactly at rest.
 #pragma once
 #include "core/checkpoint.hpp"
-#include "surface/marker_motion.hpp"
 #include "surface/level_set_ranks.hpp"
+#include "surface/marker_motion.hpp"
 #include "surface/markers.hpp"
 
 #include <algorithm>
@@ -51,8 +51,8 @@ public:
 
     real cap() const { return (layers_ + 1) * frame_.h_max(); }
     int layers() const { return layers_; }
-    /// Cells of the band, layer by layer from the surface; layer 1 is beside it. Over ranks, those near this one's planes, in the order of one
-    /// process.
+    /// Cells of the band, layer by layer from the surface; layer 1 is beside it. Over ranks, those near this one's planes, in the order of
+    /// one process.
     const std::vector<Index<D>>& band() const { return band_; }
     /// Closed cells beside open ones, three deep.
     const std::vector<Index<D>>& skin() const { return skin_; }
@@ -84,8 +84,8 @@ private:
     /// where a neighbour's distance is not known, it goes on as on the other side.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
     void find_inside();
-    /// Planes beyond its cuts in which a rank finds the band: a cell of the last layer with a root among the rank's own is that far from the
-    /// last of them.
+    /// Planes beyond its cuts in which a rank finds the band: a cell of the last layer with a root among the rank's own is that far from
+    /// the last of them.
     int wide() const { return 2 * layers_; }
     void find_near();
     bool is_near(int plane) const { return near_.empty() || near_[static_cast<std::size_t>(plane)] != 0; }
@@ -117,8 +117,8 @@ private:
     std::vector<std::size_t> layer_start_;
     std::vector<real> value_;
     std::vector<std::uint8_t> escaped_;
-    std::vector<int> own_;  // over ranks: places in the band of this rank's own cells
-    std::vector<char> near_;     // over ranks: the planes in which the band is found
+    std::vector<int> own_;    // over ranks: places in the band of this rank's own cells
+    std::vector<char> near_;  // over ranks: the planes in which the band is found
     BandOfRanks ranks_;
     SkinOfRanks<D> skin_of_ranks_;
 };

@@ -375,7 +375,8 @@ real LevelSet<D>::sum_over_band(int layers, F&& f) const {
     const std::size_t end = layer_end(layers);
     return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {
         real sum = 0;
-        for (std::size_t i = static_cast<std::size_t>(b) * block; i < std::min(end, static_cast<std::size_t>(b + 1) * block); ++i) add(sum, i);
+        for (std::size_t i = static_cast<std::size_t>(b) * block; i < std::min(end, static_cast<std::size_t>(b + 1) * block); ++i)
+            add(sum, i);
         return sum;
     });
 }
@@ -403,8 +404,7 @@ real LevelSet<D>::volume() const {
 template <int D>
 real LevelSet<D>::area() const {
     const real width = 0.25 * frame_.h_min();
-    const real sum =
-        sum_over_band(std::min(2, layers_), [&](const Index<D>& I) { return fraction(I, width) - fraction(I, -width); });
+    const real sum = sum_over_band(std::min(2, layers_), [&](const Index<D>& I) { return fraction(I, width) - fraction(I, -width); });
     return frame_.cell_volume() / (2 * width) * sum;
 }
 

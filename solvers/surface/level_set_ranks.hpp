@@ -20,8 +20,8 @@ public:
         std::size_t begin = 0, end = 0;
     };
     std::vector<Rooted> rooted;  // of each layer
-    /// Sums over blocks of the band of one process up to a layer, in its order: add(sum, place) adds what the cell at a place of this rank's
-    /// band gives. Whole blocks of one rank's cells it adds itself; of others every cell's part is gathered.
+    /// Sums over blocks of the band of one process up to a layer, in its order: add(sum, place) adds what the cell at a place of this
+    /// rank's band gives. Whole blocks of one rank's cells it adds itself; of others every cell's part is gathered.
     template <class F>
     real sum_of_blocks(int layers, const std::vector<std::size_t>& layer_start, F&& add) const;
     static constexpr std::size_t block = 256;

@@ -329,8 +329,7 @@ void Markers<D>::reserve(std::size_t capacity) {
 template <int D>
 std::size_t Markers<D>::bytes() const {
     std::size_t total = (cell_.capacity() + from_.capacity()) * sizeof(int) + cell_start_.bytes() + rows_.capacity() * sizeof(Extent) +
-                        plane_start_.capacity() * sizeof(std::size_t) +
-                        scratch_.capacity() * sizeof(real);
+                        plane_start_.capacity() * sizeof(std::size_t) + scratch_.capacity() * sizeof(real);
     for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
     for (const auto& list : going_) total += list.capacity() * sizeof(int);
     total += gone_.capacity() * sizeof(int);

@@ -95,14 +95,14 @@ scene::SolverKind kind() {
     schema.effects = effect_schemas();
     schema.without = {"sides.*.smoke", "sides.*.profile", "emitters.temperature", "emitters.smoke", "initial.smoke"};
     scene::SolverKind water{schema,
-            staggered::make<Water>,
-            {{"velocity", "pressure", "level_set", "position", "velocity"},
-             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
-              "faces to markers"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-            over_ranks,
-            scene::Shared::by_planes,
-            "the pressure's levels of fewer than 20,000 cells, the level set's continuation into solids, viscosity"};
+                            staggered::make<Water>,
+                            {{"velocity", "pressure", "level_set", "position", "velocity"},
+                             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project",
+                              "extrapolate", "faces to markers"},
+                             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+                            over_ranks,
+                            scene::Shared::by_planes,
+                            "the levels of the pressure of fewer than 20,000 cells, the level set's continuation into solids, viscosity"};
     water.holds_own_part = holds_own_planes;
     return water;
 }

@@ -58,9 +58,9 @@ private:
                                    const Grid<real, D>& curvature) const;
 
     Frame<D> frame_;
-    poisson::Operator<D> A_;      // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere
-    Grid<real, D> b_;             // likewise
-    Grid<Extent, D> liquid_;      // of every line of cells along x
+    poisson::Operator<D> A_;  // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere
+    Grid<real, D> b_;         // likewise
+    Grid<Extent, D> liquid_;  // of every line of cells along x
     bool has_liquid_ = false;
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;

@@ -172,12 +172,12 @@ std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std:
     return lent;
 }
 
-#define WEIR_INSTANTIATE(D)                                      \
-    template void Water<D>::bring_faces(real);                   \
-    template std::array<std::int64_t, 2> Water<D>::let_depart(); \
-    template void Water<D>::rub(real);                           \
-    template void Water<D>::check_own() const;                   \
-    template void Water<D>::make_whole() const;                  \
+#define WEIR_INSTANTIATE(D)                                                                                    \
+    template void Water<D>::bring_faces(real);                                                                 \
+    template std::array<std::int64_t, 2> Water<D>::let_depart();                                               \
+    template void Water<D>::rub(real);                                                                         \
+    template void Water<D>::check_own() const;                                                                 \
+    template void Water<D>::make_whole() const;                                                                \
     template std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std::string>&) const; \
     template void Water<D>::gather_markers() const;
 WEIR_INSTANTIATE(2)

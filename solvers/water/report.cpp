@@ -4,8 +4,6 @@
 #include "surface/measure.hpp"
 #include "water/solver.hpp"
 
-#include <numeric>
-
 namespace weir::water {
 
 using poisson::Cell;
@@ -67,12 +65,11 @@ void Water<D>::save(Checkpoint& to) const {
     if (bodies_) bodies_->save(to);
     surface_.save(to);
     const auto [first, last] = markers_.own(frame_);
-    const std::vector<std::size_t> counts_of = of_ranks(last - first);
-    const auto before = std::accumulate(counts_of.begin(), counts_of.begin() + slabs().rank(), std::size_t{0});
-    const auto all = std::accumulate(counts_of.begin(), counts_of.end(), std::size_t{0});
+    const std::vector<std::size_t> begins = begins_of_ranks(last - first);
     int at = 0;
     markers_.for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
-        to.put_part("water.markers." + std::to_string(at++), std::span(array).subspan(begin, count), before, all);
+        to.put_part("water.markers." + std::to_string(at++), std::span(array).subspan(begin, count),
+                    begins[static_cast<std::size_t>(slabs().rank())], begins.back());
     });
     const std::array<real, 3> reals{volume_target_, markers_.volume, volume_shift_};
     to.put_value("water.reals", reals);

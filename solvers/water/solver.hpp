@@ -30,8 +30,8 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where friction is solved for by everybody,
-/// nor where markers that have escaped from flat cells are looked at one after the other.
+/// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where friction is solved for by
+/// everybody, nor where markers that have escaped from flat cells are looked at one after the other.
 bool holds_own_planes(const scene::Scene& scene);
 
 /// The registered solver "mac_water".
@@ -179,9 +179,10 @@ private:
     real volume_shift_ = 0;                    // how far volume control moved the surface, all steps together [m]
     std::shared_ptr<Hand> hand_;               // none where the scene names none
     Passes passes_;
-    int reach_ = 0;                                     // planes beyond the cuts that motion reads in this step
-    mutable bool whole_ = true, markers_whole_ = true;  // all planes stand here, or those that this rank looks at; all markers in all_markers_
-    mutable Markers<D> all_markers_;                    // over ranks, when somebody looks
+    int reach_ = 0;  // planes beyond the cuts that motion reads in this step
+    mutable bool whole_ = true,
+                 markers_whole_ = true;  // all planes stand here, or those that this rank looks at; all markers in all_markers_
+    mutable Markers<D> all_markers_;     // over ranks, when somebody looks
 };
 
 }  // namespace weir::water

@@ -44,8 +44,7 @@ Water<D>::Water(const scene::Scene& scene)
     before_ = state_.u;
     if (options_.sigma > 0) {
         curvature_ = Grid<real, D>(frame_.cells);
-        effects_.declare(
-            {.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = curvature_.bytes()});
+        effects_.declare({.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = curvature_.bytes()});
     }
     if (options_.viscosity > 0 && state_.nu > 0) {
         viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));

@@ -49,6 +49,10 @@ compare() {
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml
+# without what everybody finds of whole grids, friction and a gauge; and with cells that a periodic axis can halve
+frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
+    --set 'probes=[{name="sums",kind="integral",field="volume"},{name="wall",kind="point",field="pressure",at=[0.2,0.3]}]')
+even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
 water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
@@ -70,18 +74,24 @@ particles_3d)
     compare sph "$every" "$drops_deep" $sph
     ;;
 water)
-    compare flip "$every" "$water"
-    grep -q '"every_rank_does":"the matrix of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
+    compare flip "$every" "$water" "${frictionless[@]}"
+    grep -q '"storage":"every rank holds its own planes' flip-2-1/run.json || fail "a rank held more than its own planes"
+    grep -q '"every_rank_does":"the levels of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
+    compare sticky "2 1,3 2" "$water"
+    grep -q '"storage":"every rank holds whole grids"' sticky-2-1/run.json || fail "run.json does not tell that grids are whole"
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
     compare flip "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep"
+    grep -q '"storage":"every rank holds its own planes' flip-4-2/run.json || fail "a rank held more than its own planes"
     ;;
 water_schemes)
-    compare grid "3 1" "$water" --set scheme.transfer=grid --set scheme.trace=rk3
+    compare grid "3 1" "$water" "${frictionless[@]}" --set scheme.transfer=grid --set scheme.trace=rk3
     compare apic "3 2" "$water" --set scheme.transfer=apic --set scheme.poisson.method=cg_mic0
     compare ring "2 1,3 2" "$water_deep" $water_ring --set time.cfl=2 --set time.max_dt=0.05
-    compare ring_apic "3 1" "$water_deep" $water_ring --set scheme.transfer=apic
+    compare ring_apic "3 1" "$water_deep" $water_ring $even --set scheme.transfer=apic
+    compare ring_own "2 1,4 1" "$water_deep" $water_ring $even --set time.cfl=2 --set time.max_dt=0.05
+    grep -q '"storage":"every rank holds its own planes' ring_own-4-1/run.json || fail "a rank held more than its own planes"
     compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
     # saved on three, continued on two
     ends 0 over 3 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
@@ -176,12 +186,14 @@ traffic) # what is sent is what must be, in the steps by which one run is longer
         # The fastest flow; the velocity 3 rows deep; the level set as deep, before and after it moves; how many markers go; the 4 of each cell
         # at the cut, with 4 numbers.
         messages=6 bytes=$((8 * faces + 3 * both + 6 * row + 2 * 4 + 16 * 4 * 4 * 8))
-        # The level set: what is inside, a byte a cell; a row of it, twice for each of 4 layers, 2 at the end; all of it.
-        messages=$((messages + 1 + 9 + 1 + 1)) bytes=$((bytes + planes * 16 + 11 * row + planes * row))
-        # Faces, 2 layers on from the markers and 4 on from the liquid: what is known, a byte a face; 3 rows; for the second layer 3 more, for
-        # others one, each component by itself. Faces at the cut: before, behind, as forces and as the pressure leave them, at the end.
-        messages=$((messages + 2 * (2 + 1 + 2) + 2 * 2 + 5))
-        bytes=$((bytes + 2 * (planes * 17 + faces * 16 + 6 * both) + 2 * both + 5 * row))
+        # The level set: what is inside, a byte a cell, 11 rows, as far as its 5 layers go there and back; a row of it, twice for each of 4
+        # layers, 5 at the end; all of it.
+        messages=$((messages + 1 + 9 + 1 + 1)) bytes=$((bytes + 11 * 16 + 14 * row + planes * row))
+        # Faces, 2 layers on from the markers and 4 on from the liquid: what is known, a byte a face, 4 rows more than layers; 3 rows; for the
+        # second layer 3 more, for others one, each component by itself. Faces at the cut: before, behind, as forces and as the pressure
+        # leave them, at the end.
+        messages=$((messages + 2 * (1 + 1 + 2) + 2 * 2 + 5))
+        bytes=$((bytes + (6 + 8) * (17 + 16) + 2 * 6 * both + 2 * both + 5 * row))
         # The right-hand side and the pressure; what diverges; the fastest flow; FLIP's difference, one row; whether all is finite; the run's.
         messages=$((messages + 2 + 1 + 2 + 1 + 1 + 2)) bytes=$((bytes + 2 * planes * row + 8 * planes + number_a_row + both + 4 + 2 * 4))
         expect "$(sent messages $rank)" $((20 * messages)) "messages of rank $rank, mac_water"
@@ -260,6 +272,46 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
     ends 0 over 2 "$weir" run "$flat" --quiet --threads 1 --out watched --set time.stop_when_steady=1e-9 --set time.end=0.04
     grep -q '"storage":"every rank holds whole grids"' watched/run.json || fail "run.json does not tell that grids are whole"
     ;;
+storage_water) # the same of liquid with markers, as much of it in every plane
+    cat >pool.toml <<-END
+	solver = "mac_water"
+	dim = 3
+	grid = { cells = [32, 32, 256], size = [0.32, 0.32, 2.56] }
+	time = { end = 0.003, max_dt = 0.001 }
+	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.32, 0.16, 2.56] } ] # and walls at both ends of the cut axis
+	solids = [ { shape = "cylinder", from = [0.16, 0.05, -0.1], to = [0.16, 0.05, 2.7], radius = 0.04 } ]
+	initial.velocity = { name = "random", speed = 0.1 }
+	effects = { surface_tension = { sigma = 0.07 }, volume_control = {} }
+	output = { every = 1.0, fields = ["pressure"] }
+	END
+    told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
+    at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
+    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
+    one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
+    cells=$((32 * 32)) # of a plane
+    for ranks in 2 4; do
+        ends 0 over $ranks "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
+        alike one parts-$ranks
+        grep -q '"storage":"every rank holds its own planes and those near its cuts"' parts-$ranks/run.json || fail "run.json tells of other storage"
+        ends 0 over $ranks "$weir" run pool.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,64]
+        for rank in $(seq 0 $((ranks - 1))); do
+            # Numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
+            # more than that). The pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row.
+            held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
+            at_most "$held" $((one * (planes + 9) / 256 + 14 * 8 * cells + 20000 * 8 / 7 * 128 + 64 * 32 * 256)) "rank $rank of $ranks"
+            # As the system sees it, beyond what a run of a few cells takes: that, the last good state (3 + 1 + 1 numbers, a flag and a layer
+            # of a cell, 6 numbers of 8 markers in each of the lower half), a page at both ends of less than 128 arrays; the first rank may
+            # keep the room of a frame: its fields and all markers, and 3 copies.
+            more=$(($(told parts-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
+            frame=$([ "$rank" -eq 0 ] && echo $((4 * (2 * 8 + 4 * 6 * 8) * cells * 256)) || echo 0)
+            at_most $more $((held + (42 + 4 * 6 * 8) * cells * planes + 128 * 2 * 4096 + frame)) "resident, rank $rank of $ranks"
+        done
+    done
+    # continued by others
+    ends 0 over 4 "$weir" run --restart parts-2 --checkpoint-every 1000 --quiet --set time.end=0.004
+    ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
+    alike one parts-2
+    ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
     ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 2 --out poisoned
@@ -270,7 +322,11 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     ends 0 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
     alike liquid liquid_poisoned
-    for case in "" "--set scheme.transfer=apic $water_ring" "--set scheme.transfer=grid"; do
+    rm -rf liquid liquid_poisoned
+    ends 0 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
+    alike liquid liquid_poisoned
+    for case in "" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
         rm -rf liquid_3d liquid_3d_poisoned
         ends 0 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned

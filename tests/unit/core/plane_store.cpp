@@ -73,6 +73,46 @@ TEST("a rank holds its planes and so many beyond its cuts, around a ring too, an
     EXPECT_EQ(list(2, 24, 0, 1, true), (std::vector<int>{0, 1, 15, 16, 17, 18, 19, 20, 21, 22, 23}));
 }
 
+TEST(
+    "near a rank's own planes are those beside them: around a ring the last too, and there face n is face 0; where one does all, all are") {
+    EXPECT_TRUE(planes_near(24, 2, false).empty());
+    const ThreeRanks three;
+    EXPECT_TRUE(planes_near(24, 2, false).empty());  // nobody has said that planes are shared
+    const OwnPlanes mine(three.cut);
+    const auto list = [](int count, int deep, bool ring) {
+        std::vector<int> planes;
+        const auto near = planes_near(count, deep, ring);
+        EXPECT_EQ(static_cast<int>(near.size()), count);
+        for (int k = 0; k < count; ++k)
+            if (near[static_cast<std::size_t>(k)] != 0) planes.push_back(k);
+        return planes;
+    };
+    EXPECT_EQ(list(24, 2, false), (std::vector<int>{6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17}));
+    EXPECT_EQ(list(24, 9, false).front(), 0);
+    EXPECT_EQ(list(24, 9, false).back(), 23);
+    EXPECT_EQ(list(25, 9, false).back(), 24);
+    EXPECT_EQ(list(24, 7, true).front(), 1);
+    EXPECT_EQ(list(24, 7, true).back(), 22);
+    EXPECT_EQ(list(24, 8, true), list(24, 100, true));
+    EXPECT_EQ(list(25, 7, true).back(), 22);
+    const auto faces = planes_near(25, 9, true);  // 24, which is 0
+    EXPECT_TRUE(faces[24] != 0 && faces[0] != 0);
+}
+
+TEST("a copy of as many planes takes no other memory: what is done in every step maps none") {
+    const ThreeRanks three;
+    const OwnPlanes mine(three.cut, 1, 2);
+    Grid<real, 2> from(Index<2>{{512, 24}}, 7), to(Index<2>{{512, 24}}, 3);
+    const real* const place = to.data();
+    to.store().open(4, false);
+    to(Index<2>{{0, 4}}) = 5;
+    to = from;
+    EXPECT_EQ(to.data(), place);
+    EXPECT_EQ(to(Index<2>{{0, 6}}), 7);
+    EXPECT_EQ(to(Index<2>{{0, 4}}), 5);  // not among those that the other holds
+    EXPECT_TRUE(from.store().reaches(2) && !from.store().reaches(3) && to.store().reaches(4));
+}
+
 TEST("behind the planes of others there is no memory: whoever looks at them faults; those that are opened keep what stood there") {
     const ThreeRanks three;
     const Index<3> extent{{64, 32, 24}};
