@@ -106,8 +106,7 @@ void CellSort::list_cells(const Coordinates& x, int count, std::vector<int>& to)
 }
 
 /// Turns the chunks' histograms into the places where each chunk's particles of each cell begin, and fills the cell starts.
-void CellSort::place_starts(int chunks) {
-    const int cells = grid_.cells[0] * grid_.cells[1] * grid_.cells[2];
+void CellSort::place_starts(int cells, int chunks) {
     before_.assign(static_cast<std::size_t>(chunks) + 1, 0);
     for_chunks(cells, chunks, [&](int t, int begin, int end) {
         int sum = 0;
@@ -132,10 +131,15 @@ void CellSort::place_starts(int chunks) {
 }
 
 void CellSort::sort(const Coordinates& x, int count, const CellGrid& grid) {
+    sort(x, count, grid, 0, grid.cells[0] * grid.cells[1] * grid.cells[2]);
+}
+
+void CellSort::sort(const Coordinates& x, int count, const CellGrid& grid, int first, int last) {
     cover(grid);
-    count_ = count;
-    const auto& n = grid.cells;
-    const auto cells = static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+    count_ = count, first_ = first;
+    const bool all = last - first == grid.cells[0] * grid.cells[1] * grid.cells[2];
+    const auto cells = static_cast<std::size_t>(last - first + (all ? 0 : 1));  // the last for what is of no interest
+    const auto bin = [&](int cell) { return static_cast<std::size_t>(cell >= first && cell < last ? cell - first : last - first); };
     const int chunks = threads();
     order_.resize(static_cast<std::size_t>(count));
     cell_.resize(static_cast<std::size_t>(count));
@@ -148,18 +152,19 @@ void CellSort::sort(const Coordinates& x, int count, const CellGrid& grid) {
         if (histogram.capacity() < cells) histogram.reserve(cells + cells / 2);
         histogram.assign(cells, 0);
         find_cells(x, begin, end, unsorted_.data());
-        for (int i = begin; i < end; ++i) ++histogram[static_cast<std::size_t>(unsorted_[static_cast<std::size_t>(i)])];
+        for (int i = begin; i < end; ++i) ++histogram[bin(unsorted_[static_cast<std::size_t>(i)])];
     });
-    place_starts(chunks);
+    place_starts(static_cast<int>(cells), chunks);
     for_chunks(count, chunks, [&](int t, int begin, int end) {
         auto& next = histograms_[static_cast<std::size_t>(t)];
         for (int i = begin; i < end; ++i) {
             const int c = unsorted_[static_cast<std::size_t>(i)];
-            const auto to = static_cast<std::size_t>(next[static_cast<std::size_t>(c)]++);
+            const auto to = static_cast<std::size_t>(next[bin(c)]++);
             order_[to] = i;
             cell_[to] = c;
         }
     });
+    if (!all) start_.pop_back();
 }
 
 std::size_t CellSort::bytes() const {

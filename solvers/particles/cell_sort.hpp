@@ -37,6 +37,8 @@ public:
     Box box(const Coordinates& x, int count, bool& finite);
     /// Sorts `count` points into these cells, which cover them.
     void sort(const Coordinates& x, int count, const CellGrid& grid);
+    /// The same where only cells [first, last) are of interest: what stands in others comes behind them, in no order of cells.
+    void sort(const Coordinates& x, int count, const CellGrid& grid, int first, int last);
     /// Into cells at least `cell_size` wide over their box.
     void sort(const Coordinates& x, int count, real cell_size) { sort(x, count, cover_box(box(x, count), count, cell_size)); }
 
@@ -49,8 +51,9 @@ public:
     const std::vector<int>& order() const { return order_; }
     /// Cell of each sorted particle.
     const std::vector<int>& cell_of() const { return cell_; }
-    /// Cell c holds sorted particles start()[c] .. start()[c + 1] - 1.
+    /// Cell c holds sorted particles start()[c - first_cell()] .. start()[c + 1 - first_cell()] - 1.
     const std::vector<int>& start() const { return start_; }
+    int first_cell() const { return first_; }
     const std::array<int, 3>& cells() const { return grid_.cells; }
     std::size_t bytes() const;
     /// The cells alone, without the sort.
@@ -63,9 +66,9 @@ public:
 
 private:
     void find_cells(const Coordinates& x, int begin, int end, int* c) const;
-    void place_starts(int chunks);
+    void place_starts(int cells, int chunks);
 
-    int count_ = 0;
+    int count_ = 0, first_ = 0;
     CellGrid grid_;
     std::vector<int> order_, cell_, start_;
     std::vector<int> unsorted_;                 // cell of each particle before sorting

@@ -123,8 +123,8 @@ real block_sum(int count, F&& f) {
         return sum;
     });
 }
-/// The sum of numbers from 0 to 1024 (one that is more counts as that) in whole units of 2^-44, and the largest: no order of adding changes
-/// a sum of whole numbers, so it does not depend on who adds which, threads or ranks.
+/// The sum of numbers from 0 to 1024 (one that is less or more counts as these) in whole units of 2^-44, and the largest: no order of
+/// adding changes a sum of whole numbers, so it does not depend on who adds which, threads or ranks.
 struct SumAndMost {
     __extension__ typedef __int128 Whole;
     static constexpr real unit = 0x1.0p-44, limit = 1024;
@@ -148,7 +148,8 @@ SumAndMost whole_sum_and_max(int count, F&& f) {
             std::int64_t units = 0;
             for (int i = b; i < std::min(end, b + block); ++i) {
                 const real value = f(i);
-                units += static_cast<std::int64_t>((value < SumAndMost::limit ? value : SumAndMost::limit) / SumAndMost::unit);
+                const real counted = value < SumAndMost::limit ? (value > 0 ? value : 0) : SumAndMost::limit;
+                units += static_cast<std::int64_t>(counted / SumAndMost::unit);
                 part.most = value > part.most || value != value ? value : part.most;
             }
             part.units += units;

@@ -26,7 +26,7 @@ inline Runs runs_around(const ListJob& job, int cell) {
     Runs runs;
     for (int z = cz > 0 ? cz - 1 : 0; z <= cz + 1 && z < nz; ++z)
         for (int y = cy > 0 ? cy - 1 : 0; y <= cy + 1 && y < ny; ++y) {
-            const int row = (z * ny + y) * nx;
+            const int row = (z * ny + y) * nx - job.first_cell;
             const int begin = job.start[row + x0], end = job.start[row + x1 + 1];
             if (begin == end) continue;
             runs.begin[runs.count] = begin;
@@ -42,10 +42,11 @@ struct Bounds {
 };
 inline Bounds bounds(const ListJob& job, int cell) {
     Bounds b;
+    const int* start = job.start + (cell - job.first_cell);
     for (int a = 0; a < 3; ++a) {
         const float* x = job.axis[a];
-        float lo = x[job.start[cell]], hi = lo;
-        for (int i = job.start[cell] + 1; i < job.start[cell + 1]; ++i) {
+        float lo = x[start[0]], hi = lo;
+        for (int i = start[0] + 1; i < start[1]; ++i) {
             lo = x[i] < lo ? x[i] : lo;
             hi = x[i] > hi ? x[i] : hi;
         }
@@ -127,6 +128,11 @@ inline Built build_list(const ListJob& job, ListChunk& chunk) {
         const int stride = chunk.candidates;
         int found[lanes];
         for (int i = begin; i < end;) {
+            if (i < job.own_begin || i >= job.own_end) {
+                found[i - begin] = -lanes;  // no dummies stand there yet
+                job.neighbours[i++] = 0;
+                continue;
+            }
             const int cell = job.cell_of[i];
             if (cell != chunk.packed_cell) {
                 const Runs runs = runs_around(job, cell);
@@ -136,7 +142,7 @@ inline Built build_list(const ListJob& job, ListChunk& chunk) {
                 }
                 pack(job, chunk, cell, runs);
             }
-            const int cell_end = job.start[cell + 1] < end ? job.start[cell + 1] : end;
+            const int next = job.start[cell + 1 - job.first_cell], cell_end = next < end ? next : end;
             for (; i + at_once <= cell_end; i += at_once)
                 find_hits<at_once>(job, chunk, i, chunk.hits + (i - begin) * stride, stride, found + (i - begin), dummies);
             for (; i < cell_end; ++i) find_hits<1>(job, chunk, i, chunk.hits + (i - begin) * stride, stride, found + (i - begin), dummies);

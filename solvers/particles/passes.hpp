@@ -35,10 +35,12 @@ struct ListChunk {
 enum class Built { done, needs_candidates, needs_entries };
 
 struct ListJob {
-    const float* axis[3] = {};     // sorted coordinates, and room for a register behind them
-    int count = 0;                 // particles; the dummy is particle `count`
-    const int* start = nullptr;    // of cells
-    const int* cell_of = nullptr;  // of sorted particles
+    const float* axis[3] = {};   // sorted coordinates, and room for a register behind them
+    int count = 0;               // particles; the dummy is particle `count`
+    const int* start = nullptr;  // of cells from first_cell on
+    int first_cell = 0;
+    int own_begin = 0, own_end = 0;  // particles that have neighbours; others have none
+    const int* cell_of = nullptr;    // of sorted particles
     int cells[3] = {1, 1, 1};
     float radius2 = 0;
     std::size_t* first = nullptr;  // of each slice: where its rows begin in its chunk

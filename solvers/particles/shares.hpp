@@ -34,28 +34,31 @@ struct CellCut {
     CellCut() = default;
     CellCut(std::vector<int> cuts, const std::array<int, 3>& cells)
         : at(std::move(cuts)), far(1 + (cells[1] > 1 ? cells[0] : 0) + (cells[2] > 1 ? cells[0] * cells[1] : 0)) {}
-    int ranks() const { return static_cast<int>(at.size()) - 1; }
+    int ranks() const { return std::max(1, static_cast<int>(at.size()) - 1); }
     int begin(int rank) const { return at[static_cast<std::size_t>(rank)]; }
     int end(int rank) const { return at[static_cast<std::size_t>(rank) + 1]; }
     int owner(int cell) const { return static_cast<int>(std::upper_bound(at.begin() + 1, at.end() - 1, cell) - at.begin()) - 1; }
-    bool reads(int rank, int cell) const { return begin(rank) < end(rank) && cell >= begin(rank) - far && cell < end(rank) + far; }
+    /// [first, last), none where it owns none.
+    std::array<int, 2> read(int rank) const {
+        if (begin(rank) == end(rank)) return {begin(rank), begin(rank)};
+        return {std::max(0, begin(rank) - far), std::min(at.back(), end(rank) + far)};
+    }
+    bool reads(int rank, int cell) const { return cell >= read(rank)[0] && cell < read(rank)[1]; }
 };
 
 class Shares {
 public:
     /// One rank's.
-    void own_all(int count) { owns_.assign(1, {0, count}), reads_ = owns_, rank_ = 0; }
+    void own_all(int count) { own_ = read_ = {0, count}; }
     /// Among what this rank has sorted.
     void set(const CellCut& cut, const CellSort& cells);
     /// What travels, over several ranks: to each rank the particles that its passes read, and those whose images they read. Entries from
     /// the sort's `particles` on are images.
     void find_halos(const CellSort& cells, int particles, std::span<const Link> links);
 
-    bool several() const { return owns_.size() > 1; }
-    const Entries& own() const { return owns_[rank_]; }
-    const Entries& read() const { return reads_[rank_]; }
-    const Entries& own(int rank) const { return owns_[static_cast<std::size_t>(rank)]; }
-    const Entries& read(int rank) const { return reads_[static_cast<std::size_t>(rank)]; }
+    bool several() const { return cut_.ranks() > 1; }
+    const Entries& own() const { return own_; }
+    const Entries& read() const { return read_; }
     /// The sorted particles that a rank gets from this one, and those that it sends.
     std::span<const int> sent_to(int rank) const { return part(sends_, send_begins_, rank); }
     std::span<const int> got_from(int rank) const { return part(gets_, get_begins_, rank); }
@@ -77,7 +80,8 @@ private:
     void list_halo(const CellSort& cells, int particles, std::span<const Link> links, int from, int to, std::vector<int>& list) const;
 
     std::size_t rank_ = 0;
-    std::vector<Entries> owns_{1}, reads_{1};
+    CellCut cut_;
+    Entries own_, read_;
     int count_ = 0;                  // of sorted entries
     std::vector<int> sends_, gets_;  // for one rank after the other
     std::vector<std::size_t> send_begins_, get_begins_;
@@ -94,7 +98,7 @@ void Shares::trade(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil) {
     T* to = reinterpret_cast<T*>(sent_.data());
     for (const int k : sends_) pack(k, to), to += numbers;
     parcels_.clear();
-    for (int peer = 0; peer < static_cast<int>(owns_.size()); ++peer) {
+    for (int peer = 0; peer < cut_.ranks(); ++peer) {
         const auto r = static_cast<std::size_t>(peer);
         parcels_.push_back({peer, sent_.data() + each * send_begins_[r], each * sent_to(peer).size(), got_.data() + each * get_begins_[r],
                             each * got_from(peer).size()});

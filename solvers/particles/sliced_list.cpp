@@ -74,8 +74,12 @@ void SlicedList::build(const PassTable& table, const std::array<const float*, 3>
     first_.resize(static_cast<std::size_t>(slices));
     rows_.resize(static_cast<std::size_t>(slices));
     neighbours_.resize(static_cast<std::size_t>(count));
-    ListJob job{
-        {}, count, cells.start().data(), cells.cell_of().data(), {}, radius * radius, first_.data(), rows_.data(), neighbours_.data()};
+    ListJob job;
+    job.count = count;
+    job.start = cells.start().data(), job.first_cell = cells.first_cell(), job.cell_of = cells.cell_of().data();
+    job.own_begin = own.begin, job.own_end = own.end;
+    job.radius2 = radius * radius;
+    job.first = first_.data(), job.rows = rows_.data(), job.neighbours = neighbours_.data();
     for (std::size_t a = 0; a < 3; ++a) job.axis[a] = axis[a], job.cells[a] = cells.cells()[a];
     for_chunks(static_cast<int>(chunks_.size()), static_cast<int>(chunks_.size()), [&](int t, int, int) {
         Chunk& chunk = chunks_[static_cast<std::size_t>(t)];

@@ -65,7 +65,6 @@ scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& k
 }
 
 void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
-    if (!scene.has("output.fields")) return;
     std::vector<std::string> known;
     for (const auto& field : fields.fields)
         if (std::find(known.begin(), known.end(), field.name) == known.end()) known.push_back(field.name);
@@ -97,7 +96,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
       changes_(changes_in(scene_)) {
     read_times();
-    check_output_fields(scene_, solver_->fields());
+    if (scene_.has("output.fields")) check_output_fields(scene_, solver_->fields());
     refuse_ignored(scene_, kind_);
     probes_.sample(*solver_);
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());

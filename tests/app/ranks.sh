@@ -265,6 +265,27 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
             at_most $more $((held + 49 * cells * planes + 128 * 2 * 4096 + frame)) "resident, rank $rank of $ranks"
         done
     done
+    # Particles: a column of 512 layers of 64. Cells are two spacings wide; the first of an axis holds 3. A rank knows at most 3 layers, a row
+    # and a cell beyond either cut.
+    cat >column.toml <<-END
+	solver = "sph"
+	dim = 3
+	grid = { cells = [8, 8, 520], size = [0.08, 0.08, 5.2] }
+	time = { end = 0.004, dt = 1e-4 }
+	scheme = { support = 2.0 }
+	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.08, 0.08, 5.12] } ]
+	output = { every = 1.0 }
+	END
+    ends 0 "$weir" run column.toml --quiet --threads 1 --out column
+    whole=$(grep -o '"solver_bytes": [0-9]*' column/run.json | cut -d' ' -f2) layers=$((512 * 64)) beside=$((2 * (3 * 64 + 3 * 3 * 8 + 3 * 9)))
+    for ranks in 2 4; do
+        ends 0 over $ranks "$weir" run column.toml --quiet --threads 1 --out column-$ranks
+        for rank in $(seq 0 $((ranks - 1))); do
+            # Arrays have a sixteenth of room; messages hold 8 numbers of each that is shown, sent and got; and two words a cell of all.
+            at_most "$(told column-$ranks solver_bytes $rank)" \
+                $((whole * (layers / ranks + beside) / layers * 17 / 16 + 2 * 8 * 8 * beside + 8 * 4 * 4 * 256)) "column, rank $rank of $ranks"
+        done
+    done
     # continued by others, and where somebody looks at all of it
     ends 0 over 4 "$weir" run --restart parts-2 --checkpoint-every 1000 --quiet --set time.end=0.004
     ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004

@@ -137,7 +137,8 @@ TEST("over ranks what one sends is what the other gets, in the same order, and a
                 const Shares& theirs = shared.ranks[static_cast<std::size_t>(peer)].pairs->shares();
                 EXPECT_EQ(shared.who(r, shares.sent_to(peer)), shared.who(peer, theirs.got_from(r)));
                 for (const int k : shares.got_from(peer)) {
-                    EXPECT_TRUE(shares.own(peer).has(k)) << "from another than its owner";
+                    const int cell = shared.ranks[static_cast<std::size_t>(r)].pairs->cells().cell_of()[static_cast<std::size_t>(k)];
+                    EXPECT_EQ(shared.cut.owner(cell), peer) << "from another than its owner";
                     EXPECT_TRUE(got.insert(k).second) << "twice";
                 }
             }
