@@ -94,15 +94,18 @@ scene::SolverKind kind() {
     for (Key& key : LiquidHeat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = effect_schemas();
     schema.without = {"sides.*.smoke", "sides.*.profile", "emitters.temperature", "emitters.smoke", "initial.smoke"};
-    return {schema,
-            staggered::make<Water>,
-            {{"velocity", "pressure", "level_set", "position", "velocity"},
-             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
-              "faces to markers"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-            over_ranks,
-            scene::Shared::by_planes,
-            "the matrix of the pressure, which cells are of the level set's band and which faces continue the velocity, viscosity"};
+    scene::SolverKind water{
+        schema,
+        staggered::make<Water>,
+        {{"velocity", "pressure", "level_set", "position", "velocity"},
+         {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
+          "faces to markers"},
+         "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+        over_ranks,
+        scene::Shared::by_planes,
+        "the matrix of the pressure, which cells are of the level set's band and which faces continue the velocity, viscosity"};
+    water.sends = traffic_of_step;
+    return water;
 }
 
 }  // namespace weir::water

@@ -33,6 +33,9 @@ using namespace surface;  // the words of the grid and of its free surface are t
 /// The registered solver "mac_water".
 scene::SolverKind kind();
 
+/// What a rank sends in a step of a scene that is cut so.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
+
 /// How momentum travels: on the grid by semi-Lagrangian advection, or on the markers.
 enum class Transfer { grid, pic, flip, apic };
 
