@@ -79,7 +79,7 @@ std::string explain_ranks(const Simulation& simulation) {
     if (!slabs().several()) return {};
     const Cut cut = cut_of_run(scene);
     std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, cut along " + (scene.dim() == 2 ? "y" : "z");
-    if (cut.empty()) return text + " into as many particles each; every rank holds all particles and moves its own\n";
+    if (cut.empty()) return text + " into as many particles each; every rank holds and moves its own, and knows those near its cuts\n";
     text += " before planes";
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
     text += simulation.solver().holds_own_planes() ? "; every rank holds and computes its own planes of the grids"

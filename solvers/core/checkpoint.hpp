@@ -47,6 +47,19 @@ public:
         if (!own.empty()) std::memcpy(own.data(), block.data() + (begin * sizeof(T) - before), own.size_bytes());
     }
 
+    /// The entries of a block that are here: all, or the part that was put.
+    struct Held {
+        std::size_t begin, end, all;
+        bool part;
+    };
+    template <class T>
+    Held held(const std::string& name) const {
+        const std::size_t here = find(name).size() / sizeof(T);
+        const auto part = parts_.find(name);
+        if (part == parts_.end()) return {0, here, here, false};
+        return {part->second.begin / sizeof(T), part->second.begin / sizeof(T) + here, part->second.all / sizeof(T), true};
+    }
+
     bool has(const std::string& name) const { return blocks_.count(name) != 0; }
     /// Copies the block into `to`, which must have its exact size; throws std::runtime_error naming the block otherwise.
     template <class T>

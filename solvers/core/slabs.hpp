@@ -77,6 +77,9 @@ public:
     /// Whether somebody looks at whole fields on all ranks, so that each is to hold them whole.
     bool holds_whole() const { return holds_whole_; }
     void hold_whole(bool yes) { holds_whole_ = yes; }
+    /// Whether what is built now is of this rank alone, as in one process: to see what it takes.
+    bool builds_alone() const { return builds_alone_; }
+    void build_alone(bool yes) { builds_alone_ = yes; }
     /// The largest of the values that the ranks give.
     virtual int largest(int value) { return value; }
     /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never
@@ -90,7 +93,7 @@ protected:
 
 private:
     int rank_ = 0, ranks_ = 1;
-    bool holds_whole_ = false;
+    bool holds_whole_ = false, builds_alone_ = false;
 };
 
 /// Those of this process: one rank, unless set_slabs has been called.

@@ -20,6 +20,7 @@ struct StepShape {
     int iterations = 1;     // of the solve for the pressure or the constraints
     int cells_crossed = 1;  // by the fastest flow, rounded up
     std::int64_t step = 1;  // its number: some things are looked at every few steps
+    double beside = 0;      // particles that a neighbour reads, where that is known; 0: as many as planes hold on the mean
     double particles = 0;   // all there are, of solvers that consist of them
 };
 

@@ -82,7 +82,8 @@ void RunLog::set_ranks(int count, const Cut& cut, bool own_planes, const std::st
                        const std::vector<RankMemory>& memory) {
     json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
     if (own_planes) ranks["storage"] = "every rank holds its own planes and those near its cuts";
-    if (cut.empty()) ranks["cut"] = "as many particles to each", ranks["storage"] = "every rank holds all particles";
+    if (cut.empty())
+        ranks["cut"] = "as many particles to each", ranks["storage"] = "every rank holds its own particles and those near its cuts";
     if (!by_all.empty()) ranks["every_rank_does"] = by_all;
     for (const Traffic& rank : sent) {
         ranks["messages"].push_back(rank.messages);

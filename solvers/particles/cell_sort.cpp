@@ -53,30 +53,44 @@ CellGrid cover_box(const Box& box, int count, real cell_size) {
     }
 }
 
-Box CellSort::box(const Coordinates& x, int count) {
+Box CellSort::box(const Coordinates& x, int count, bool& finite) {
     Box box;
+    finite = true;
     for (std::size_t a = 0; a < 3; ++a) {
         if (!x[a] || count == 0) continue;
         const Range r = range_of(x[a], count, ranges_);
-        if (!r.finite) throw NumericalFailure("position", "a particle's position is not finite");
+        finite = finite && r.finite;
         box.lo[a] = r.lo;
         box.hi[a] = r.hi;
     }
     return box;
 }
 
+Box CellSort::box(const Coordinates& x, int count) {
+    bool finite = true;
+    const Box box = this->box(x, count, finite);
+    if (!finite) throw NumericalFailure("position", "a particle's position is not finite");
+    return box;
+}
+
 int CellSort::cell(const Coordinates& x, int i) const {
+    std::array<real, 3> at = grid_.origin;
+    for (std::size_t a = 0; a < 3; ++a)
+        if (x[a]) at[a] = x[a][i];
+    return cell_at(at);
+}
+
+int CellSort::cell_at(const std::array<real, 3>& x) const {
     int c = 0;
     for (std::size_t a = 3; a-- > 0;) {
-        const int k = x[a] ? std::min(static_cast<int>((x[a][i] - grid_.origin[a]) * grid_.per_cell), grid_.cells[a] - 1) : 0;
+        const int k = std::min(static_cast<int>((x[a] - grid_.origin[a]) * grid_.per_cell), grid_.cells[a] - 1);
         c = c * grid_.cells[a] + k;
     }
     return c;
 }
 
 /// cell() of particles begin .. end - 1, an axis at a time: loops that become lanes.
-void CellSort::find_cells(const Coordinates& x, int begin, int end) {
-    int* c = unsorted_.data();
+void CellSort::find_cells(const Coordinates& x, int begin, int end, int* c) const {
     std::fill(c + begin, c + end, 0);
     for (std::size_t a = 3; a-- > 0;) {
         if (!x[a]) continue;
@@ -84,6 +98,11 @@ void CellSort::find_cells(const Coordinates& x, int begin, int end) {
         const int n = grid_.cells[a];
         for (int i = begin; i < end; ++i) c[i] = c[i] * n + std::min(static_cast<int>((along[i] - origin) * per_cell), n - 1);
     }
+}
+
+void CellSort::list_cells(const Coordinates& x, int count, std::vector<int>& to) {
+    to.resize(static_cast<std::size_t>(count));
+    for_chunks(count, [&](int, int begin, int end) { find_cells(x, begin, end, to.data()); });
 }
 
 /// Turns the chunks' histograms into the places where each chunk's particles of each cell begin, and fills the cell starts.
@@ -128,7 +147,7 @@ void CellSort::sort(const Coordinates& x, int count, const CellGrid& grid) {
         auto& histogram = histograms_[static_cast<std::size_t>(t)];
         if (histogram.capacity() < cells) histogram.reserve(cells + cells / 2);
         histogram.assign(cells, 0);
-        find_cells(x, begin, end);
+        find_cells(x, begin, end, unsorted_.data());
         for (int i = begin; i < end; ++i) ++histogram[static_cast<std::size_t>(unsorted_[static_cast<std::size_t>(i)])];
     });
     place_starts(chunks);

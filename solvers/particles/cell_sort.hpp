@@ -33,10 +33,16 @@ class CellSort {
 public:
     /// The box of `count` points. Throws NumericalFailure when a coordinate is not finite.
     Box box(const Coordinates& x, int count);
+    /// The same, and whether all are finite.
+    Box box(const Coordinates& x, int count, bool& finite);
     /// Sorts `count` points into these cells, which cover them.
     void sort(const Coordinates& x, int count, const CellGrid& grid);
     /// Into cells at least `cell_size` wide over their box.
     void sort(const Coordinates& x, int count, real cell_size) { sort(x, count, cover_box(box(x, count), count, cell_size)); }
+
+    /// The sort again within each cell: before(i, j) of points, where they stood in another order.
+    template <class Before>
+    void order_cells(Before&& before);
 
     int count() const { return count_; }
     /// Where each sorted particle came from.
@@ -51,9 +57,12 @@ public:
     void cover(const CellGrid& grid) { grid_ = grid; }
     /// The cell of a point that is covered.
     int cell(const Coordinates& x, int i) const;
+    int cell_at(const std::array<real, 3>& x) const;
+    /// Those of points 0 .. count - 1.
+    void list_cells(const Coordinates& x, int count, std::vector<int>& to);
 
 private:
-    void find_cells(const Coordinates& x, int begin, int end);
+    void find_cells(const Coordinates& x, int begin, int end, int* c) const;
     void place_starts(int chunks);
 
     int count_ = 0;
@@ -64,5 +73,20 @@ private:
     std::vector<Range> ranges_;                 // scratch, one a thread
     std::vector<int> before_;                   // scratch: particles in the cells before each chunk's
 };
+
+template <class Before>
+void CellSort::order_cells(Before&& before) {
+    for_chunks(static_cast<int>(start_.size()) - 1, [&](int, int first, int last) {
+        const int begin = start_[static_cast<std::size_t>(first)], end = start_[static_cast<std::size_t>(last)];
+        int* const order = order_.data();
+        const int* const cell = cell_.data();
+        for (int k = begin + 1; k < end; ++k) {
+            const int i = order[k];
+            int to = k;
+            for (; to > begin && cell[to - 1] == cell[k] && before(i, order[to - 1]); --to) order[to] = order[to - 1];
+            order[to] = i;
+        }
+    });
+}
 
 }  // namespace weir::particles

@@ -1,5 +1,6 @@
 #include "particles/fastest_flow.hpp"
 
+#include "core/slabs.hpp"
 #include "rigid/bodies.hpp"
 
 namespace weir::particles {
@@ -53,6 +54,8 @@ real fastest_flow(const scene::Scene& scene, Fluid<D>& fluid) {
         const Vec<D> r = field->number("omega") * (x - field->template vec<D>("centre"));
         squared = std::max(squared, dot(r, r));
     }
+    if (fluid.shared)
+        for (const auto& rank : of_ranks(std::array{squared, fall})) squared = std::max(squared, rank[0]), fall = std::max(fall, rank[1]);
     if (fluid.domain.bodies)
         for (const auto& body : fluid.domain.bodies->all()) fall = std::max(fall, depth_below(fluid, body.at));
     for (const auto& emitter : scene.root().tables("emitters")) {

@@ -97,7 +97,7 @@ namespace {
 /// Nothing moves in a scene without liquid to which nothing is ever given; most often its shapes fall between the particles' places.
 template <int D>
 void refuse_nothing(const scene::Scene& scene, const Fluid<D>& fluid) {
-    if (fluid.count() > 0 || Emitters<D>(scene, fluid.domain).entered(scene.number("time.end")) > 0) return;
+    if (fluid.next_id > 0 || Emitters<D>(scene, fluid.domain).entered(scene.number("time.end")) > 0) return;
     const bool named = scene.has("liquid") && !scene.root().tables("liquid").empty();
     const std::string spacing = scene::number_text(fluid.domain.spacing);
     scene.refuse(

@@ -1,11 +1,24 @@
 #include "particles/fluid.hpp"
 
 #include "core/error.hpp"
+#include "core/slabs.hpp"
 #include "particles/beside_bodies.hpp"
+#include "particles/hand_over.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace weir::particles {
+
+namespace {
+
+/// This rank's part of so many.
+std::array<std::size_t, 2> part_of(std::size_t count) {
+    const auto r = static_cast<std::size_t>(slabs().rank()), ranks = static_cast<std::size_t>(slabs().ranks());
+    return {count * r / ranks, count * (r + 1) / ranks};
+}
+
+}  // namespace
 
 template <int D>
 Fluid<D>::Fluid(const scene::Scene& scene) : domain(scene), rho0(scene.number("fluid.density")) {
@@ -14,41 +27,59 @@ Fluid<D>::Fluid(const scene::Scene& scene) : domain(scene), rho0(scene.number("f
     const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     const Index<D> cells = scene.index<D>("grid.cells");
     std::vector<Vec<D>> beside;
-    Index<D> at{};
-    for (std::size_t c = 0; c < product(cells); ++c) {
-        const Vec<D> centre = domain.lo + domain.spacing * (to_vec(at) + Vec<D>::constant(0.5));
-        const bool wet = std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s->contains(centre); });
-        if (wet && domain.bodies && away_from_bodies(domain, centre) < 0.5 * std::sqrt(1.0 * D) * domain.spacing)
-            beside.push_back(centre);
-        else if (wet && (domain.solids.empty() || domain.solids.distance(centre) > 0.25 * domain.spacing))
-            add(centre, Vec<D>{});
-        for (int a = 0; a < D && ++at[a] == cells[a]; ++a) at[a] = 0;
+    const auto each_place = [&](auto&& stand) {
+        Index<D> at{};
+        for (std::size_t c = 0; c < product(cells); ++c) {
+            const Vec<D> centre = domain.lo + domain.spacing * (to_vec(at) + Vec<D>::constant(0.5));
+            const bool wet = std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s->contains(centre); });
+            if (wet && domain.bodies && away_from_bodies(domain, centre) < 0.5 * std::sqrt(1.0 * D) * domain.spacing)
+                beside.push_back(centre);
+            else if (wet && (domain.solids.empty() || domain.solids.distance(centre) > 0.25 * domain.spacing))
+                stand(centre);
+            for (int a = 0; a < D && ++at[a] == cells[a]; ++a) at[a] = 0;
+        }
+    };
+    shared = slabs().several() && !slabs().builds_alone();
+    if (shared) {
+        std::size_t all = 0, n = 0;
+        each_place([&](const Vec<D>&) { ++all; });
+        const auto [begin, end] = part_of(all);
+        each_place([&, first = begin, last = end](const Vec<D>& centre) {
+            if (n >= first && n < last) append(centre, {}, 0, static_cast<real>(n), static_cast<real>(n));
+            ++n;
+        });
+        next_id = next_place = static_cast<real>(all);
+        return;
     }
+    each_place([&](const Vec<D>& centre) { add(centre, Vec<D>{}); });
     if (!beside.empty())
-        for (const Vec<D>& place : places_beside_bodies(domain, beside)) add(place, Vec<D>{});
+        for (const Vec<D>& at : places_beside_bodies(domain, beside)) add(at, Vec<D>{});
     scratch_.reserve(id.size());  // of reorder(), which must not allocate in a step
 }
 
 template <int D>
-void Fluid<D>::add(const Vec<D>& at, const Vec<D>& velocity, real h) {
+void Fluid<D>::append(const Vec<D>& at, const Vec<D>& velocity, real h, real born, real stands) {
     for (int a = 0; a < D; ++a) {
         x[static_cast<std::size_t>(a)].push_back(at[a]);
         v[static_cast<std::size_t>(a)].push_back(velocity[a]);
     }
-    id.push_back(next_id++);
+    id.push_back(born);
     density.push_back(rho0);
     carried.push_back(0);
     if (warm) enthalpy.push_back(h);
+    if (shared) place.push_back(stands);
+}
+
+template <int D>
+void Fluid<D>::add(const Vec<D>& at, const Vec<D>& velocity, real h) {
+    const real born = next_id++, stands = next_place++;
+    if (!shared || slabs().rank() == 0) append(at, velocity, h, born, stands);
 }
 
 template <int D>
 void Fluid<D>::resize(int count) {
     const auto n = static_cast<std::size_t>(count);
-    for (std::size_t a = 0; a < D; ++a) x[a].resize(n), v[a].resize(n);
-    id.resize(n);
-    density.resize(n);
-    carried.resize(n);
-    if (warm) enthalpy.resize(n);
+    for_each_array([&](std::vector<real>& f) { f.resize(n); });
 }
 
 template <int D>
@@ -71,26 +102,74 @@ void Fluid<D>::reorder(const std::vector<int>& order) {
         });
         f.swap(scratch_);
     };
-    for (std::size_t a = 0; a < D; ++a) arrange(x[a]), arrange(v[a]);
-    arrange(id);
-    arrange(density);
-    arrange(carried);
-    if (warm) arrange(enthalpy);
+    for_each_array(arrange);
+}
+
+template <int D>
+void Fluid<D>::gather(Fluid& all, bool to_first) const {
+    const auto gathered = [&](const std::vector<real>& own) {
+        if (!to_first) return of_all_ranks(own);
+        std::vector<real> list;
+        slabs().stream_to_first(own.data(), own.size() * sizeof(real), [&](const void* bytes, std::size_t count) {
+            const auto* numbers = static_cast<const real*>(bytes);
+            list.insert(list.end(), numbers, numbers + count / sizeof(real));
+        });
+        return list;
+    };
+    all.domain = domain, all.gravity = gravity, all.rho0 = rho0, all.mass = mass;
+    all.time = time, all.steps = steps, all.next_id = next_id, all.clamps = clamps;
+    const std::vector<real> places = gathered(place);
+    std::vector<int> at(static_cast<std::size_t>(next_place), -1), order;  // who stands there
+    for (std::size_t i = 0; i < places.size(); ++i) at[static_cast<std::size_t>(places[i])] = static_cast<int>(i);
+    std::copy_if(at.begin(), at.end(), std::back_inserter(order), [](int i) { return i >= 0; });
+    const auto fill = [&](std::vector<real>& to, const std::vector<real>& own) {
+        const std::vector<real> list = gathered(own);
+        to.resize(order.size());
+        parallel_for(0, static_cast<int>(order.size()),
+                     [&](int k) { to[static_cast<std::size_t>(k)] = list[static_cast<std::size_t>(order[static_cast<std::size_t>(k)])]; });
+    };
+    for (std::size_t a = 0; a < D; ++a) fill(all.x[a], x[a]), fill(all.v[a], v[a]);
+    fill(all.id, id);
+    fill(all.density, density);
+    fill(all.carried, carried);
+}
+
+template <int D>
+real Fluid<D>::fastest() const {
+    if (count() == 0) return 0;
+    // 0 x makes a position that is not finite turn the speed into NaN: one sweep finds both
+    return std::sqrt(block_max(count(), [&](int i) {
+        const Vec<D> u = velocity(i);
+        return dot(u, u) + 0 * dot(u, position(i));
+    }));
 }
 
 template <int D>
 real Fluid<D>::max_speed() const {
-    if (count() == 0) return 0;
-    // 0 x makes a position that is not finite turn the speed into NaN: one sweep finds both
-    const real fastest = block_max(count(), [&](int i) {
-        const Vec<D> u = velocity(i);
-        return dot(u, u) + 0 * dot(u, position(i));
-    });
-    if (std::isfinite(fastest)) return std::sqrt(fastest);
-    for (std::size_t a = 0; a < D; ++a)
-        for (const real value : x[a])
-            if (!std::isfinite(value)) throw NumericalFailure("position", "a particle's position is not finite");
-    throw NumericalFailure("velocity", "a particle's velocity is not finite");
+    const real speed = fastest();
+    if (!std::isfinite(speed)) fail(std::max(broken(), Quantity::velocity));
+    return speed;
+}
+
+template <int D>
+typename Fluid<D>::Quantity Fluid<D>::broken(bool moving) const {
+    const auto is_finite = [](const std::vector<real>& values) {
+        return 0 == block_max(static_cast<int>(values.size()), [&](int i) { return 0 * values[static_cast<std::size_t>(i)]; });
+    };
+    for (std::size_t a = 0; moving && a < D; ++a)
+        if (!is_finite(x[a])) return Quantity::position;
+    for (std::size_t a = 0; moving && a < D; ++a)
+        if (!is_finite(v[a])) return Quantity::velocity;
+    if (!is_finite(density)) return Quantity::density;
+    return is_finite(carried) ? Quantity::none : Quantity::pressure;
+}
+
+template <int D>
+void Fluid<D>::fail(Quantity broken) {
+    if (broken == Quantity::position) throw NumericalFailure("position", "a particle's position is not finite");
+    if (broken == Quantity::velocity) throw NumericalFailure("velocity", "a particle's velocity is not finite");
+    if (broken == Quantity::density) throw NumericalFailure("density", "density is no longer finite");
+    if (broken == Quantity::pressure) throw NumericalFailure("pressure", "pressure is no longer finite");
 }
 
 template <int D>
@@ -141,16 +220,53 @@ std::vector<Integral> Fluid<D>::integrals() const {
     return list;
 }
 
+/// Particles go to the ranks in whose part of the file they stand.
+template <int D>
+void Fluid<D>::save_part(Checkpoint& to) const {
+    Fluid part;
+    part.shared = true;
+    HandOver::Arrays own, sorted;
+    const_cast<Fluid&>(*this).for_each_array([&](std::vector<real>& f) { own.push_back(&f); });  // they are read
+    part.for_each_array([&](std::vector<real>& f) { sorted.push_back(&f); });
+    HandOver hands;
+    hands.clear();
+    const int ranks = slabs().ranks();
+    for (int i = 0; i < count(); ++i)
+        hands.move(std::min(ranks - 1, static_cast<int>(place[static_cast<std::size_t>(i)] * ranks / next_place)), i);
+    hands.trade(own, 0);
+    part.resize(hands.movers());
+    hands.take_movers(sorted, 0);
+    std::vector<int> order(part.id.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto stands = [&](int i) { return part.place[static_cast<std::size_t>(i)]; };
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return stands(i) < stands(j); });
+    part.reorder(order);
+    const std::vector<std::size_t> counts = of_ranks(order.size());
+    const std::size_t begin = std::accumulate(counts.begin(), counts.begin() + slabs().rank(), std::size_t{0}),
+                      all = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+    const auto put = [&](const std::string& name, const std::vector<real>& f) {
+        to.put_part("particles." + name, std::span<const real>(f), begin, all);
+    };
+    for (std::size_t a = 0; a < D; ++a) put("x" + std::to_string(a), part.x[a]), put("v" + std::to_string(a), part.v[a]);
+    put("id", part.id);
+    put("density", part.density);
+    put("carried", part.carried);
+}
+
 template <int D>
 void Fluid<D>::save(Checkpoint& to) const {
-    for (std::size_t a = 0; a < D; ++a) {
-        to.put("particles.x" + std::to_string(a), x[a]);
-        to.put("particles.v" + std::to_string(a), v[a]);
+    if (shared) {
+        save_part(to);
+    } else {
+        for (std::size_t a = 0; a < D; ++a) {
+            to.put("particles.x" + std::to_string(a), x[a]);
+            to.put("particles.v" + std::to_string(a), v[a]);
+        }
+        to.put("particles.id", id);
+        to.put("particles.density", density);
+        to.put("particles.carried", carried);
+        if (warm) to.put("particles.enthalpy", enthalpy);
     }
-    to.put("particles.id", id);
-    to.put("particles.density", density);
-    to.put("particles.carried", carried);
-    if (warm) to.put("particles.enthalpy", enthalpy);
     to.put("particles.clock", std::vector<real>{time, next_id});
     to.put_value("particles.steps", steps);
     to.put_value("particles.clamps", clamps);
@@ -158,14 +274,26 @@ void Fluid<D>::save(Checkpoint& to) const {
 
 template <int D>
 void Fluid<D>::restore(const Checkpoint& from) {
-    for (std::size_t a = 0; a < D; ++a) {
-        from.get("particles.x" + std::to_string(a), x[a]);
-        from.get("particles.v" + std::to_string(a), v[a]);
+    Checkpoint::Held held = from.held<real>("particles.id");
+    if (shared && !held.part) {
+        const auto part = part_of(held.all);
+        held.begin = part[0], held.end = part[1];
     }
-    from.get("particles.id", id);
-    from.get("particles.density", density);
-    from.get("particles.carried", carried);
-    if (warm) from.get("particles.enthalpy", enthalpy);
+    const auto get = [&](const std::string& name, std::vector<real>& f) {
+        if (!shared) return from.get("particles." + name, f);
+        f.resize(held.end - held.begin);
+        from.get_part("particles." + name, std::span<real>(f), held.begin, held.all);
+    };
+    for (std::size_t a = 0; a < D; ++a) get("x" + std::to_string(a), x[a]), get("v" + std::to_string(a), v[a]);
+    get("id", id);
+    get("density", density);
+    get("carried", carried);
+    if (warm) get("enthalpy", enthalpy);
+    if (shared) {
+        place.resize(id.size());
+        std::iota(place.begin(), place.end(), static_cast<real>(held.begin));
+        next_place = static_cast<real>(held.all);
+    }
     std::vector<real> clock;
     from.get("particles.clock", clock);
     time = clock.at(0);

@@ -22,6 +22,9 @@ struct Fluid {
     std::vector<real> carried;              // a number that the solver keeps for each particle (PBF: the multiplier over dt^2)
     bool warm = false;                      // whether they carry heat
     std::vector<real> enthalpy;             // then: specific [J/kg]
+    bool shared = false;                    // whether this rank holds its own alone, among several
+    std::vector<real> place;                // then: where each would stand among all in the arrays of one process, in that order
+    real next_place = 0;                    // of a particle that enters
     real rho0 = 1, mass = 1;                // [kg/m^3], [kg] (2D: per metre of depth)
     real time = 0;                          // [s]
     std::int64_t steps = 0;
@@ -30,7 +33,8 @@ struct Fluid {
     Clamps clamps;
 
     Fluid() = default;
-    /// Particles of the scene's "liquid" shapes on the lattice of the grid's cell centres, outside solids.
+    /// Particles of the scene's "liquid" shapes on the lattice of the grid's cell centres, outside solids. Over ranks each begins with as
+    /// many of them.
     explicit Fluid(const scene::Scene& scene);
 
     int count() const { return static_cast<int>(id.size()); }
@@ -49,8 +53,19 @@ struct Fluid {
         for (std::size_t a = 0; a < D; ++a) c[a] = f[a].data();
         return c;
     }
+    /// Over ranks that share particles the first takes it.
     void add(const Vec<D>& at, const Vec<D>& velocity, real h = 0);
     void resize(int count);
+    /// f(array) for every array of the state.
+    template <class F>
+    void for_each_array(F&& f) {
+        for (std::size_t a = 0; a < D; ++a) f(x[a]), f(v[a]);
+        f(id), f(density), f(carried);
+        if (warm) f(enthalpy);
+        if (shared) f(place);
+    }
+    /// The particles of all ranks as one process has them, to all ranks or to the first alone; all call it together.
+    void gather(Fluid& all, bool to_first) const;
     /// Takes out the particles for which gone(i) holds; the others keep their order.
     template <class F>
     void remove_if(F&& gone);
@@ -60,6 +75,13 @@ struct Fluid {
     void reorder(const std::vector<int>& order);
     /// The largest speed [m/s]. Throws NumericalFailure naming the quantity when a position or velocity is not finite.
     real max_speed() const;
+    /// The same without a word: not finite where they are not.
+    real fastest() const;
+    /// What is not finite, if anything is, the last of these; moving: whether positions and velocities can be that.
+    enum class Quantity { none, pressure, density, velocity, position };
+    Quantity broken(bool moving = true) const;
+    /// Throws NumericalFailure naming it.
+    static void fail(Quantity broken);
 
     void show(FieldSet& fields) const;
     std::vector<Integral> integrals() const;
@@ -68,10 +90,14 @@ struct Fluid {
     std::size_t bytes() const {
         std::size_t values = id.capacity() + density.capacity() + carried.capacity() + enthalpy.capacity() + scratch_.capacity();
         for (int a = 0; a < D; ++a) values += x[static_cast<std::size_t>(a)].capacity() + v[static_cast<std::size_t>(a)].capacity();
+        values += place.capacity();
         return values * sizeof(real);
     }
 
 private:
+    void append(const Vec<D>& at, const Vec<D>& velocity, real h, real born, real stands);
+    void save_part(Checkpoint& to) const;
+
     std::vector<real> scratch_;
 };
 
@@ -82,11 +108,7 @@ void Fluid<D>::remove_if(F&& gone) {
     for (int i = 0; i < count(); ++i) {
         if (gone(i)) continue;
         const auto from = static_cast<std::size_t>(i), at = static_cast<std::size_t>(to++);
-        for (std::size_t a = 0; a < D; ++a) x[a][at] = x[a][from], v[a][at] = v[a][from];
-        id[at] = id[from];
-        density[at] = density[from];
-        carried[at] = carried[from];
-        if (warm) enthalpy[at] = enthalpy[from];
+        for_each_array([&](std::vector<real>& f) { f[at] = f[from]; });
     }
     resize(to);
 }
@@ -101,32 +123,39 @@ real block_sum(int count, F&& f) {
         return sum;
     });
 }
-/// Both the sum, in the order of block_sum, and the largest of f(i) in one sweep.
+/// The sum of numbers from 0 to 1024 (one that is more counts as that) in whole units of 2^-44, and the largest: no order of adding changes
+/// a sum of whole numbers, so it does not depend on who adds which, threads or ranks.
 struct SumAndMost {
-    real sum = 0, most = 0;
+    __extension__ typedef __int128 Whole;
+    static constexpr real unit = 0x1.0p-44, limit = 1024;
+
+    Whole units = 0;
+    real most = -infinity;  // NaN if any is NaN
+
+    void add(const SumAndMost& more) {
+        units += more.units;
+        most = more.most > most || more.most != more.most ? more.most : most;
+    }
+    real sum() const { return std::isnan(most) ? most : unit * static_cast<real>(units); }
 };
 template <class F>
-SumAndMost block_sum_and_max(int count, F&& f) {
-    constexpr int block = 2048;
-    if (count == 0) return {};
-    const int blocks = (count + block - 1) / block;
-    auto& part = detail::reduction_scratch(2 * static_cast<std::size_t>(blocks));
-    parallel_for(0, blocks, [&](int b) {
-        real sum = 0, most = -infinity;
-        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) {
-            const real value = f(i);
-            sum += value;
-            most = value > most || value != value ? value : most;
+SumAndMost whole_sum_and_max(int count, F&& f) {
+    constexpr int block = 256;  // whose units an integer holds
+    SumAndMost all;
+    for_chunks(count, [&](int, int begin, int end) {
+        SumAndMost part;
+        for (int b = begin; b < end; b += block) {
+            std::int64_t units = 0;
+            for (int i = b; i < std::min(end, b + block); ++i) {
+                const real value = f(i);
+                units += static_cast<std::int64_t>((value < SumAndMost::limit ? value : SumAndMost::limit) / SumAndMost::unit);
+                part.most = value > part.most || value != value ? value : part.most;
+            }
+            part.units += units;
         }
-        part[2 * static_cast<std::size_t>(b)] = sum;
-        part[2 * static_cast<std::size_t>(b) + 1] = most;
+#pragma omp critical(weir_whole_sum)
+        all.add(part);
     });
-    SumAndMost all{0, -infinity};
-    for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {
-        all.sum += part[2 * b];
-        const real most = part[2 * b + 1];
-        all.most = most > all.most || most != most ? most : all.most;
-    }
     return all;
 }
 /// The largest of f(i) over [0, count), several at a time in lanes; NaN if any is NaN: once in a lane, nothing compares greater.

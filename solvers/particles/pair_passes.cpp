@@ -37,11 +37,11 @@ inline void store_numbers(float* to, int first, int count, vf value) {
 inline vf kept(vf x, const WallParams* w, int axis) { return lower(higher(x, broadcast(w->keep_lo[axis])), broadcast(w->keep_hi[axis])); }
 
 /// Adds the lanes that walls put back. Squares of floats that are not negative are ordered as their bits are.
-inline void tally_clamps(ClampTally& tally, vf distance2, int count, const int* order, int particles) {
+inline void tally_clamps(ClampTally& tally, vf distance2, int begin, int end, const int* order, int particles) {
     if (!any_below(-distance2, -tally.least2)) return;
     long long times = 0;
     float farthest2 = 0;
-    for (int l = 0; l < count; ++l) {
+    for (int l = begin; l < end; ++l) {
         if (!(distance2[l] > tally.least2) || order[l] >= particles) continue;
         ++times;
         farthest2 = distance2[l] > farthest2 ? distance2[l] : farthest2;

@@ -13,10 +13,27 @@ constexpr float not_brought = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
+/// Particles that have images, in the order of one process.
+void Pairs::list_near_sides(const Coordinates& x, int count, const Box& particles, real radius, const real* place) {
+    near_sides_.clear();
+    const auto is_near = [&](int i) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (!x[a] || frame_.period[a] == 0) continue;
+            const real band = frame_.band(a, particles, radius), lo = frame_.lo[a];
+            if (x[a][i] < lo + band || x[a][i] > lo + frame_.period[a] - band) return true;
+        }
+        return false;
+    };
+    for (int i = 0; i < count; ++i)
+        if (is_near(i)) near_sides_.push_back(i);
+    if (place) std::sort(near_sides_.begin(), near_sides_.end(), [&](int i, int j) { return place[i] < place[j]; });
+}
+
 /// An image of each particle near a periodic side; corners follow because an axis also copies the images of the axes before it.
-void Pairs::make_images(const Coordinates& x, int count, const Box& particles, real radius) {
+void Pairs::make_images(const Coordinates& x, int count, const Box& particles, real radius, const real* place) {
     image_owner_.clear();
     image_shift_.clear();
+    list_near_sides(x, count, particles, radius, place);
     for (std::size_t a = 0; a < 3; ++a)
         if (x[a]) with_images_[a].assign(x[a], x[a] + count);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -32,12 +49,14 @@ void Pairs::make_images(const Coordinates& x, int count, const Box& particles, r
             for (std::size_t b = 0; b < 3; ++b)
                 if (x[b]) with_images_[b].push_back(with_images_[b][i] + (a == b ? shift : 0));
         };
-        const auto before = with_images_[a].size();
-        for (std::size_t i = 0; i < before; ++i) {
+        const auto copy_near = [&](std::size_t i) {
             const real here = with_images_[a][i];
             if (here < lo + band) copy(i, period);
             if (here > lo + period - band) copy(i, -period);
-        }
+        };
+        const auto before = with_images_[a].size();
+        for (const int i : near_sides_) copy_near(static_cast<std::size_t>(i));
+        for (auto i = static_cast<std::size_t>(count); i < before; ++i) copy_near(i);
     }
 }
 
@@ -54,18 +73,34 @@ void Pairs::place_dummies(float* four) const {
 }
 
 void Pairs::find(const Coordinates& x, int count, real radius) {
-    particles_ = count;
+    particles_ = total_ = count;
     Coordinates all = x;
-    int total = count;
     const Box box = cells_.box(x, count);
     if (frame_.periodic()) {
-        make_images(x, count, box, radius);
-        total += static_cast<int>(image_owner_.size());
+        make_images(x, count, box, radius, nullptr);
         for (std::size_t a = 0; a < 3; ++a)
             if (x[a]) all[a] = with_images_[a].data();
     }
-    cells_.sort(all, total, frame_.cover(box, count, radius));
-    shares_.cut(cells_, table_.lanes);
+    cells_.sort(all, count + static_cast<int>(image_owner_.size()), frame_.cover(box, count, radius));
+    shares_.own_all(size());
+    finish(all, radius);
+}
+
+void Pairs::find(const Coordinates& x, int count, real radius, const Held& held) {
+    particles_ = count, total_ = held.total;
+    Coordinates all = x;
+    if (frame_.periodic()) {
+        make_images(x, count, held.box, radius, held.place);
+        for (std::size_t a = 0; a < 3; ++a)
+            if (x[a]) all[a] = with_images_[a].data();
+    }
+    cells_.sort(all, count + static_cast<int>(image_owner_.size()), frame_.cover(held.box, held.total, radius));
+    cells_.order_cells([&](int i, int j) { return i < count && j < count ? held.place[i] < held.place[j] : i < j; });
+    shares_.set(*held.cut, cells_);
+    finish(all, radius);
+}
+
+void Pairs::finish(const Coordinates& all, real radius) {
     place(all);
     link_images();
     shares_.find_halos(cells_, particles_, links_);
@@ -127,54 +162,35 @@ void Pairs::share(StateArrays state) {
             for (auto* f : state) (*f)[static_cast<std::size_t>(owner(k))] = *from++;
         },
         [](int) {});
-    poison(state);
 }
 
-void Pairs::gather(StateArrays state) {
-    shares_.gather(
-        static_cast<int>(state.size()),
-        [&](int k, real* to) {
-            for (const auto* f : state) *to++ = (*f)[static_cast<std::size_t>(owner(k))];
-        },
-        [&](int k, const real* from) {
-            if (is_image(k)) return;
-            for (auto* f : state) (*f)[static_cast<std::size_t>(owner(k))] = *from++;
-        });
-}
-
-void Pairs::gather(std::vector<float>& sorted) const {
-    if (shares_.several()) slabs().gather_parts(sorted.data(), sizeof(float), shares_.begins());
+void Pairs::share(std::vector<float>& sorted) {
+    shares_.trade<float>(
+        1, [&](int k, float* to) { *to = sorted[static_cast<std::size_t>(k)]; },
+        [&](int k, const float* from) { sorted[static_cast<std::size_t>(k)] = *from; },
+        [&](int k) { sorted[static_cast<std::size_t>(k)] = not_brought; });
 }
 
 real Pairs::largest(real own) const { return shares_.several() ? detail::largest_of(of_ranks(own), slabs().ranks()) : own; }
 
-/// Images are known by their particles.
-void Pairs::poison(StateArrays state) const {
-    if (!shares_.several() || !slabs().poisons()) return;
-    shares_.poison([&](int k) {
-        if (is_image(k)) return;
-        for (auto* f : state) (*f)[static_cast<std::size_t>(owner(k))] = not_applicable;
-    });
-}
-
 const std::vector<int>& Pairs::particle_order() {
-    if (images() == 0) return cells_.order();
+    if (images() == 0 && !shares_.several()) return cells_.order();
     sorted_.clear();  // as long as there are particles since find()
-    for (const int i : cells_.order())
-        if (i < particles_) sorted_.push_back(i);
+    for (int k = shares_.own().begin; k < shares_.own().end; ++k)
+        if (!is_image(k)) sorted_.push_back(owner(k));
     return sorted_;
 }
 
 Pairs::NeighbourCounts Pairs::neighbour_counts() const {
     const auto& counts = list_.neighbours();
-    if (counts.empty() || particles_ == 0) return {};
+    if (counts.empty() || total_ == 0) return {};
     const auto& own = shares_.own();
     const auto count = [&](int k) {
         return is_image(own.begin + k) ? 0.0 : static_cast<real>(counts[static_cast<std::size_t>(own.begin + k)]);
     };
     std::vector<real> sums{block_sum(own.count(), count)};  // of whole numbers, which no order of adding changes
     if (shares_.several()) sums = of_ranks(sums[0]);
-    return {detail::sum_in_order(sums, static_cast<int>(sums.size())) / particles_, largest(block_max(own.count(), count))};
+    return {detail::sum_in_order(sums, static_cast<int>(sums.size())) / total_, largest(block_max(own.count(), count))};
 }
 
 std::size_t Pairs::bytes() const {

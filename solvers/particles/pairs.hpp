@@ -1,10 +1,12 @@
 // Particles as the fast path sees them during one step: sorted by cell, as float4 around the centre of the domain, with images beyond
 // periodic sides and a sliced neighbour list. The state in double precision stays where it is; position k here is state particle owner(k).
-// Over ranks each has the neighbours of its own share of them (shares.hpp), and what others compute is brought.
+// Over ranks each sorts its own particles and those shown to it (migration.hpp), has the neighbours of its own (shares.hpp), and what
+// others compute is brought.
 #pragma once
 #include "core/types.hpp"
 #include "particles/frame.hpp"
 #include "particles/isa.hpp"
+#include "particles/migration.hpp"
 #include "particles/shares.hpp"
 #include "particles/sliced_list.hpp"
 
@@ -20,15 +22,19 @@ public:
 
     /// Lines 5-7 of Macklin & Müller's algorithm 1: sorts, loads positions into the fourth-number-zero float4 array, finds neighbours.
     void find(const Coordinates& x, int count, real radius);
+    /// The same over ranks, of those held here.
+    void find(const Coordinates& x, int count, real radius, const Held& held);
 
     const PassTable& table() const { return table_; }
     /// Particles and images.
     int size() const { return cells_.count(); }
     int particles() const { return particles_; }
+    /// Of all ranks.
+    int total() const { return total_; }
     int owner(int k) const { return owner_[static_cast<std::size_t>(k)]; }
     bool is_image(int k) const { return images() > 0 && cells_.order()[static_cast<std::size_t>(k)] >= particles_; }
     int images() const { return size() - particles_; }
-    /// State particles in sorted order.
+    /// Own state particles in sorted order.
     const std::vector<int>& particle_order();
     /// Two float4 arrays, and room for more; each has dummies behind the last particle.
     float* a() { return a_.data(); }
@@ -45,21 +51,17 @@ public:
     /// What was computed of own particles comes to where others read it, in an array of float4: over ranks to those beside them, and from
     /// owners to their images; `moves`: the first three numbers are positions.
     void refresh(float* four, bool moves);
-    /// Over ranks, the same of arrays of the state.
+    /// Over ranks, the same of arrays of the state, or of one number a sorted particle.
     using StateArrays = std::span<std::vector<real>* const>;
     void share(StateArrays state);
-    /// Over ranks, everybody's own particles of arrays of the state, or of one that is sorted.
-    void gather(StateArrays state);
-    void gather(std::vector<float>& sorted) const;
+    void share(std::vector<float>& sorted);
     /// Of what each rank gives; NaN if any is.
     real largest(real own) const;
-    /// Makes NaN of what this rank does not know of the state, where halos are poisoned.
-    void poison(StateArrays state) const;
     const Shares& shares() const { return shares_; }
     const SlicedList& list() const { return list_; }
     SlicedList& list() { return list_; }
     const CellSort& cells() const { return cells_; }
-    /// f(k) for all particles and images; over ranks those of this one, those that its passes read, or all.
+    /// f(k) for all particles and images; over ranks own ones, those that this one's passes read, or all that are here.
     template <class F>
     void each(F&& f) const {
         each_of(shares_.own(), f);
@@ -88,12 +90,14 @@ private:
     }
     void place(const Coordinates& all);
     void link_images();
-    void make_images(const Coordinates& x, int count, const Box& particles, real radius);
+    void finish(const Coordinates& all, real radius);
+    void list_near_sides(const Coordinates& x, int count, const Box& particles, real radius, const real* place);
+    void make_images(const Coordinates& x, int count, const Box& particles, real radius, const real* place);
     void place_dummies(float* four) const;
 
     const PassTable& table_;
     Frame frame_;
-    int particles_ = 0;
+    int particles_ = 0, total_ = 0;
     CellSort cells_;
     Shares shares_;
     SlicedList list_;
@@ -105,7 +109,8 @@ private:
     std::vector<int> image_owner_;                   // state particle of each image
     std::vector<std::array<float, 3>> image_shift_;  // and where it stands from there
     std::vector<Link> links_;
-    std::vector<int> sorted_;  // scratch: where each particle went
+    std::vector<int> near_sides_;  // particles that have images
+    std::vector<int> sorted_;      // scratch: where each particle went
 };
 
 }  // namespace weir::particles

@@ -68,6 +68,7 @@ struct PbfPass {
     ClampTally* clamps = nullptr;  // of the corrections
     const int* order = nullptr;    // sorted particles from `particles` on are images, which are not counted
     int particles = 0;
+    int own_begin = 0, own_end = 0;  // nor are particles but these
 };
 
 /// What the passes over velocities read and write: float4 arrays.

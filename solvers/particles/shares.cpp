@@ -4,29 +4,19 @@
 
 namespace weir::particles {
 
-void Shares::cut(const CellSort& cells, int slice) {
-    const int ranks = slabs().ranks(), count = cells.count(), slices = (count + slice - 1) / slice;
+void Shares::set(const CellCut& cut, const CellSort& cells) {
+    const auto& start = cells.start();
+    const int all = static_cast<int>(start.size()) - 1;
+    const auto before = [&](int cell) { return start[static_cast<std::size_t>(std::clamp(cell, 0, all))]; };
     rank_ = static_cast<std::size_t>(slabs().rank());
-    owns_.resize(static_cast<std::size_t>(ranks));
+    count_ = cells.count();
+    owns_.resize(static_cast<std::size_t>(cut.ranks()));
     reads_.resize(owns_.size());
-    begins_.resize(owns_.size() + 1);
-    for (int r = 0; r < ranks; ++r) {
-        const auto at = static_cast<std::size_t>(r);
-        owns_[at] = {std::min(count, slice * chunk_begin(slices, r, ranks)), std::min(count, slice * chunk_begin(slices, r + 1, ranks))};
-        reads_[at] = ranks == 1 ? owns_[at] : reach(cells, owns_[at]);
-        begins_[at] = static_cast<std::size_t>(owns_[at].begin);
+    for (int r = 0; r < cut.ranks(); ++r) {
+        const int begin = cut.begin(r), end = cut.end(r), far = begin < end ? cut.far : 0;
+        owns_[static_cast<std::size_t>(r)] = {before(begin), before(end)};
+        reads_[static_cast<std::size_t>(r)] = {before(begin - far), before(end + far)};
     }
-    begins_.back() = static_cast<std::size_t>(count);
-}
-
-/// The entries of the cells from a plane, a row and a cell before those of `own` to as many behind them.
-Entries Shares::reach(const CellSort& cells, const Entries& own) const {
-    if (own.count() == 0) return own;
-    const auto& n = cells.cells();
-    const int far = 1 + (n[1] > 1 ? n[0] : 0) + (n[2] > 1 ? n[0] * n[1] : 0);
-    const auto cell = [&](int k) { return cells.cell_of()[static_cast<std::size_t>(k)]; };
-    const int first = std::max(0, cell(own.begin) - far), last = std::min(n[0] * n[1] * n[2] - 1, cell(own.end - 1) + far);
-    return {cells.start()[static_cast<std::size_t>(first)], cells.start()[static_cast<std::size_t>(last) + 1]};
 }
 
 /// Appends what `to` gets from `from`, in the order of the sort.
@@ -54,8 +44,6 @@ void Shares::find_halos(const CellSort& cells, int particles, std::span<const Li
     }
 }
 
-std::size_t Shares::bytes() const {
-    return (sends_.capacity() + gets_.capacity()) * sizeof(int) + sent_.capacity() + got_.capacity() + all_.capacity() * sizeof(real);
-}
+std::size_t Shares::bytes() const { return (sends_.capacity() + gets_.capacity()) * sizeof(int) + sent_.capacity() + got_.capacity(); }
 
 }  // namespace weir::particles

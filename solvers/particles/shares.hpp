@@ -1,11 +1,14 @@
-// Whose particles are whose where several ranks run one scene (core/slabs.hpp). Sorted by cell, particles are cut into ranges of as many
-// each; what the passes over a range read beside it stands between the cells around its first particle and those around its last. All ranks
-// hold and sort all particles, so that each knows what every other needs. One rank owns and reads everything.
+// Whose particles are whose where several ranks run one scene (core/slabs.hpp). Cells are cut into ranges, one a rank: nearly slabs of the
+// slowest axis. What the passes over a range read beside it stands between the cells around its first and those around its last. A rank
+// sorts its own particles and what others have shown it (migration.hpp). One rank owns and reads everything.
 #pragma once
 #include "core/slabs.hpp"
 #include "particles/cell_sort.hpp"
 
+#include <algorithm>
+#include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace weir::particles {
@@ -23,10 +26,27 @@ struct Link {
     int image, particle, number;
 };
 
+/// Which cells are whose: rank r owns [at[r], at[r + 1]), and reads from a plane, a row and a cell before them to as many behind.
+struct CellCut {
+    std::vector<int> at;
+    int far = 0;
+
+    CellCut() = default;
+    CellCut(std::vector<int> cuts, const std::array<int, 3>& cells)
+        : at(std::move(cuts)), far(1 + (cells[1] > 1 ? cells[0] : 0) + (cells[2] > 1 ? cells[0] * cells[1] : 0)) {}
+    int ranks() const { return static_cast<int>(at.size()) - 1; }
+    int begin(int rank) const { return at[static_cast<std::size_t>(rank)]; }
+    int end(int rank) const { return at[static_cast<std::size_t>(rank) + 1]; }
+    int owner(int cell) const { return static_cast<int>(std::upper_bound(at.begin() + 1, at.end() - 1, cell) - at.begin()) - 1; }
+    bool reads(int rank, int cell) const { return begin(rank) < end(rank) && cell >= begin(rank) - far && cell < end(rank) + far; }
+};
+
 class Shares {
 public:
-    /// Cuts what is sorted, between two slices of so many.
-    void cut(const CellSort& cells, int slice);
+    /// One rank's.
+    void own_all(int count) { owns_.assign(1, {0, count}), reads_ = owns_, rank_ = 0; }
+    /// Among what this rank has sorted.
+    void set(const CellCut& cut, const CellSort& cells);
     /// What travels, over several ranks: to each rank the particles that its passes read, and those whose images they read. Entries from
     /// the sort's `particles` on are images.
     void find_halos(const CellSort& cells, int particles, std::span<const Link> links);
@@ -36,8 +56,6 @@ public:
     const Entries& read() const { return reads_[rank_]; }
     const Entries& own(int rank) const { return owns_[static_cast<std::size_t>(rank)]; }
     const Entries& read(int rank) const { return reads_[static_cast<std::size_t>(rank)]; }
-    /// Where each rank's entries begin, and the end.
-    std::span<const std::size_t> begins() const { return begins_; }
     /// The sorted particles that a rank gets from this one, and those that it sends.
     std::span<const int> sent_to(int rank) const { return part(sends_, send_begins_, rank); }
     std::span<const int> got_from(int rank) const { return part(gets_, get_begins_, rank); }
@@ -46,9 +64,6 @@ public:
     /// where halos are poisoned spoil(k) makes NaN of what stayed behind.
     template <class T, class Pack, class Unpack, class Spoil>
     void trade(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil);
-    /// The same of every entry that this rank does not own.
-    template <class Pack, class Unpack>
-    void gather(int width, Pack&& pack, Unpack&& unpack);
     /// spoil(k) for all entries of which nothing is known here.
     template <class Spoil>
     void poison(Spoil&& spoil) const;
@@ -59,17 +74,15 @@ private:
         const auto r = static_cast<std::size_t>(rank);
         return std::span(list).subspan(begins[r], begins[r + 1] - begins[r]);
     }
-    Entries reach(const CellSort& cells, const Entries& own) const;
     void list_halo(const CellSort& cells, int particles, std::span<const Link> links, int from, int to, std::vector<int>& list) const;
 
     std::size_t rank_ = 0;
     std::vector<Entries> owns_{1}, reads_{1};
-    std::vector<std::size_t> begins_;
+    int count_ = 0;                  // of sorted entries
     std::vector<int> sends_, gets_;  // for one rank after the other
     std::vector<std::size_t> send_begins_, get_begins_;
     std::vector<unsigned char> sent_, got_;  // bytes of numbers
     std::vector<Parcel> parcels_;
-    std::vector<real> all_;
 };
 
 template <class T, class Pack, class Unpack, class Spoil>
@@ -92,22 +105,9 @@ void Shares::trade(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil) {
     if (slabs().poisons()) poison(spoil);
 }
 
-template <class Pack, class Unpack>
-void Shares::gather(int width, Pack&& pack, Unpack&& unpack) {
-    if (!several()) return;
-    const std::size_t numbers = static_cast<std::size_t>(width);
-    const int count = owns_.back().end;
-    all_.resize(static_cast<std::size_t>(count) * numbers);
-    const auto at = [&](int k) { return all_.data() + static_cast<std::size_t>(k) * numbers; };
-    parallel_for(own().begin, own().end, [&](int k) { pack(k, at(k)); });
-    slabs().gather_parts(all_.data(), numbers * sizeof(real), begins_);
-    parallel_for(0, own().begin, [&](int k) { unpack(k, at(k)); });
-    parallel_for(own().end, count, [&](int k) { unpack(k, at(k)); });
-}
-
 template <class Spoil>
 void Shares::poison(Spoil&& spoil) const {
-    std::vector<char> known(static_cast<std::size_t>(owns_.back().end), 0);
+    std::vector<char> known(static_cast<std::size_t>(count_), 0);
     for (int k = read().begin; k < read().end; ++k) known[static_cast<std::size_t>(k)] = 1;
     for (const int k : gets_) known[static_cast<std::size_t>(k)] = 1;
     for (std::size_t k = 0; k < known.size(); ++k)

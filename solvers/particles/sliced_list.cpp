@@ -69,7 +69,7 @@ void SlicedList::make_room_ahead(Chunk& chunk) const {
 void SlicedList::build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius,
                        const Entries& own) {
     const int count = cells.count(), lanes = table.lanes, slices = (count + lanes - 1) / lanes;
-    const Entries own_slices{own.begin / lanes, (own.end + lanes - 1) / lanes};
+    const Entries own_slices{own.begin / lanes, own.count() > 0 ? (own.end + lanes - 1) / lanes : own.begin / lanes};
     chunks_.resize(static_cast<std::size_t>(threads()));
     first_.resize(static_cast<std::size_t>(slices));
     rows_.resize(static_cast<std::size_t>(slices));

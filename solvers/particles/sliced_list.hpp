@@ -17,7 +17,7 @@ public:
     void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius) {
         build(table, axis, cells, radius, {0, cells.count()});
     }
-    /// The same of some of them, which begin and end with a slice.
+    /// The same of some of them, and of those that share a slice with them.
     void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius, const Entries& own);
 
     /// f(chunk) for every chunk, one a thread.

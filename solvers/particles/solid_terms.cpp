@@ -22,7 +22,7 @@ void SolidTerms<D>::mark(Pairs& pairs) {
     pairs.each([&](int k) { flag_[static_cast<std::size_t>(k)] = domain_.solids.distance(world(pairs.a() + 4 * k)) < reach; });
     near_.clear();
     near_.reserve(flag_.size());
-    for (int k = 0; k < pairs.size(); ++k)
+    for (int k = pairs.shares().own().begin; k < pairs.shares().own().end; ++k)
         if (flag_[static_cast<std::size_t>(k)]) near_.push_back(k);
 }
 

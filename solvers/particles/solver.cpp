@@ -8,14 +8,17 @@
 namespace weir::particles {
 
 template <int D>
-Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour) {
-    const int n = fluid.count();
+SumAndMost excess_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour) {
     const auto excess = [&](int i) {
         const real rest = vapour ? rest_density * vapour->rest(i) : rest_density;
         return std::max<real>(0, fluid.density[static_cast<std::size_t>(i)] / rest - 1);
     };
-    const auto [sum, worst] = block_sum_and_max(n, excess);
-    return {n ? sum / n : 0, worst};
+    return whole_sum_and_max(fluid.count(), excess);
+}
+
+template <int D>
+Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour) {
+    return compression_of(excess_of(fluid, rest_density, vapour), fluid.count());
 }
 
 template <int D>
@@ -58,6 +61,41 @@ void ParticleSolver<D>::restore(const Checkpoint& from) {
     restore_state(from);
     restore_more(from);
     if (heat_) heat_->restore(from);
+}
+
+/// The first rank has all, and the others what they own, which nobody reads.
+template <int D>
+class HostSolver<D>::Brought final : public Solver::Brought {
+public:
+    explicit Brought(const HostSolver& solver) : solver_(solver) {
+        auto all = std::make_unique<Fluid<D>>();
+        solver.fluid_.gather(*all, true);
+        solver_.whole_ = std::move(all);
+        solver_.brought_ = true;
+    }
+    ~Brought() override { solver_.whole_.reset(), solver_.brought_ = false; }
+    Brought(const Brought&) = delete;
+    Brought& operator=(const Brought&) = delete;
+
+private:
+    const HostSolver& solver_;
+};
+
+template <int D>
+std::unique_ptr<Solver::Brought> HostSolver<D>::bring_to_first(const std::vector<std::string>&) const {
+    if (!fluid_.shared) return nullptr;
+    return std::make_unique<Brought>(*this);
+}
+
+template <int D>
+const Fluid<D>& HostSolver<D>::whole() const {
+    if (brought_ && slabs().rank() > 0) return fluid_;
+    if (!whole_) {
+        auto all = std::make_unique<Fluid<D>>();
+        fluid_.gather(*all, false);
+        whole_ = std::move(all);
+    }
+    return *whole_;
 }
 
 template <int D>
@@ -156,6 +194,8 @@ bool ParticleSolver<D>::remove_particles(std::string_view set, std::span<const u
     return true;
 }
 
+template SumAndMost excess_of(const Fluid<2>&, real, const Vapour<2>*);
+template SumAndMost excess_of(const Fluid<3>&, real, const Vapour<3>*);
 template Compression compression_of(const Fluid<2>&, real, const Vapour<2>*);
 template Compression compression_of(const Fluid<3>&, real, const Vapour<3>*);
 template class ParticleSolver<2>;

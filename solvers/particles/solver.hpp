@@ -16,7 +16,12 @@ namespace weir::particles {
 struct Compression {
     real mean = 0, worst = 0;
 };
+inline Compression compression_of(const SumAndMost& excess, int count) {
+    return count > 0 ? Compression{excess.sum() / count, excess.most} : Compression{};
+}
 /// Of the densities of the last step; vapour: what else particles are to have than the rest density.
+template <int D>
+SumAndMost excess_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour = nullptr);
 template <int D>
 Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapour<D>* vapour = nullptr);
 
@@ -80,23 +85,27 @@ protected:
 template <int D>
 class HostSolver : public ParticleSolver<D> {
 public:
-    StepLimit stable_dt() const final { return this->stable_at(speed_); }
+    StepLimit stable_dt() const final {
+        return this->stable_at(fluid_.shared && std::isnan(speed_) ? speed() : speed_);  // of all ranks
+    }
     std::string concern() const final {
         const std::string concern = this->concern_at(speed_);
         return concern.empty() && this->heat_ ? this->heat_->concern() : concern;
     }
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
+    std::unique_ptr<Solver::Brought> bring_to_first(const std::vector<std::string>& names) const final;
+    bool checks_itself() const final { return fluid_.shared; }
     Hand* hand() const final { return hand_.get(); }
 
 protected:
     explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) { this->bodies_ = BodiesInLiquid<D>::make(fluid_); }
-    const Fluid<D>& state() const final { return fluid_; }
+    const Fluid<D>& state() const final { return fluid_.shared ? whole() : fluid_; }
     const Fluid<D>& setting() const final { return fluid_; }
     Fluid<D>& writable() final { return fluid_; }
     void written() final { speed_ = speed(); }
     /// Of bodies too.
-    real speed() const final {
+    real speed() const override {
         const real fastest = fluid_.max_speed();
         return this->bodies_ ? std::max(fastest, this->bodies_->speed()) : fastest;
     }
@@ -117,10 +126,20 @@ protected:
     /// The rest density of particle i over the liquid's where what is frozen moves; else 1.
     real ice_rest(int i) const { return this->ice_ ? this->heat_->rest(fluid_.enthalpy[static_cast<std::size_t>(i)]) : 1; }
 
+    /// Over ranks that share particles: those of all, as one process has them.
+    const Fluid<D>& whole() const;
+    /// A step begins: nobody looks any more.
+    void forget_whole() { whole_.reset(); }
+
     Fluid<D> fluid_;
     Emitters<D> emitters_;
     std::shared_ptr<Hand> hand_;   // none where the scene names none
     real speed_ = not_applicable;  // of the fastest particle or body after the last step; not known before the first [m/s]
+
+private:
+    class Brought;
+    mutable std::unique_ptr<Fluid<D>> whole_;  // as long as somebody looks
+    mutable bool brought_ = false;             // to the first rank alone
 };
 
 }  // namespace weir::particles

@@ -1,8 +1,17 @@
 #include "particles/threaded_solver.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace weir::particles {
+
+namespace {
+
+/// A rank with so much more than its share keeps the others waiting for longer than new cuts take, which are found in a message an axis.
+constexpr real worth_a_new_cut = 0.03;
+
+}  // namespace
 
 template <int D>
 ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scene, Fluid<D>&& start)
@@ -23,30 +32,87 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
 }
 
 template <int D>
-void ThreadedSolver<D>::begin_own() {
-    clamps_before_ = fluid_.clamps;
-    if (!slabs().poisons()) return;
-    gathered_.assign({&fluid_.density, &fluid_.carried});
-    for (std::size_t a = 0; a < D; ++a) gathered_.push_back(&fluid_.x[a]), gathered_.push_back(&fluid_.v[a]);
-    pairs_.poison(gathered_);
+void ThreadedSolver<D>::find_pairs(std::array<std::vector<real>, D>& at, real radius, std::initializer_list<std::vector<real>*> read) {
+    if (!fluid_.shared) return pairs_.find(Fluid<D>::coordinates(at), fluid_.count(), radius);
+    arrays_.clear();
+    for (auto& axis : at) arrays_.push_back(&axis);
+    arrays_.push_back(&fluid_.place);
+    arrays_.insert(arrays_.end(), read.begin(), read.end());
+    const std::size_t known = arrays_.size();
+    fluid_.for_each_array([&](std::vector<real>& array) {
+        if (std::find(arrays_.begin(), arrays_.end(), &array) == arrays_.end()) arrays_.push_back(&array);
+    });
+    migration_.apply(fluid_.domain.frame(), radius, D, arrays_, known);
+    pairs_.find(Fluid<D>::coordinates(at), fluid_.count(), radius, migration_.held(fluid_.place));
 }
 
 template <int D>
-void ThreadedSolver<D>::gather_state(std::initializer_list<std::vector<real>*> more) {
-    if (!slabs().several()) return;
-    const auto timed = this->passes_.time("gather");
-    gathered_.assign(more);
-    for (std::size_t a = 0; a < D; ++a) gathered_.push_back(&fluid_.x[a]), gathered_.push_back(&fluid_.v[a]);
-    pairs_.gather(gathered_);
+void ThreadedSolver<D>::dismiss() {
+    if (fluid_.shared) fluid_.resize(migration_.own());
+}
+
+template <int D>
+void ThreadedSolver<D>::add_clamps(const Clamps& rank) {
+    fluid_.clamps.add(rank.count - clamps_before_.count, rank.farthest);
+}
+
+template <int D>
+void ThreadedSolver<D>::sum_up_clamps() {
+    if (!fluid_.shared) return;
     const std::vector<Clamps> each = of_ranks(fluid_.clamps);
     fluid_.clamps = clamps_before_;
-    for (const Clamps& rank : each) fluid_.clamps.add(rank.count - clamps_before_.count, rank.farthest);
+    for (const Clamps& rank : each) add_clamps(rank);
+    clamps_before_ = fluid_.clamps;
 }
 
 template <int D>
-void ThreadedSolver<D>::end_step() {
-    if (++fluid_.steps % steps_between_reorders == 0) fluid_.reorder(pairs_.particle_order());
+typename ThreadedSolver<D>::StepEnd ThreadedSolver<D>::end_step(const SumAndMost& excess, real acceleration) {
+    StepEnd end{fluid_.shared ? fluid_.fastest() : speed(), acceleration, compression_of(excess, fluid_.count())};
+    if (fluid_.shared) broken_ = fluid_.broken(!std::isfinite(end.speed));
+    if (++fluid_.steps % steps_between_reorders == 0) {
+        fluid_.reorder(pairs_.particle_order());
+        if (fluid_.shared) {
+            std::iota(fluid_.place.begin(), fluid_.place.end(), static_cast<real>(migration_.before()));
+            fluid_.next_place = static_cast<real>(migration_.total());
+            migration_.balance(worth_a_new_cut);
+        }
+    }
+    const int before = fluid_.count();
     fluid_.cross_sides();
+    fastest_ = fluid_.count() == before ? end.speed : fluid_.fastest();
+    if (fluid_.shared) tell_of_all(end, excess);
+    return end;
+}
+
+/// One message a step says how it went.
+template <int D>
+void ThreadedSolver<D>::tell_of_all(StepEnd& end, const SumAndMost& excess) {
+    struct Told {
+        SumAndMost excess;
+        Clamps clamps;
+        real speed, fastest, acceleration;
+        typename Fluid<D>::Quantity broken;
+    };
+    const std::vector<Told> ranks = of_ranks(Told{excess, fluid_.clamps, end.speed, fastest_, end.acceleration, broken_});
+    fluid_.clamps = clamps_before_;
+    SumAndMost all;
+    for (const Told& rank : ranks) {
+        all.add(rank.excess);
+        add_clamps(rank.clamps);
+        end.speed = std::max(end.speed, rank.speed), fastest_ = std::max(fastest_, rank.fastest);
+        end.acceleration = std::max(end.acceleration, rank.acceleration);
+        broken_ = std::max(broken_, rank.broken);
+    }
+    Fluid<D>::fail(broken_);
+    end.compression = compression_of(all, migration_.total());
+}
+
+/// As fast as any on any rank.
+template <int D>
+real ThreadedSolver<D>::speed() const {
+    if (!fluid_.shared) return HostSolver<D>::speed();
+    if (std::isnan(fastest_)) fastest_ = detail::largest_of(of_ranks(fluid_.fastest()), slabs().ranks());
+    return fastest_;
 }
 
 template <int D>
@@ -122,7 +188,7 @@ void ThreadedSolver<D>::conduct(real dt) {
 
 template <int D>
 std::size_t ThreadedSolver<D>::bytes() const {
-    return fluid_.bytes() + pairs_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes() +
+    return fluid_.bytes() + pairs_.bytes() + migration_.bytes() + own_bytes() + flow_.bytes() + effects_.bytes() +
            (warming_.capacity() + by_walls_.capacity()) * sizeof(real) + rest_.capacity() * sizeof(float) +
            (this->heat_ ? this->heat_->bytes() : 0) + (this->bodies_ ? this->bodies_->bytes() : 0) + (this->ice_ ? this->ice_->bytes() : 0);
 }

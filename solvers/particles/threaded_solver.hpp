@@ -27,15 +27,27 @@ protected:
     virtual std::size_t own_bytes() const = 0;
     /// Emitters, sinks and the hand, before a step.
     void pour_and_drain(real dt) {
+        this->forget_whole();
         this->emitters_.apply(fluid_, dt);
         if (sources_) sources_->pour_and_drain(fluid_);
+        clamps_before_ = fluid_.clamps;  // emitters are everybody's
     }
-    /// Over ranks a step is of a rank's own particles from here on, where the pairs are found, to gather_state(), which brings everybody's
-    /// positions and velocities, these arrays of the state too, and what walls corrected.
-    void begin_own();
-    void gather_state(std::initializer_list<std::vector<real>*> more);
-    /// Counts a step; the state follows the sorted order now and then; what has crossed a side is taken back or out.
-    void end_step();
+    /// The pairs of particles at these places, closer than the radius [m]. Over ranks particles change hands, and from here to dismiss()
+    /// the state also has those that others show, of which the places and these arrays of the state are known.
+    void find_pairs(std::array<std::vector<real>, D>& at, real radius, std::initializer_list<std::vector<real>*> read);
+    void dismiss();
+    /// Particles of the state that are this rank's.
+    int own() const { return fluid_.shared ? migration_.own() : fluid_.count(); }
+    /// Counts a step; the state follows the sorted order now and then; what has crossed a side is taken back or out. excess: of own
+    /// particles; acceleration: the largest of them. Gives the speed before sides were crossed, and the others as they are of all.
+    struct StepEnd {
+        real speed, acceleration;
+        Compression compression;
+    };
+    StepEnd end_step(const SumAndMost& excess, real acceleration);
+    /// Over ranks, what walls corrected on all of them.
+    void sum_up_clamps();
+    real speed() const final;
     /// Where the passes of the step were: their positions are the pairs'.
     void conduct(real dt) final;
     /// Whether heat can be found in one pass with the densities of these places: nothing changes it before conduct().
@@ -65,8 +77,14 @@ private:
     bool warmed_ = false;                   // the first rates of the step are there
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
     std::vector<float> rest_;
-    std::vector<std::vector<real>*> gathered_;
-    Clamps clamps_before_;  // of begin_own()
+    void tell_of_all(StepEnd& end, const SumAndMost& excess);
+    void add_clamps(const Clamps& rank);
+
+    Migration migration_;
+    HandOver::Arrays arrays_;
+    Clamps clamps_before_;
+    typename Fluid<D>::Quantity broken_{};
+    mutable real fastest_ = not_applicable;  // over ranks: of all particles as they are now; not known after a restart [m/s]
 };
 
 }  // namespace weir::particles

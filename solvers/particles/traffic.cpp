@@ -2,7 +2,6 @@
 
 #include "geometry/sides.hpp"
 #include "geometry/wet_part.hpp"
-#include "particles/clamps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +26,7 @@ SharedParticles shared_particles(const scene::Scene& scene, const RankOf& of, co
     const int planes = scene.dim() == 2 ? wet_planes<2>(scene) : wet_planes<3>(scene);
     const double beside = shape.particles * std::min(1.0, scene.number("scheme.support") / planes);
     const auto whole = [](double x) { return static_cast<std::size_t>(std::llround(x)); };
-    return {whole(shape.particles / of.ranks), whole(shape.particles), whole(std::min(beside, shape.particles / of.ranks))};
+    return {whole(shape.beside > 0 ? shape.beside : std::min(beside, shape.particles / of.ranks))};
 }
 
 void tally_halos(const SharedParticles& particles, const RankOf& of, std::size_t bytes, std::int64_t times, Tally& tally) {
@@ -35,13 +34,17 @@ void tally_halos(const SharedParticles& particles, const RankOf& of, std::size_t
     tally.parcel(particles.beside * bytes, times * peers);
 }
 
-void tally_gather(const SharedParticles& particles, std::size_t bytes, std::int64_t times, Tally& tally) {
-    tally.everywhere(particles.own * bytes, times, particles.all * bytes);
+void tally_migration(const SharedParticles& particles, const RankOf& of, int numbers, Tally& tally) {
+    const auto ranks = static_cast<std::size_t>(of.ranks);
+    constexpr std::size_t box_and_count = 7 * sizeof(real), going_and_shown = 2 * sizeof(int);
+    tally.everywhere(box_and_count, 1, box_and_count * ranks);
+    tally.everywhere(going_and_shown * ranks, 1, going_and_shown * ranks * ranks);
+    tally_halos(particles, of, static_cast<std::size_t>(numbers) * sizeof(real), 1, tally);
 }
 
-void tally_end(const SharedParticles& particles, const RankOf& of, int numbers, Tally& tally) {
-    tally_gather(particles, static_cast<std::size_t>(numbers) * sizeof(real), 1, tally);
-    tally.everywhere(sizeof(Clamps), 1, sizeof(Clamps) * static_cast<std::size_t>(of.ranks));
+void tally_end(const RankOf& of, Tally& tally) {
+    constexpr std::size_t told = 80;  // compression's sum and largest, corrections of walls, speed, pace, acceleration, and what is broken
+    tally.everywhere(told, 1, told * static_cast<std::size_t>(of.ranks));
 }
 
 std::vector<std::string> not_counted(const scene::Scene& scene, std::initializer_list<const char*> effects) {

@@ -5,18 +5,18 @@
 
 namespace weir::particles {
 
-/// Those of one rank, and those of a plane of cells, which a neighbour reads: about, since what is liquid moves.
+/// Those of a plane of cells, which a neighbour reads: about, since what is liquid moves.
 struct SharedParticles {
-    std::size_t own = 0, all = 0, beside = 0;
+    std::size_t beside = 0;
 };
 SharedParticles shared_particles(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
 
 /// So many passes whose results neighbours read, of so many bytes a particle.
 void tally_halos(const SharedParticles& particles, const RankOf& of, std::size_t bytes, std::int64_t times, Tally& tally);
-/// Everybody's numbers, of so many bytes a particle.
-void tally_gather(const SharedParticles& particles, std::size_t bytes, std::int64_t times, Tally& tally);
-/// What the end of each step gathers: so many numbers a particle, and what walls corrected.
-void tally_end(const SharedParticles& particles, const RankOf& of, int numbers, Tally& tally);
+/// What finding neighbours begins with: where each rank's particles are, how many go and are shown, and so many numbers of those shown.
+void tally_migration(const SharedParticles& particles, const RankOf& of, int numbers, Tally& tally);
+/// How the step went, at its end.
+void tally_end(const RankOf& of, Tally& tally);
 /// Keys whose messages the formulas of both methods do not know: these effects, probes.
 std::vector<std::string> not_counted(const scene::Scene& scene, std::initializer_list<const char*> effects);
 

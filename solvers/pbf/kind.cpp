@@ -86,15 +86,15 @@ std::vector<scene::Variant> effects() {
              {"k"}}};
 }
 
-/// Of a step over ranks: the multipliers and the positions that neighbours read in each iteration, and what everybody takes in at its end.
+/// Of a step over ranks: those near the cuts, and the multipliers and positions that neighbours read in each iteration.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
     const Options options(scene);
     const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);
     const int warm = options.warm_start > 0 ? 1 : 0, dim = scene.dim();
     Tally tally({}, of.rank);
+    particles::tally_migration(shared, of, dim + 1 + warm, tally);  // position, place
     particles::tally_halos(shared, of, 4 * sizeof(float), 2 * std::int64_t{shape.iterations} + warm, tally);
-    particles::tally_gather(shared, sizeof(float), 1, tally);  // densities
-    particles::tally_end(shared, of, 2 * dim + warm, tally);
+    particles::tally_end(of, tally);
     tally_run(tally);
     tally.sent().besides = particles::not_counted(scene, {"xsph", "vorticity"});
     if (options.tolerance > 0) tally.sent().besides.emplace_back("scheme.tolerance");

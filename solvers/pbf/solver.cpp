@@ -42,14 +42,13 @@ StepReport PbfSolver<D>::step(real dt) {
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
-    gather_state();
+    this->dismiss();
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
     last_dt_ = dt;
-    const real speed = speed_ = this->speed();
-    const Compression c = compression();
-    this->end_step();
-    return this->report(dt, speed, iterations, c);
+    const auto end = this->end_step(excess(), 0);
+    speed_ = end.speed;
+    return this->report(dt, end.speed, iterations, end.compression);
 }
 
 template <int D>
@@ -83,9 +82,12 @@ void PbfSolver<D>::predict(real dt) {
 template <int D>
 void PbfSolver<D>::find_neighbours() {
     const auto timed = passes_.time("neighbours");
-    pairs_.find(particles::Fluid<D>::coordinates(x_star_), fluid_.count(), options_.support * fluid_.domain.spacing);
+    const real radius = options_.support * fluid_.domain.spacing;
+    if (options_.warm_start > 0)
+        this->find_pairs(x_star_, radius, {&fluid_.carried});
+    else
+        this->find_pairs(x_star_, radius, {});
     pairs_.fit(density_, 1);
-    this->begin_own();
     solids_.mark(pairs_);
     this->expand();
     if (!this->ice_) return;
@@ -150,7 +152,6 @@ void PbfSolver<D>::find_lambdas() {
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const PbfPass job = pass(pairs_.a(), pairs_.b(), solids_.at(pairs_, pairs_.a()));
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.lambda(job, chunk); });
-    if (options_.tolerance > 0) pairs_.gather(density_);
     pairs_.refresh(pairs_.b(), true);
 }
 
@@ -165,6 +166,7 @@ void PbfSolver<D>::correct() {
     job.clamps = &tally;
     job.order = pairs_.cells().order().data();
     job.particles = pairs_.particles();
+    job.own_begin = pairs_.shares().own().begin, job.own_end = pairs_.shares().own().end;
     pairs_.list().each_chunk([&](const ListChunk& chunk) { run(job, chunk); });
     if (tally.count > 0) fluid_.clamps.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
 }
@@ -266,35 +268,33 @@ void PbfSolver<D>::update(real dt, real slow) {
         fluid_.density[static_cast<std::size_t>(i)] = fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
     });
     if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
-    if (dt == 0) gather_state();  // nothing comes after it
+    if (dt > 0) return;
+    this->dismiss();  // nothing comes after it
+    this->sum_up_clamps();
 }
 
+/// Of own particles.
 template <int D>
-void PbfSolver<D>::gather_state() {
-    if (!slabs().several()) return;
-    pairs_.gather(density_);
-    pairs_.each_anywhere([&](int k) {
-        if (!pairs_.is_image(k))
-            fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] =
-                fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
+particles::SumAndMost PbfSolver<D>::excess() const {
+    const float* rest = this->rest();
+    const particles::Entries own = pairs_.shares().own();
+    return particles::whole_sum_and_max(own.count(), [&](int at) {
+        const int k = own.begin + at;
+        if (pairs_.is_image(k)) return real(0);
+        const real density = static_cast<real>(density_[static_cast<std::size_t>(k)]);
+        return std::max<real>(0, (rest ? density / static_cast<real>(rest[k]) : density) - 1);
     });
-    if (options_.warm_start > 0)
-        Base::gather_state({&fluid_.carried});
-    else
-        Base::gather_state({});
 }
 
 template <int D>
 Compression PbfSolver<D>::compression() const {
-    const float* rest = this->rest();
-    const auto excess = [&](int k) {
-        if (pairs_.is_image(k)) return real(0);
-        const real density = static_cast<real>(density_[static_cast<std::size_t>(k)]);
-        return std::max<real>(0, (rest ? density / static_cast<real>(rest[k]) : density) - 1);
-    };
-    const int n = pairs_.particles();
-    const auto [sum, worst] = particles::block_sum_and_max(n ? pairs_.size() : 0, excess);
-    return n ? Compression{sum / n, worst} : Compression{};
+    particles::SumAndMost all = excess();
+    if (fluid_.shared) {
+        const std::vector<particles::SumAndMost> ranks = of_ranks(all);
+        all = {};
+        for (const auto& rank : ranks) all.add(rank);
+    }
+    return particles::compression_of(all, pairs_.total());
 }
 
 template <int D>

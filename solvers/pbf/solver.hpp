@@ -36,7 +36,7 @@ private:
     void push_bodies();
     void end_bodies(real dt, real slow);
     void update(real dt, real slow) override;
-    void gather_state();
+    particles::SumAndMost excess() const;
     Compression compression() const override;
     particles::PbfPass pass(const float* from, float* to, const float* solid);
     std::size_t own_bytes() const override;

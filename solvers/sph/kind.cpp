@@ -93,18 +93,15 @@ Key surface() {
             .length = -1};
 }
 
-/// Of a step over ranks: the velocities or everybody's densities, the largest acceleration, and what everybody takes in at its end.
+/// Of a step over ranks: those near the cuts, and their new velocities or their summed densities.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
     const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);
-    const int dim = scene.dim();
+    const auto dim = static_cast<std::size_t>(scene.dim());
     Tally tally({}, of.rank);
+    particles::tally_migration(shared, of, 2 * scene.dim() + 2, tally);  // position, place, velocity, density
     const bool continuity = scene.text("scheme.density") == "continuity";
-    if (continuity)
-        particles::tally_halos(shared, of, static_cast<std::size_t>(dim) * sizeof(real), 1, tally);
-    else
-        particles::tally_gather(shared, sizeof(float), 1, tally);
-    tally.everywhere(sizeof(real), 1, sizeof(real) * static_cast<std::size_t>(of.ranks));  // the largest acceleration
-    particles::tally_end(shared, of, 2 * dim + (continuity ? 2 : 1), tally);
+    particles::tally_halos(shared, of, continuity ? dim * sizeof(real) : sizeof(float), 1, tally);
+    particles::tally_end(of, tally);
     tally_run(tally);
     tally.sent().besides =
         particles::not_counted(scene, {"xsph", "vorticity", "viscosity", "artificial_viscosity", "density_diffusion", "surface_tension"});

@@ -61,30 +61,35 @@ StepReport SphSolver<D>::step(real dt) {
     drift(dt);
     if (bodies_) give_back(*bodies_, fluid_);           // of what pushed
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
-    if (options_.continuity)
-        this->gather_state({&fluid_.carried, &fluid_.density});
-    else
-        this->gather_state({&fluid_.carried});
+    this->dismiss();
     this->hold_again();
     this->conduct(dt);  // only where a substance is named
-    const real speed = speed_ = this->speed();
-    const Compression c = particles::compression_of(fluid_, rho_rest_, this->vapour());
-    this->end_step();
-    return this->report(dt, speed, c);
+    const auto end = this->end_step(particles::excess_of(fluid_, rho_rest_, this->vapour()), max_acceleration_);
+    speed_ = end.speed, max_acceleration_ = end.acceleration;
+    return this->report(dt, end.speed, end.compression);
 }
 
 template <int D>
 void SphSolver<D>::find_neighbours() {
     const auto timed = passes_.time("neighbours");
-    pairs_.find(Fluid<D>::coordinates(fluid_.x), fluid_.count(), options_.support * fluid_.domain.spacing);
+    find_pairs();
     pairs_.fit(density_, 1);
     pairs_.fit(velocity_, 4);
     pairs_.fit(acceleration_, 4);
-    this->begin_own();
     solids_.mark(pairs_);
     this->expand();
     rho_rest_ = rest_density_.at(fluid_.time);
     params_.wall_rho = static_cast<float>(std::min(rho_rest_, fluid_.rho0));
+}
+
+/// Velocities are read beside own particles, and densities that go by their rates.
+template <int D>
+void SphSolver<D>::find_pairs() {
+    const real radius = options_.support * fluid_.domain.spacing;
+    if constexpr (D == 2)
+        Base::find_pairs(fluid_.x, radius, {&fluid_.v[0], &fluid_.v[1], &fluid_.density});
+    else
+        Base::find_pairs(fluid_.x, radius, {&fluid_.v[0], &fluid_.v[1], &fluid_.v[2], &fluid_.density});
 }
 
 template <int D>
@@ -109,7 +114,7 @@ void SphSolver<D>::find_densities() {
     const auto& table = pairs_.table().sph[static_cast<int>(options_.smoothing)];
     const SphPass job = pass();
     pairs_.list().each_chunk([&](const ListChunk& chunk) { table.density(job, chunk); });
-    pairs_.gather(density_);
+    pairs_.share(density_);
     pairs_.each_anywhere([&](int k) {
         if (!pairs_.is_image(k))
             fluid_.density[static_cast<std::size_t>(pairs_.owner(k))] = static_cast<real>(density_[static_cast<std::size_t>(k)]);
@@ -233,7 +238,7 @@ void SphSolver<D>::kick(real dt) {
     const auto timed = passes_.time("integrate");
     const float* acceleration = acceleration_.data();
     const auto& own = pairs_.shares().own();
-    max_acceleration_ = std::sqrt(pairs_.largest(particles::block_max(own.count(), [&](int at) {
+    max_acceleration_ = std::sqrt(particles::block_max(own.count(), [&](int at) {
         const int k = own.begin + at;
         Vec<D> by;
         for (int a = 0; a < D; ++a) by[a] = static_cast<real>(acceleration[4 * k + a]);
@@ -242,20 +247,14 @@ void SphSolver<D>::kick(real dt) {
             Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * by);
         }
         return dot(by, by);
-    })));
+    }));
 }
 
 template <int D>
 void SphSolver<D>::drift(real dt) {
     const auto timed = passes_.time("integrate");
-    if (!pairs_.shares().several()) {
-        sph::drift(fluid_, dt);
-    } else {
-        advance_time(fluid_, dt);
-        pairs_.each([&](int k) {
-            if (!pairs_.is_image(k)) sph::drift(fluid_, pairs_.owner(k), dt);
-        });
-    }
+    advance_time(fluid_, dt);
+    parallel_for(0, this->own(), [&](int i) { sph::drift(fluid_, i, dt); });
     this->carry_ice(dt);
 }
 

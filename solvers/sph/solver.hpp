@@ -24,6 +24,7 @@ private:
     SphSolver(const scene::Scene& scene, particles::Fluid<D>&& start);
     SphSolver(const Options& options, const scene::Scene& scene, particles::Fluid<D>&& start);
     void find_neighbours();
+    void find_pairs();
     void find_densities();
     void advance_densities(real dt);
     void find_pressures();

@@ -70,7 +70,8 @@ static void correct(const PbfPass& a, const ListChunk& chunk) {
         store(a.to, first, live(first, a.count), inside);
         if (a.clamps) {
             const vf back = square_length(inside.x - x, inside.y - y, inside.z - z);
-            tally_clamps(*a.clamps, back, live(first, a.count), a.order + first, a.particles);
+            const int begin = first < a.own_begin ? a.own_begin - first : 0, end = live(first, a.own_end);
+            tally_clamps(*a.clamps, back, begin, end, a.order + first, a.particles);
         }
     }
 }

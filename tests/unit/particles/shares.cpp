@@ -1,12 +1,12 @@
-// Who computes which particles over several ranks, against the definition: every neighbour of what a rank owns is known to it, and comes
-// from the one rank that owns it; what is known to none is poisoned.
+// Who computes which particles over several ranks, against one process: from its own particles and those shown to it, in any order, a rank
+// sorts what it owns as one process does, with the same neighbours, and what it has of others comes from their owners.
 #include "particles/shares.hpp"
 #include "particles/pairs.hpp"
 
 #include "support/test.hpp"
 
 #include <algorithm>
-#include <map>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -44,95 +44,127 @@ Cloud cloud(int count, int dim, bool repeats) {
     return c;
 }
 
-/// What stands closer than the radius to sorted entry k, as one rank finds it, which places all.
-std::vector<int> beside(const Pairs& all, int k, real radius) {
-    std::vector<int> list;
-    for (int j = 0; j < all.size(); ++j) {
-        real squares = 0;
-        for (int a = 0; a < 3; ++a) squares += std::pow(static_cast<real>(all.found_at(j, a)) - static_cast<real>(all.found_at(k, a)), 2);
-        if (j != k && squares < radius * radius) list.push_back(j);
-    }
-    return list;
-}
-
 constexpr real radius = 0.12;
 
-/// The pairs of each rank, found by itself.
-std::vector<std::unique_ptr<Pairs>> pairs_of_ranks(const Cloud& c, int ranks) {
-    std::vector<std::unique_ptr<Pairs>> list;
-    for (int rank = 0; rank < ranks; ++rank) {
-        set_slabs(std::make_unique<Alone>(rank, ranks));
-        list.push_back(std::make_unique<Pairs>(passes_for("sse2"), c.frame));
-        list.back()->find(c.coordinates(), c.count(), radius);
+struct Rank {
+    std::vector<int> held;    // of the cloud, in an order of its own
+    std::vector<real> place;  // of each of these: its number in the cloud
+    std::array<std::vector<real>, 3> x;
+    std::unique_ptr<Pairs> pairs;
+};
+
+/// The cloud as one process sorts it, and as ranks do whose cells are cut.
+struct Shared {
+    Pairs all;
+    CellCut cut;
+    std::vector<Rank> ranks;
+
+    Shared(const Cloud& c, int count) : all(passes_for("sse2"), c.frame) {
+        all.find(c.coordinates(), c.count(), radius);
+        const auto& cells = all.cells().cells();
+        std::vector<int> at{0};
+        for (int r = 1; r <= count; ++r) at.push_back(cells[0] * cells[1] * cells[2] * r / count);
+        cut = CellCut(at, cells);
+        Box box;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(c.dim); ++a) {
+            box.lo[a] = *std::min_element(c.x[a].begin(), c.x[a].end());
+            box.hi[a] = *std::max_element(c.x[a].begin(), c.x[a].end());
+        }
+        for (int r = 0; r < count; ++r) {
+            set_slabs(std::make_unique<Alone>(r, count));
+            ranks.push_back(rank(c, r, box));
+        }
+        set_slabs(nullptr);
     }
-    set_slabs(nullptr);
-    return list;
-}
-
-void expect_known(const Pairs& all, const Pairs& mine) {
-    const Shares& shares = mine.shares();
-    std::set<int> got;
-    for (int peer = 0; peer < 3; ++peer)
-        for (const int k : shares.got_from(peer)) {
-            EXPECT_TRUE(shares.own(peer).has(k)) << "from another than its owner";
-            EXPECT_TRUE(got.insert(k).second) << "twice";
-        }
-    std::map<int, int> at;  // where the particles of the state are
-    for (int k = 0; k < all.size(); ++k)
-        if (!all.is_image(k)) at[all.owner(k)] = k;
-    for (int k = shares.own().begin; k < shares.own().end; ++k)
-        for (const int j : beside(all, k, radius)) {
-            ASSERT_TRUE(shares.read().has(j)) << "a neighbour is not read";
-            EXPECT_EQ(mine.found_at(j, 0), all.found_at(j, 0));
-            const int particle = at[all.owner(j)];
-            EXPECT_TRUE(shares.own().has(particle) || got.count(particle)) << "a neighbour's particle is not known";
-        }
-}
-
-TEST("over ranks every neighbour of an own particle, or image, is read and known, and comes from its owner, once") {
-    for (const int dim : {2, 3})
-        for (const bool repeats : {false, true}) {
-            const Cloud c = cloud(dim == 2 ? 500 : 700, dim, repeats);
-            Pairs all(passes_for("sse2"), c.frame);
-            all.find(c.coordinates(), c.count(), radius);
-            const auto ranks = pairs_of_ranks(c, 3);
-            int next = 0;
-            for (int r = 0; r < 3; ++r) {
-                const Shares& shares = ranks[static_cast<std::size_t>(r)]->shares();
-                EXPECT_EQ(shares.own().begin, next);
-                next = shares.own().end;
-                expect_known(all, *ranks[static_cast<std::size_t>(r)]);
-                for (int peer = 0; peer < 3; ++peer)
-                    EXPECT_TRUE(std::ranges::equal(shares.sent_to(peer), ranks[static_cast<std::size_t>(peer)]->shares().got_from(r)));
-            }
-            EXPECT_EQ(next, all.size());
-        }
-}
-
-TEST("over ranks the neighbours of own particles are those of one rank; where nothing was placed stands NaN") {
-    const Cloud c = cloud(500, 2, true);
-    Pairs all(passes_for("sse2"), c.frame);
-    all.find(c.coordinates(), c.count(), radius);
-    const auto ranks = pairs_of_ranks(c, 3);
-    for (const auto& mine : ranks) {
-        int unplaced = 0;
+    /// By the definition: it holds what stands in its cells, and what it reads there or of an image there.
+    Rank rank(const Cloud& c, int r, const Box& box) const {
+        std::set<int> held;
         for (int k = 0; k < all.size(); ++k) {
-            if (mine->shares().own().has(k)) {
-                EXPECT_EQ(mine->list().neighbours()[static_cast<std::size_t>(k)], all.list().neighbours()[static_cast<std::size_t>(k)]);
-            }
-            if (mine->shares().read().has(k)) continue;
-            ++unplaced;
-            EXPECT_TRUE(std::isnan(mine->a()[4 * k]));
+            const int cell = all.cells().cell_of()[static_cast<std::size_t>(k)];
+            if (cut.reads(r, cell) || (!all.is_image(k) && cut.owner(cell) == r)) held.insert(all.owner(k));
         }
-        EXPECT_GT(unplaced, 0);
+        Rank one;
+        one.held.assign(held.begin(), held.end());
+        std::shuffle(one.held.begin(), one.held.end(), std::mt19937(5));
+        for (const int i : one.held) {
+            one.place.push_back(i);
+            for (std::size_t a = 0; a < static_cast<std::size_t>(c.dim); ++a) one.x[a].push_back(c.x[a][static_cast<std::size_t>(i)]);
+        }
+        one.pairs = std::make_unique<Pairs>(passes_for("sse2"), c.frame);
+        one.pairs->find({one.x[0].data(), one.x[1].data(), c.dim == 3 ? one.x[2].data() : nullptr}, static_cast<int>(one.held.size()),
+                        radius, {box, c.count(), &cut, one.place.data()});
+        return one;
+    }
+    /// The cloud's particle at sorted entry k of a rank.
+    int who(int r, int k) const {
+        const Rank& one = ranks[static_cast<std::size_t>(r)];
+        return one.held[static_cast<std::size_t>(one.pairs->owner(k))];
+    }
+    std::vector<int> who(int r, std::span<const int> entries) const {
+        std::vector<int> list;
+        for (const int k : entries) list.push_back(who(r, k));
+        return list;
+    }
+};
+
+std::vector<Cloud> clouds() { return {cloud(500, 2, false), cloud(500, 2, true), cloud(700, 3, false), cloud(700, 3, true)}; }
+
+TEST("over ranks own particles and images are those of one process, in its order, with as many neighbours") {
+    for (const Cloud& c : clouds()) {
+        const Shared shared(c, 3);
+        int at = 0;
+        for (int r = 0; r < 3; ++r) {
+            const Pairs& mine = *shared.ranks[static_cast<std::size_t>(r)].pairs;
+            for (int k = mine.shares().own().begin; k < mine.shares().own().end; ++k, ++at) {
+                EXPECT_EQ(shared.who(r, k), shared.all.owner(at));
+                EXPECT_EQ(mine.is_image(k), shared.all.is_image(at));
+                for (int a = 0; a < c.dim; ++a) EXPECT_EQ(mine.found_at(k, a), shared.all.found_at(at, a));
+                EXPECT_EQ(mine.list().neighbours()[static_cast<std::size_t>(k)],
+                          shared.all.list().neighbours()[static_cast<std::size_t>(at)]);
+            }
+        }
+        EXPECT_EQ(at, shared.all.size());
     }
 }
 
-TEST("more ranks than slices of particles: some have none, and know nothing") {
-    const Cloud c = cloud(5, 2, false);
-    const auto ranks = pairs_of_ranks(c, 3);
+TEST("over ranks what one sends is what the other gets, in the same order, and all that a rank holds of others comes from their owners") {
+    for (const Cloud& c : clouds()) {
+        const Shared shared(c, 3);
+        for (int r = 0; r < 3; ++r) {
+            const Shares& shares = shared.ranks[static_cast<std::size_t>(r)].pairs->shares();
+            std::set<int> got;
+            for (int peer = 0; peer < 3; ++peer) {
+                const Shares& theirs = shared.ranks[static_cast<std::size_t>(peer)].pairs->shares();
+                EXPECT_EQ(shared.who(r, shares.sent_to(peer)), shared.who(peer, theirs.got_from(r)));
+                for (const int k : shares.got_from(peer)) {
+                    EXPECT_TRUE(shares.own(peer).has(k)) << "from another than its owner";
+                    EXPECT_TRUE(got.insert(k).second) << "twice";
+                }
+            }
+            int own = 0;
+            const Pairs& mine = *shared.ranks[static_cast<std::size_t>(r)].pairs;
+            for (int k = shares.own().begin; k < shares.own().end; ++k) own += !mine.is_image(k);
+            EXPECT_EQ(own + static_cast<int>(got.size()), mine.particles());
+        }
+    }
+}
+
+TEST("over ranks where nothing was placed stands NaN") {
+    const Shared shared(cloud(500, 2, true), 3);
+    int unplaced = 0;
+    for (const Rank& rank : shared.ranks)
+        for (int k = 0; k < rank.pairs->size(); ++k) {
+            if (rank.pairs->shares().read().has(k)) continue;
+            ++unplaced;
+            EXPECT_TRUE(std::isnan(rank.pairs->a()[4 * k]));
+        }
+    EXPECT_GT(unplaced, 0);
+}
+
+TEST("more ranks than cells with particles: some have none, and all are somebody's") {
+    const Shared shared(cloud(5, 2, false), 8);
     int owned = 0;
-    for (const auto& mine : ranks) owned += mine->shares().own().count();
+    for (const Rank& rank : shared.ranks) owned += rank.pairs->shares().own().count();
     EXPECT_EQ(owned, 5);
 }
 

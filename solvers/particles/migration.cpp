@@ -1,0 +1,183 @@
+#include "particles/migration.hpp"
+
+#include "core/error.hpp"
+
+#include <limits>
+#include <numeric>
+
+namespace weir::particles {
+
+namespace {
+
+/// The cells of a point's images beyond sides that repeat, as Pairs makes them.
+struct Images {
+    const Frame& frame;
+    const CellSort& cells;
+    std::array<real, 3> band{};  // 0: the axis does not repeat
+
+    Images(const Frame& f, const CellSort& c, const Box& box, real radius) : frame(f), cells(c) {
+        for (std::size_t a = 0; a < 3; ++a) band[a] = f.period[a] > 0 ? f.band(a, box, radius) : 0;
+    }
+    bool below(std::size_t a, real x) const { return band[a] > 0 && x < frame.lo[a] + band[a]; }
+    bool above(std::size_t a, real x) const { return band[a] > 0 && x > frame.lo[a] + frame.period[a] - band[a]; }
+    void list(const std::array<real, 3>& x, std::vector<int>& to) const {
+        to.clear();
+        std::array<std::array<real, 3>, 3> shifts{};
+        std::array<int, 3> count{1, 1, 1};
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (below(a, x[a])) shifts[a][static_cast<std::size_t>(count[a]++)] = frame.period[a];
+            if (above(a, x[a])) shifts[a][static_cast<std::size_t>(count[a]++)] = -frame.period[a];
+        }
+        for (int k = 0; k < count[2]; ++k)
+            for (int j = 0; j < count[1]; ++j)
+                for (int i = 0; i < count[0]; ++i) {
+                    if (i + j + k == 0) continue;
+                    const std::array<int, 3> which{i, j, k};
+                    std::array<real, 3> at = x;
+                    for (std::size_t a = 0; a < 3; ++a)
+                        if (which[a] > 0) at[a] += shifts[a][static_cast<std::size_t>(which[a])];
+                    to.push_back(cells.cell_at(at));
+                }
+    }
+};
+
+}  // namespace
+
+/// Box and number of all ranks' particles.
+void Migration::meet(const Coordinates& x, int count) {
+    struct Own {
+        Box box;
+        int count;
+        bool finite;
+    } own{{}, count, true};
+    own.box = cells_.box(x, count, own.finite);
+    const std::vector<Own> all = of_ranks(own);
+    box_ = {}, total_ = 0, counts_.clear();
+    for (const Own& rank : all) {
+        if (!rank.finite) throw NumericalFailure("position", "a particle's position is not finite");
+        counts_.push_back(rank.count);
+        if (rank.count == 0) continue;
+        for (std::size_t a = 0; a < 3; ++a) {
+            box_.lo[a] = total_ > 0 ? std::min(box_.lo[a], rank.box.lo[a]) : rank.box.lo[a];
+            box_.hi[a] = total_ > 0 ? std::max(box_.hi[a], rank.box.hi[a]) : rank.box.hi[a];
+        }
+        total_ += rank.count;
+    }
+}
+
+/// The cells of which lower ones hold a rank's share for each rank before it: its digits are found one after another, the slowest axis
+/// first, from how many particles all ranks have in each plane, then in each row of that plane, then in each cell of that row.
+void Migration::choose_cut_points(const CellGrid& grid) {
+    const auto cuts = static_cast<std::size_t>(slabs().ranks()) - 1;
+    std::vector<int> chosen(cuts, 0), before(cuts, 0);  // leading digits, and particles before the cells that have them
+    std::vector<std::array<real, 3>> points(cuts, grid.origin);
+    int behind = grid.cells[0] * grid.cells[1] * grid.cells[2];  // cells that share the leading digits
+    for (std::size_t a = 3; a-- > 0;) {
+        const int digits = grid.cells[a], width = behind / digits;
+        if (digits == 1) continue;
+        std::vector<int> counts(cuts * static_cast<std::size_t>(digits), 0);
+        for (const int c : cell_)
+            for (std::size_t r = 0; r < cuts; ++r)
+                if (c / behind == chosen[r]) ++counts[r * static_cast<std::size_t>(digits) + static_cast<std::size_t>(c / width % digits)];
+        const std::vector<int> all = of_all_ranks(counts);
+        for (std::size_t r = 0; r < cuts; ++r) {
+            const auto target = static_cast<int>(static_cast<std::int64_t>(total_) * static_cast<std::int64_t>(r + 1) / slabs().ranks());
+            int digit = 0;
+            for (;; ++digit) {
+                int here = 0;
+                for (std::size_t q = 0; q <= cuts; ++q)
+                    here += all[(q * cuts + r) * static_cast<std::size_t>(digits) + static_cast<std::size_t>(digit)];
+                if (before[r] + here > target || digit + 1 == digits) break;
+                before[r] += here;
+            }
+            chosen[r] = chosen[r] * digits + digit;
+            points[r][a] += (digit + 0.5) / grid.per_cell;
+        }
+        behind = width;
+    }
+    cut_points_ = std::move(points);
+}
+
+void Migration::find_cut(const CellGrid& grid) {
+    if (cut_points_.empty()) choose_cut_points(grid);
+    std::vector<int> at{0};
+    const int all = grid.cells[0] * grid.cells[1] * grid.cells[2];
+    for (std::array<real, 3> point : cut_points_) {
+        for (std::size_t a = 0; a < 3; ++a) point[a] = std::max(point[a], grid.origin[a]);  // the liquid may have left the place
+        at.push_back(std::clamp(cells_.cell_at(point), at.back(), all));
+    }
+    at.push_back(all);
+    cut_ = CellCut(std::move(at), grid.cells);
+}
+
+void Migration::find_holders(const Coordinates& x, int count, const Frame& frame, real radius) {
+    const int self = slabs().rank();
+    const Images images(frame, cells_, box_, radius);
+    hands_.clear();
+    gone_.clear();
+    int first = cut_.begin(self), last = cut_.end(self);  // own cells that no other reads
+    for (int r = 0; r < cut_.ranks(); ++r) {
+        if (r == self || cut_.begin(r) == cut_.end(r)) continue;
+        if (r < self) first = std::max(first, cut_.end(r) + cut_.far);
+        if (r > self) last = std::min(last, cut_.begin(r) - cut_.far);
+    }
+    for (int i = 0; i < count; ++i) {
+        const int cell = cell_[static_cast<std::size_t>(i)];
+        bool repeats = false;
+        for (std::size_t a = 0; a < 3; ++a)
+            repeats = repeats || (images.band[a] > 0 && (images.below(a, x[a][i]) || images.above(a, x[a][i])));
+        if (cell >= first && cell < last && !repeats) continue;
+        image_cells_.clear();
+        if (repeats) images.list({x[0][i], x[1][i], x[2] ? x[2][i] : 0}, image_cells_);
+        const int owner = cut_.owner(cell);
+        if (owner != self) hands_.move(owner, i), gone_.push_back(i);
+        for (int r = 0; r < cut_.ranks(); ++r) {
+            if (r == owner) continue;
+            const auto read = [&](int c) { return cut_.reads(r, c); };
+            if (read(cell) || std::any_of(image_cells_.begin(), image_cells_.end(), read)) hands_.show(r, i);
+        }
+    }
+}
+
+/// Those that have gone leave their entries to the last ones.
+void Migration::rearrange(const HandOver::Arrays& arrays, std::size_t read) {
+    const std::size_t stay = arrays[0]->size() - gone_.size(), own = stay + static_cast<std::size_t>(hands_.movers()),
+                      all = own + static_cast<std::size_t>(hands_.guests());
+    for (auto* array : arrays) {
+        for (auto i = gone_.rbegin(); i != gone_.rend(); ++i) (*array)[static_cast<std::size_t>(*i)] = array->back(), array->pop_back();
+        if (array->capacity() < all) array->reserve(all + all / 16);
+        array->resize(all);
+    }
+    hands_.take_movers(arrays, stay);
+    hands_.take_guests(arrays, read, own);
+    if (!slabs().poisons()) return;
+    for (std::size_t a = read; a < arrays.size(); ++a)
+        std::fill(arrays[a]->begin() + static_cast<std::ptrdiff_t>(own), arrays[a]->end(), std::numeric_limits<real>::quiet_NaN());
+}
+
+void Migration::apply(const Frame& frame, real radius, int dim, const HandOver::Arrays& arrays, std::size_t read) {
+    Coordinates x{nullptr, nullptr, nullptr};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dim); ++a) x[a] = arrays[a]->data();
+    const int count = static_cast<int>(arrays[0]->size());
+    meet(x, count);
+    const CellGrid grid = frame.cover(box_, total_, radius);
+    cells_.cover(grid);
+    cells_.list_cells(x, count, cell_);
+    find_cut(grid);
+    find_holders(x, count, frame, radius);
+    hands_.trade(arrays, read);
+    rearrange(arrays, read);
+    for (int r = 0; r < cut_.ranks(); ++r) counts_[static_cast<std::size_t>(r)] += hands_.gain(r);
+}
+
+int Migration::before() const { return std::accumulate(counts_.begin(), counts_.begin() + slabs().rank(), 0); }
+
+void Migration::balance(real most) {
+    constexpr real few = 32;  // particles: what they take is less than a message
+    for (const int count : counts_)
+        if (count > (1 + most) * total_ / static_cast<real>(counts_.size()) + few) recut();
+}
+
+std::size_t Migration::bytes() const { return cells_.bytes() + cell_.capacity() * sizeof(int) + hands_.bytes(); }
+
+}  // namespace weir::particles
