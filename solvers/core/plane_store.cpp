@@ -58,4 +58,17 @@ std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, i
     return held;
 }
 
+std::vector<char> planes_near(int count, int deep, bool ring) {
+    if (!over_ranks()) return {};
+    const Cut& cut = *detail::own_share.cut;
+    const int n = cut.planes(), rank = slabs().rank();
+    std::vector<char> near(static_cast<std::size_t>(count), 0);
+    deep = std::min(deep, n);
+    for (int plane = cut.begin(rank) - deep; plane < cut.end(rank, count) + deep; ++plane) {
+        if (plane >= 0 && plane < count) near[static_cast<std::size_t>(plane)] = 1;
+        if (ring && (plane < 0 || plane >= n)) near[static_cast<std::size_t>((plane % n + n) % n)] = 1;  // plane n of faces is plane 0
+    }
+    return near;
+}
+
 }  // namespace weir

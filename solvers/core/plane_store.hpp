@@ -33,6 +33,10 @@ private:
 /// axis where it comes so near. `margin`: planes before the first and after the last. Entry 0 is of plane -margin.
 std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int deep, bool ring);
 
+/// Of `count` planes this rank's and so many beyond its cuts, around the ends of a periodic axis too: which are near. None where there is one
+/// rank: then all are.
+std::vector<char> planes_near(int count, int deep, bool ring);
+
 namespace detail {
 /// Whether an array of so many planes that is made now is of this rank's alone.
 inline bool makes_window(int count) {
@@ -71,6 +75,8 @@ public:
     }
     bool windowed() const { return window_ != nullptr; }
     bool holds(int plane) const { return !window_ || window_->held[static_cast<std::size_t>(plane + window_->margin)] != 0; }
+    /// Whether the planes so deep beyond the cuts are held.
+    bool reaches(int deep) const { return !window_ || deep <= window_->deep; }
     /// For Planes: of plane 0; none where all are held.
     const char* held() const { return window_ ? window_->held.data() + window_->margin : nullptr; }
 
@@ -173,14 +179,18 @@ private:
             return;
         }
         const Window& from = *other.window_;
-        whole_ = {};
-        size_ = other.size_;
-        reserve(from.head, from.plane, from.count, from.margin);
-        window_->deep = from.deep, window_->ring = from.ring;
-        window_->memory.open(0, from.head * sizeof(T));
+        const bool fits = window_ && size_ == other.size_ && window_->head == from.head && window_->plane == from.plane &&
+                          window_->margin == from.margin;
+        if (!fits) {
+            whole_ = {};
+            size_ = other.size_;
+            reserve(from.head, from.plane, from.count, from.margin);
+            window_->memory.open(0, from.head * sizeof(T));
+        }
+        window_->deep = std::max(window_->deep, from.deep), window_->ring = window_->ring || from.ring;
         open(from.held);
         std::copy_n(other.data_, from.head, data_);
-        each_run([&](T* to, std::size_t count) { std::copy_n(other.data_ + (to - data_), count, to); });
+        other.each_run([&](const T* values, std::size_t count) { std::copy_n(values, count, data_ + (values - other.data_)); });
     }
 
     std::vector<T> whole_;

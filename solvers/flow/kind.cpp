@@ -6,6 +6,7 @@
 #include "matter/heat.hpp"
 #include "staggered/inflow.hpp"
 #include "staggered/initial.hpp"
+#include "staggered/own_planes.hpp"
 
 namespace weir::flow {
 
@@ -64,7 +65,7 @@ scene::SolverKind kind() {
                           make_without_surface<FlowSolver>,
                           {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
                           over_ranks};
-    mac.holds_own_part = holds_own_planes;
+    mac.holds_own_part = staggered::holds_own_planes;
     mac.sends = traffic_of_step;
     return mac;
 }

@@ -6,6 +6,7 @@
 #include "scene/names.hpp"
 #include "staggered/diagnostics.hpp"
 #include "staggered/initial.hpp"
+#include "staggered/own_planes.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -129,30 +130,11 @@ bool lists(const scene::Scene& scene, const std::string& field) {
 
 }  // namespace
 
-bool holds_own_planes(const scene::Scene& scene) {
-    if (!slabs().several() || slabs().holds_whole() || scene.root().number_or("time.stop_when_steady", 0) > 0) return false;
-    for (const auto& probe : scene.root().tables("probes"))
-        if (const auto& kind = probe.text("kind"); kind != "point" && kind != "line" && kind != "integral") return false;
-    if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
-    const auto shares = [&]<int D>() {
-        const Lattice<D> lattice(scene);
-        const geometry::Sides<D> sides(scene);
-        Vec<D> weight;
-        std::array<bool, D> periodic;
-        for (int a = 0; a < D; ++a) {
-            const real ratio = lattice.h[0] / lattice.h[a];
-            weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
-        }
-        return poisson::multigrid_shares<D>(lattice.cells, periodic, weight, cut_of(lattice.cells[D - 1], slabs().ranks()));
-    };
-    return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
-}
-
 template <int D>
 FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     : cut_(cut_of(scene.index<D>("grid.cells")[D - 1], slabs().ranks())),
       ring_(geometry::Sides<D>(scene).periodic(D - 1)),
-      kept_(flow::holds_own_planes(scene) ? planes_beside : 0),
+      kept_(staggered::holds_own_planes(scene) ? planes_beside : 0),
       making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, ghost_layers, kept_, ring_) : nullptr),
       effects_(make_effects<D>(effect_kinds(), scene)),
       state_(scene, field_plan(effects_, scene)),

@@ -16,10 +16,6 @@
 
 namespace weir::flow {
 
-/// Over ranks: may each hold its own planes of a scene alone? Not where somebody looks at whole fields on all ranks, nor where each solves
-/// for the pressure itself.
-bool holds_own_planes(const scene::Scene& scene);
-
 /// What a rank sends in a step of a scene that is cut so: an exchange after each pass that is read across cuts, and the numbers of planes
 /// that everybody adds up.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);

@@ -167,15 +167,12 @@ void Hierarchy<D>::window() {
 template <int D>
 void Hierarchy<D>::bring_beside(std::size_t l) {
     Level<D>& level = levels_[l];
-    const auto bring = [&](const Planes& planes) {
-        if (level.cut.empty())
-            slabs().gather(VCycle<D>::halved_cut(levels_[l - 1]), planes);
-        else
-            slabs().refresh(level.cut, planes, 1, level.at.periodic[D - 1]);
-    };
-    for (float* face : level.face) bring(level.natural_planes(face));
-    bring(level.natural_planes(level.zero));
-    bring(level.natural_planes(level.fluid));
+    std::vector<Planes> all;
+    for (float* face : level.face) all.push_back(level.natural_planes(face));
+    all.push_back(level.natural_planes(level.zero));
+    all.push_back(level.natural_planes(level.fluid));
+    if (!level.cut.empty()) return slabs().refresh(level.cut, all, 1, level.at.periodic[D - 1]);
+    for (const Planes& planes : all) slabs().gather(VCycle<D>::halved_cut(levels_[l - 1]), planes);
 }
 
 template <int D>

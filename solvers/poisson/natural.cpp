@@ -257,8 +257,10 @@ void Natural<D>::mark_open() {
 /// Over ranks: a component is open where any of them has found it so.
 template <int D>
 void Natural<D>::gather_open() {
-    const std::vector<char> found = of_all_ranks(open_);
-    for (std::size_t k = 0; k < found.size(); ++k) open_[k % open_.size()] = static_cast<char>(open_[k % open_.size()] | found[k]);
+    std::vector<int> found;
+    for (std::size_t k = 0; k < open_.size(); ++k)
+        if (open_[k] != 0) found.push_back(static_cast<int>(k));
+    for (const int k : of_all_ranks(found)) open_[static_cast<std::size_t>(k)] = 1;
 }
 
 template <int D>

@@ -168,8 +168,10 @@ void pack_rows(Level<D>& level, bool threaded, const View& view_of) {
         else
             pack_row(level, q, j, view_of(q, j, buffers), buffers);
     });
-    if (!level.held.empty())  // black cells find their weights with their red neighbours
-        for (float* weight : level.weight) slabs().refresh(level.cut, level.planes_of(weight), 1, level.at.periodic[D - 1]);
+    if (level.held.empty()) return;
+    std::vector<Planes> all;  // black cells find their weights with their red neighbours
+    for (float* weight : level.weight) all.push_back(level.planes_of(weight));
+    slabs().refresh(level.cut, all, 1, level.at.periodic[D - 1]);
 }
 
 /// Open faces of each cell of a row, packed: all faces that do not lead to a solid.

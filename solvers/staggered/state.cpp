@@ -1,5 +1,7 @@
 #include "staggered/state.hpp"
 
+#include "core/plane_checkpoint.hpp"
+
 #include <stdexcept>
 
 namespace weir::staggered {
@@ -21,32 +23,6 @@ bool asks_for_viscosity(const scene::Scene& scene, const geometry::Sides<D>& sid
     bool asks = scene.effect("viscosity") != nullptr || scene.root().text_or("initial.velocity.name", "") == "kovasznay";
     for (int a = 0; a < D; ++a) asks = asks || sides.side(a, 0).profile == "kovasznay" || sides.side(a, 1).profile == "kovasznay";
     return asks;
-}
-
-/// The entries of this rank's planes; all where it holds all.
-template <class T, int D>
-PlaneRange own_entries(const Grid<T, D>& q) {
-    if (!q.store().windowed()) return {0, q.extent()[D - 1]};
-    const Cut& cut = *detail::own_share.cut;
-    return {cut.begin(slabs().rank()), cut.end(slabs().rank(), q.extent()[D - 1])};
-}
-
-template <class T, int D>
-void put(Checkpoint& to, const std::string& name, const Grid<T, D>& q) {
-    if (!q.store().windowed()) return to.put(name, q.values());
-    const auto plane = static_cast<std::size_t>(q.stride(D - 1));
-    const PlaneRange own = own_entries(q);
-    const auto begin = static_cast<std::size_t>(own.begin), count = static_cast<std::size_t>(own.end - own.begin);
-    to.put_part(name, q.values().subspan(begin * plane, count * plane), begin * plane, q.size());
-}
-
-template <class T, int D>
-void get(const Checkpoint& from, const std::string& name, Grid<T, D>& q) {
-    if (!q.store().windowed()) return from.get(name, q.values());
-    const auto plane = static_cast<std::size_t>(q.stride(D - 1));
-    const PlaneRange own = own_entries(q);
-    const auto begin = static_cast<std::size_t>(own.begin), count = static_cast<std::size_t>(own.end - own.begin);
-    from.get_part(name, q.values().subspan(begin * plane, count * plane), begin * plane, q.size());
 }
 
 }  // namespace
@@ -107,19 +83,19 @@ void MacState<D>::allocate_solids() {
 
 template <int D>
 void MacState<D>::save(Checkpoint& to) const {
-    for (int a = 0; a < D; ++a) put(to, component_names[a], u[a]);
-    put(to, "p", p);
-    put(to, "cells", cells);
-    for (const auto& field : fields) put(to, "field." + field.name, field.values);
+    for (int a = 0; a < D; ++a) put_planes(to, component_names[a], u[a]);
+    put_planes(to, "p", p);
+    put_planes(to, "cells", cells);
+    for (const auto& field : fields) put_planes(to, "field." + field.name, field.values);
     to.put_value("time", time);
 }
 
 template <int D>
 void MacState<D>::restore(const Checkpoint& from) {
-    for (int a = 0; a < D; ++a) get(from, component_names[a], u[a]);
-    get(from, "p", p);
-    get(from, "cells", cells);
-    for (auto& field : fields) get(from, "field." + field.name, field.values);
+    for (int a = 0; a < D; ++a) get_planes(from, component_names[a], u[a]);
+    get_planes(from, "p", p);
+    get_planes(from, "cells", cells);
+    for (auto& field : fields) get_planes(from, "field." + field.name, field.values);
     time = from.template get_value<real>("time");
 }
 

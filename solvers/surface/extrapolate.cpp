@@ -41,6 +41,7 @@ void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const Lev
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     const std::ptrdiff_t stride = surface.phi.stride(a);
     const auto start_row = [&](Index<D> I) {
+        if (!is_near(I[D - 1])) return;
         const bool has_above = a == 0 || I[a] < frame_.cells[a], has_below = a == 0 || I[a] > 0;
         const std::ptrdiff_t cells = static_cast<std::ptrdiff_t>(surface.phi.linear(I));  // of the row above; it need not be there
         Extent extent{frame_.cells[0], 0};
@@ -93,6 +94,7 @@ void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const Lev
 
 template <int D>
 void Extrapolation<D>::join_front(Grid<std::uint8_t, D>& mark, int a, const Index<D>& face) {
+    if (!is_near(face[D - 1])) return;
     auto& m = mark(face);
     if (m != 0) return;
     for (int axis = 0; axis < D; ++axis)
@@ -121,7 +123,7 @@ void Extrapolation<D>::grow_front(Grid<std::uint8_t, D>& mark, int a) {
                     if (!step(J, a, axis, by)) continue;
                     other = &mark(J);
                 }
-                if (*other != 0) continue;
+                if (!is_near(J[D - 1]) || *other != 0) continue;
                 *other = queued;
                 next_.push_back(J);
             }
@@ -207,20 +209,36 @@ void Extrapolation<D>::for_each_own(F&& f) {
     parallel_for(0, static_cast<int>(own_.size()), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }
 
+/// Over ranks, which faces are known: as far beyond the cuts as layers reach a rank's own from, and as a slope looks behind those.
+template <int D>
+void Extrapolation<D>::bring_marks(FaceMarks<D>& marks, int layers) {
+    constexpr int slope_reach = 3;
+    const int deep = layers + slope_reach;
+    const bool ring = frame_.periodic(D - 1);
+    for (std::size_t last = 0; last < 2; ++last) near_of_[last] = planes_near(frame_.cells[D - 1] + static_cast<int>(last), deep, ring);
+    if (!over_ranks()) return;
+    std::array<Planes, D> all;
+    for (std::size_t a = 0; a < D; ++a) {
+        marks[a].store().open(deep + 1, ring);
+        all[a] = planes_of(marks[a]);
+    }
+    slabs().refresh(*detail::own_share.cut, all, deep + 1, ring);
+}
+
 template <int D>
 void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const LevelSet<D>& surface, const FaceLists<D>& in_solids,
                                   int layers) {
     const int near = std::min(3, surface.layers()), behind = frame_.periodic(D - 1) ? 4 : 3;  // planes that a slope reads
-    if (over_ranks())
-        for (auto& mark : marks) gather(mark);
+    bring_marks(marks, layers);
     refresh_faces(u, frame_, behind);
     find_band_rows(surface, near);
     for (int a = 0; a < D; ++a) {
         auto& mark = marks[static_cast<std::size_t>(a)];
+        near_.swap(near_of_[a == D - 1 ? 1 : 0]);
         front_.clear();
         start_front(mark, a, surface, near);
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
-        for (int layer = 1; layer <= layers && !front_.empty(); ++layer) {
+        for (int layer = 1; layer <= layers && (over_ranks() || !front_.empty()); ++layer) {  // another rank may have a front
             if (layer > 1) refresh(u[a], frame_.periodic(D - 1), layer == 2 ? behind : 1);
             resize_scratch(value_, front_.size());
             for_each_own([&](int i) {
@@ -233,6 +251,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
             }
             if (layer < layers) grow_front(mark, a);
         }
+        near_.swap(near_of_[a == D - 1 ? 1 : 0]);
     }
 }
 

@@ -1,7 +1,8 @@
 // Velocity beyond the liquid, outwards from the faces whose velocity is known: ∇(∇u·∇φ)·∇φ = 0 in the first two layers (Aslam 2004),
 // ∇u·∇φ = 0 beyond (Adalsteinsson & Sethian 1999), with upwind differences as in the fast sweeping of Zhao 2005. Faces are visited layer by
 // layer from the known ones, each from finished layers only: one visit a face, and no result depends on threads, on the direction of a
-// sweep, or on a mirror. Over ranks everybody finds the layers, and each the values on its own planes of faces.
+// sweep, or on a mirror. Over ranks each finds the layers as far beyond its cuts as they reach, and the values on its own
+// planes of faces.
 #pragma once
 #include "surface/level_set.hpp"
 
@@ -36,6 +37,8 @@ public:
     }
 
 private:
+    void bring_marks(FaceMarks<D>& marks, int layers);
+    bool is_near(int plane) const { return near_.empty() || near_[static_cast<std::size_t>(plane)] != 0; }
     void find_band_rows(const LevelSet<D>& surface, int layers);
     void start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers);
     template <class F>
@@ -53,6 +56,8 @@ private:
     std::vector<Index<D>> front_, next_;
     std::vector<real> value_;
     std::vector<int> own_;             // over ranks: places in the front of this rank's own faces
+    std::array<std::vector<char>, 2> near_of_;  // and in which planes of faces along other axes and along the last it looks for layers
+    std::vector<char> near_;                    // those of the faces at work
     std::vector<Extent> band_rows_;    // of every row of cells: its part in the layers from which the first front starts
     std::vector<std::uint8_t> joins_;  // of one row of faces
 };

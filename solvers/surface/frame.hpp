@@ -119,11 +119,15 @@ template <int D>
 void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int deep) {
     if (!over_ranks()) return;
     std::array<Planes, D> all;
-    for (int a = 0; a < D; ++a) all[static_cast<std::size_t>(a)] = planes_of(u[a]);
+    for (int a = 0; a < D; ++a) {
+        u[a].store().open(deep, frame.periodic(D - 1));
+        all[static_cast<std::size_t>(a)] = planes_of(u[a]);
+    }
     slabs().refresh(*detail::own_share.cut, all, deep, frame.periodic(D - 1));
     const int n = frame.cells[D - 1];
     if (!frame.periodic(D - 1) || is_own_plane(n)) return;
     Grid<real, D>& across = u[D - 1];
+    if (!across.store().holds(0) || !across.store().holds(n)) return;
     std::copy_n(across.data(), across.stride(D - 1), across.data() + n * across.stride(D - 1));
 }
 

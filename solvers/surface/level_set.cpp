@@ -1,6 +1,7 @@
 #include "surface/level_set.hpp"
 
 #include "core/parallel.hpp"
+#include "core/plane_checkpoint.hpp"
 #include "core/scratch.hpp"
 #include "surface/marker_lanes.hpp"
 
@@ -27,20 +28,20 @@ LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
 /// f(I) for cells that are open and have a closed neighbour, in the order of the grid.
 template <int D>
 template <class F>
-void LevelSet<D>::for_each_open_beside_closed(F&& f) const {
+void LevelSet<D>::for_each_open_beside_closed(const Grid<std::uint8_t, D>& closed, F&& f) const {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
-    const auto has_closed = [&](std::size_t line) { return std::memchr(&closed_[line], 1, n) != nullptr; };
-    for (std::size_t line = 0; line < closed_.size(); line += n) {
+    const auto has_closed = [&](std::size_t line) { return std::memchr(&closed[line], 1, n) != nullptr; };
+    for (std::size_t line = 0; line < closed.size(); line += n) {
         std::array<const std::uint8_t*, 2 * D> beside{};  // lines of cells next to this one, and itself
         std::size_t count = 0;
         Index<D> I = frame_.index_of(line);
-        if (has_closed(line)) beside[count++] = &closed_[line];
+        if (has_closed(line)) beside[count++] = &closed[line];
         for (int d = 1; d < D; ++d)
             for (const int by : {-1, 1})
-                if (Index<D> J = I; frame_.step(J, d, by) && has_closed(closed_.linear(J))) beside[count++] = &closed_(J);
+                if (Index<D> J = I; frame_.step(J, d, by) && has_closed(closed.linear(J))) beside[count++] = &closed(J);
         for (std::size_t i = 0; count > 0 && i < n; ++i) {
-            if (closed_[line + i]) continue;
-            bool found = i == 0 || i + 1 == n || closed_[line + i - 1] || closed_[line + i + 1];
+            if (closed[line + i]) continue;
+            bool found = i == 0 || i + 1 == n || closed[line + i - 1] || closed[line + i + 1];
             for (std::size_t k = 0; k < count; ++k) found = found || beside[k][i];
             I[0] = static_cast<int>(i);
             if (found) f(I);
@@ -48,31 +49,59 @@ void LevelSet<D>::for_each_open_beside_closed(F&& f) const {
     }
 }
 
+/// The planes that both hold.
+template <int D>
+static void copy_held(const Grid<std::uint8_t, D>& from, Grid<std::uint8_t, D>& to) {
+    const auto entries = static_cast<std::size_t>(from.stride(D - 1));
+    for (int plane = 0; plane < from.extent()[D - 1]; ++plane)
+        if (from.store().holds(plane) && to.store().holds(plane))
+            std::copy_n(from.data() + entries * static_cast<std::size_t>(plane), entries, to.data() + entries * static_cast<std::size_t>(plane));
+}
+
+/// Over ranks the solids stand, and their skin is found once: of all cells, which everybody gets to see for that.
 template <int D>
 void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed) {
     closed_ = closed;
+    if (!slabs().several()) return find_skin(closed_, layer_);  // layer_ is free for this: redistance() finds it anew
+    Grid<std::uint8_t, D> all, seen;
+    {
+        const AllPlanes whole;
+        all = seen = Grid<std::uint8_t, D>(frame_.cells);
+    }
+    copy_held(closed, all);
+    gather(all);
+    find_skin(all, seen);
+    skin_of_ranks_.find(frame_, all, skin_);
+    find_near();
+    copy_held(all, closed_);
+}
+
+/// Closed cells beside open ones, and beside those, to skin_. `seen` is 0 in them, before and after.
+template <int D>
+void LevelSet<D>::find_skin(const Grid<std::uint8_t, D>& closed, Grid<std::uint8_t, D>& seen) {
     skin_.clear();
     std::size_t first = 0;
-    constexpr std::uint8_t seen = 253;  // layer_ is free for this: redistance() finds it anew
+    constexpr std::uint8_t mark = 253;
     const auto add_neighbours = [&](const Index<D>& I) {
         for (int d = 0; d < D; ++d)
             for (const int by : {-1, 1}) {
                 Index<D> J = I;
-                if (frame_.step(J, d, by) && closed_(J) && layer_(J) != seen) layer_(J) = seen, skin_.push_back(J);
+                if (frame_.step(J, d, by) && closed(J) && seen(J) != mark) seen(J) = mark, skin_.push_back(J);
             }
     };
-    for_each_open_beside_closed(add_neighbours);
+    for_each_open_beside_closed(closed, add_neighbours);
     for (int layer = 1; layer < 3; ++layer) {  // three cells deep: as far as interpolation beside a solid looks
         const std::size_t last = skin_.size();
         for (; first < last; ++first) add_neighbours(Index<D>(skin_[first]));
     }
-    for (const Index<D>& J : skin_) layer_(J) = 0;
+    for (const Index<D>& J : skin_) seen(J) = 0;
 }
 
 /// Mean of the neighbours that lie further out; skin_ goes inwards, so one pass suffices.
 template <int D>
 void LevelSet<D>::continue_into_solids() {
     if (skin_.empty()) return;
+    if (over_ranks()) return skin_of_ranks_.continue_into(phi, skin_);
     for (const Index<D>& I : skin_) layer_(I) = 255;  // not continued yet
     for (const Index<D>& I : skin_) {
         real sum = 0;
@@ -332,7 +361,10 @@ void LevelSet<D>::join_sphere(const Vec<D>& x, real radius) {
 
 template <int D>
 void LevelSet<D>::dilate(real shift) {
-    parallel_for(0, static_cast<int>(band_.size()), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) -= shift; });
+    parallel_for(0, static_cast<int>(band_.size()), [&](int i) {
+        const Index<D>& I = band_[static_cast<std::size_t>(i)];
+        if (phi.store().holds(I[D - 1])) phi(I) -= shift;
+    });
 }
 
 template <int D>
@@ -344,27 +376,31 @@ real LevelSet<D>::regain(real missing) {
     return shift;
 }
 
-/// With the band: which cells it holds is part of the state.
+/// With the layers: which cells the band holds is part of the state; in which order follows from those beside the surface.
 template <int D>
 void LevelSet<D>::save(Checkpoint& to) const {
-    to.put("surface.phi", phi.values());
-    to.put("surface.layer", layer_.values());
-    to.put("surface.band", band_);
-    to.put("surface.layer_start", layer_start_);
+    put_planes(to, "surface.phi", phi);
+    put_planes(to, "surface.layer", layer_);
 }
 
 template <int D>
 void LevelSet<D>::restore(const Checkpoint& from) {
-    from.get("surface.phi", phi.values());
-    from.get("surface.layer", layer_.values());
-    from.get("surface.band", band_);
-    from.get("surface.layer_start", layer_start_);
+    get_planes(from, "surface.phi", phi);
+    get_planes(from, "surface.layer", layer_);
+    find_near();
+    refresh(phi, frame_.periodic(D - 1), layers_);
+    refresh(layer_, frame_.periodic(D - 1), wide());
+    collect_surface();
+    const auto plane = static_cast<std::size_t>(layer_.stride(D - 1));
+    for (std::size_t i = 0; i < layer_.size(); ++i)
+        if (is_near(static_cast<int>(i / plane)) && layer_[i] > 1) layer_[i] = 0;  // join_layers() finds them again
+    join_layers();
     find_inside();
 }
 
 template <int D>
 std::size_t LevelSet<D>::bytes() const {
-    return phi.size() * sizeof(real) + layer_.size() + inside_.size() + closed_.size() +
+    return phi.bytes() + layer_.bytes() + inside_.bytes() + closed_.bytes() + skin_of_ranks_.bytes() +
            (band_.capacity() + skin_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) + escaped_.capacity() +
            own_.capacity() * sizeof(int);
 }

@@ -4,11 +4,12 @@
 //                   beside the surface, which themselves keep their values: the zero does not move
 //   markers         where a marker has escaped, the level set has lost liquid: φ = min(φ, |x − x_p| − r) (Foster & Fedkiw 2001; Enright
 //   2002)
-// Over ranks each finds the values of its own planes of cells; which cells are of the band, layer by layer, everybody finds.
+// Over ranks each finds the values of its own planes of cells, and the band there and so far beyond its cuts that it is sure of its own.
 // The level set is thus the smooth part of the markers' shape: second order where the grid resolves it, and at rest exactly at rest.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "surface/marker_motion.hpp"
+#include "surface/level_set_ranks.hpp"
 #include "surface/markers.hpp"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ public:
     void advect(const MacVelocity<D>& u, real dt, int reach = 0);
     /// Over ranks, what others know of φ.
     void make_whole() { gather(phi); }
+    void make_layers_whole() { gather(layer_); }
     /// Joins spheres around escaped markers; answers how many of this rank's own had escaped. Markers must be sorted.
     std::size_t rescue_escaped(const Markers<D>& markers);
     /// How many of this rank's own markers that had escaped are outside even now: drops too small for the grid.
@@ -49,7 +51,8 @@ public:
 
     real cap() const { return (layers_ + 1) * frame_.h_max(); }
     int layers() const { return layers_; }
-    /// Cells of the band, layer by layer from the surface; layer 1 is beside it.
+    /// Cells of the band, layer by layer from the surface; layer 1 is beside it. Over ranks, those near this one's planes, in the order of one
+    /// process.
     const std::vector<Index<D>>& band() const { return band_; }
     /// Closed cells beside open ones, three deep.
     const std::vector<Index<D>>& skin() const { return skin_; }
@@ -67,7 +70,8 @@ public:
 
 private:
     template <class F>
-    void for_each_open_beside_closed(F&& f) const;
+    void for_each_open_beside_closed(const Grid<std::uint8_t, D>& closed, F&& f) const;
+    void find_skin(const Grid<std::uint8_t, D>& closed, Grid<std::uint8_t, D>& seen);
     void continue_into_solids();
     /// How wide the cell is across the surface next to it [m].
     real width_at(const Index<D>& I) const;
@@ -80,7 +84,14 @@ private:
     /// where a neighbour's distance is not known, it goes on as on the other side.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
     void find_inside();
+    /// Planes beyond its cuts in which a rank finds the band: a cell of the last layer with a root among the rank's own is that far from the
+    /// last of them.
+    int wide() const { return 2 * layers_; }
+    void find_near();
+    bool is_near(int plane) const { return near_.empty() || near_[static_cast<std::size_t>(plane)] != 0; }
     void find_surface();
+    void collect_surface();
+    void join_layers();
     void mark_changes_of_sign(const Index<D>& first, std::size_t at);
     void rescue_in_order(const Markers<D>& markers, real radius);
     void find_own();
@@ -88,7 +99,7 @@ private:
     template <class F>
     void for_each_own(std::size_t first, std::size_t last, F&& f) const;
     template <class F>
-    real sum_over_band(std::size_t end, F&& f) const;
+    real sum_over_band(int layers, F&& f) const;
     bool crosses_in_liquid(const Index<D>& I) const;
     void rescale_surface();
     void grow_band();
@@ -107,6 +118,9 @@ private:
     std::vector<real> value_;
     std::vector<std::uint8_t> escaped_;
     std::vector<int> own_;  // over ranks: places in the band of this rank's own cells
+    std::vector<char> near_;     // over ranks: the planes in which the band is found
+    BandOfRanks ranks_;
+    SkinOfRanks<D> skin_of_ranks_;
 };
 
 template <int D>

@@ -11,13 +11,13 @@ namespace weir::surface {
 
 template <int D>
 void LevelSet<D>::redistance() {
-    if (!skin_.empty()) gather(phi);  // one cell after the other: by everybody
     continue_into_solids();
     find_surface();
+    collect_surface();
     rescale_surface();
     grow_band();
     for (int layer = 2; layer <= layers_; ++layer) fill_layer(layer);
-    refresh(phi, frame_.periodic(D - 1), 2);  // curvature of cells beside the cuts; the continued velocity looks as far
+    refresh(phi, frame_.periodic(D - 1), layers_);  // as far as sums over the band go
 }
 
 template <int D>
@@ -36,25 +36,55 @@ void LevelSet<D>::find_inside() {
     });
 }
 
-/// Layer 1: the cells with a neighbour on the other side of the surface.
+/// Over ranks, the planes in which this one finds the band.
+template <int D>
+void LevelSet<D>::find_near() {
+    if (!over_ranks() || !near_.empty()) return;
+    const bool ring = frame_.periodic(D - 1);
+    near_ = planes_near(frame_.cells[D - 1], wide(), ring);
+    for (auto* bytes : {&layer_, &inside_, &closed_}) bytes->store().open(wide() + 1, ring);
+}
+
+/// Marks layer 1: the cells with a neighbour on the other side of the surface.
 template <int D>
 void LevelSet<D>::find_surface() {
-    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    find_near();
     find_inside();
-    gather(inside_);
+    refresh(inside_, frame_.periodic(D - 1), wide() + 1);
     const AllPlanes all;
-    for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t at) { mark_changes_of_sign(first, at); });
-    band_.clear();
+    for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t at) {
+        if (is_near(first[D - 1])) mark_changes_of_sign(first, at);
+    });
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
     for (std::size_t line = 0; line < layer_.size(); line += n) {
-        std::uint8_t *mark = layer_.data() + line, *end = mark + n;
         Index<D> I = frame_.index_of(line);
+        if (!is_near(I[D - 1])) continue;
+        std::uint8_t *mark = layer_.data() + line, *end = mark + n;
         for (auto* at = mark; (at = static_cast<std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)))) != nullptr; ++at) {
             I[0] = static_cast<int>(at - mark);
-            if (crosses_in_liquid(I))
-                band_.push_back(I);
-            else
-                *at = 0;
+            if (!crosses_in_liquid(I)) *at = 0;
         }
+    }
+}
+
+/// Its cells, in the order of the grid.
+template <int D>
+void LevelSet<D>::collect_surface() {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    band_.clear();
+    ranks_.rooted.assign(static_cast<std::size_t>(layers_), {});
+    auto& own = ranks_.rooted[0];
+    for (std::size_t line = 0; line < layer_.size(); line += n) {
+        Index<D> I = frame_.index_of(line);
+        if (!is_near(I[D - 1])) continue;
+        const std::uint8_t *mark = layer_.data() + line, *end = mark + n;
+        for (auto* at = mark; (at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)))) != nullptr;
+             ++at) {
+            I[0] = static_cast<int>(at - mark);
+            band_.push_back(I);
+        }
+        if (I[D - 1] < detail::own_share.begin) own.begin = band_.size();
+        if (I[D - 1] < detail::own_share.end) own.end = band_.size();
     }
     layer_start_[0] = 0;
     layer_start_[1] = band_.size();
@@ -113,22 +143,35 @@ void LevelSet<D>::rescale_surface() {
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }
 
-/// Layers 2 .. layers_: neighbours of the layer before. Cells outside hold ± cap.
+/// Layers 2 .. layers_: neighbours of the layer before.
 template <int D>
-void LevelSet<D>::grow_band() {
+void LevelSet<D>::join_layers() {
     for (int layer = 2; layer <= layers_; ++layer) {
         const std::size_t from = layer_begin(layer - 1), to = layer_end(layer - 1);
-        for (std::size_t i = from; i < to; ++i)
+        const auto& before = ranks_.rooted[static_cast<std::size_t>(layer) - 2];
+        auto& own = ranks_.rooted[static_cast<std::size_t>(layer) - 1];
+        for (std::size_t i = from; i < to; ++i) {
+            if (i == from + before.begin) own.begin = band_.size() - to;
+            if (i == from + before.end) own.end = band_.size() - to;
             for (int d = 0; d < D; ++d)
                 for (const int by : {-1, 1}) {
                     Index<D> J = band_[i];
-                    if (!frame_.step(J, d, by) || layer_(J) != 0) continue;
+                    if (!frame_.step(J, d, by) || !is_near(J[D - 1]) || layer_(J) != 0) continue;
                     layer_(J) = static_cast<std::uint8_t>(layer);
                     band_.push_back(J);
                 }
+        }
+        if (from + before.begin == to) own.begin = band_.size() - to;
+        if (from + before.end == to) own.end = band_.size() - to;
         layer_start_[static_cast<std::size_t>(layer)] = band_.size();
     }
     find_own();
+}
+
+/// The band; cells outside it hold ± cap.
+template <int D>
+void LevelSet<D>::grow_band() {
+    join_layers();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         const real far = cap();
         real* line = phi.data() + at;
@@ -320,38 +363,19 @@ real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     return fraction_of_halves<D>(here, slope);
 }
 
-/// Sum of f(I) over the open cells of the band up to place `end`; block by block of equal length, so that its order is fixed. Over ranks
-/// the cells of a block are of several: each finds the values of its own, and all add up all of them.
+/// Sum of f(I) over the open cells of the band up to a layer; block by block of equal length, so that its order is fixed.
 template <int D>
 template <class F>
-real LevelSet<D>::sum_over_band(std::size_t end, F&& f) const {
-    constexpr std::size_t block = 256;
-    std::vector<real> values;
-    if (over_ranks()) {
-        const Cut& cut = *detail::own_share.cut;
-        std::vector<int> owner(static_cast<std::size_t>(frame_.cells[D - 1]));
-        for (int rank = 0; rank < cut.ranks(); ++rank)
-            std::fill(owner.begin() + cut.at[static_cast<std::size_t>(rank)], owner.begin() + cut.at[static_cast<std::size_t>(rank) + 1],
-                      rank);
-        const auto owner_of = [&](std::size_t i) { return static_cast<std::size_t>(owner[static_cast<std::size_t>(band_[i][D - 1])]); };
-        std::vector<std::size_t> begins(static_cast<std::size_t>(cut.ranks()) + 1);
-        for (std::size_t i = 0; i < end; ++i) ++begins[owner_of(i) + 1];
-        std::partial_sum(begins.begin(), begins.end(), begins.begin());
-        std::vector<real> by_rank(end);
-        const std::size_t first = begins[static_cast<std::size_t>(slabs().rank())];
-        const auto own_end = static_cast<int>(std::lower_bound(own_.begin(), own_.end(), static_cast<int>(end)) - own_.begin());
-        parallel_for(0, own_end, [&](int i) {
-            const Index<D>& I = band_[static_cast<std::size_t>(own_[static_cast<std::size_t>(i)])];
-            by_rank[first + static_cast<std::size_t>(i)] = closed_.empty() || !closed_(I) ? f(I) : 0;
-        });
-        slabs().gather_parts(by_rank.data(), sizeof(real), begins);
-        values.resize(end);
-        for (std::size_t i = 0; i < end; ++i) values[i] = by_rank[begins[owner_of(i)]++];
-    }
+real LevelSet<D>::sum_over_band(int layers, F&& f) const {
+    const auto add = [&](real& sum, std::size_t at) {
+        if (closed_.empty() || !closed_(band_[at])) sum += f(band_[at]);
+    };
+    if (over_ranks() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
+    constexpr std::size_t block = BandOfRanks::block;
+    const std::size_t end = layer_end(layers);
     return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {
         real sum = 0;
-        for (std::size_t i = static_cast<std::size_t>(b) * block; i < std::min(end, static_cast<std::size_t>(b + 1) * block); ++i)
-            if (closed_.empty() || !closed_(band_[i])) sum += values.empty() ? f(band_[i]) : values[i];
+        for (std::size_t i = static_cast<std::size_t>(b) * block; i < std::min(end, static_cast<std::size_t>(b + 1) * block); ++i) add(sum, i);
         return sum;
     });
 }
@@ -372,7 +396,7 @@ real LevelSet<D>::volume() const {
             for (std::size_t i = 0; i < plane; ++i) count += inside[i] & (layer[i] == 0);
         return real(count);
     });
-    return frame_.cell_volume() * (full + sum_over_band(band_.size(), [&](const Index<D>& I) { return fraction(I); }));
+    return frame_.cell_volume() * (full + sum_over_band(layers_, [&](const Index<D>& I) { return fraction(I); }));
 }
 
 /// dV/dshift, by a difference over half a cell.
@@ -380,7 +404,7 @@ template <int D>
 real LevelSet<D>::area() const {
     const real width = 0.25 * frame_.h_min();
     const real sum =
-        sum_over_band(layer_end(std::min(2, layers_)), [&](const Index<D>& I) { return fraction(I, width) - fraction(I, -width); });
+        sum_over_band(std::min(2, layers_), [&](const Index<D>& I) { return fraction(I, width) - fraction(I, -width); });
     return frame_.cell_volume() / (2 * width) * sum;
 }
 
@@ -388,6 +412,12 @@ template real fraction_below_plane(real, const Vec<2>&);
 template real fraction_below_plane(real, const Vec<3>&);
 template real fraction_of_halves(real, const std::array<Vec<2>, 2>&);
 template real fraction_of_halves(real, const std::array<Vec<3>, 2>&);
+template void LevelSet<2>::find_near();
+template void LevelSet<3>::find_near();
+template void LevelSet<2>::collect_surface();
+template void LevelSet<3>::collect_surface();
+template void LevelSet<2>::join_layers();
+template void LevelSet<3>::join_layers();
 template void LevelSet<2>::find_inside();
 template void LevelSet<3>::find_inside();
 template void LevelSet<2>::redistance();

@@ -12,7 +12,7 @@ static void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>&
     const real diagonal = norm(frame.h);
     const auto near = placement.near(box);
     const std::uint8_t mark = near.size() == 1 && near.front() + 2 < 256 ? static_cast<std::uint8_t>(near.front() + 2) : 1;
-    for_each_in(placement.changed()[box].lo, placement.changed()[box].hi, [&](const Index<D>& I) {
+    for_each_held(near_solid, placement.changed()[box].lo, placement.changed()[box].hi, [&](const Index<D>& I) {
         const real corner = placement.corner_distance(I);
         const bool is_near =
             corner < 0 || (corner < 2 * diagonal && placement.solids().distance(frame.centre(I), near, diagonal) < diagonal);

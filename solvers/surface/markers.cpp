@@ -5,6 +5,7 @@
 #include "core/slabs.hpp"
 #include "surface/marker_lanes.hpp"
 
+#include <cstring>
 #include <numeric>
 
 namespace weir::surface {
@@ -87,13 +88,22 @@ void Markers<D>::sort(const Frame<D>& frame) {
     cell_.resize(static_cast<std::size_t>(n));
     from_.resize(static_cast<std::size_t>(n));
     scratch_.resize(static_cast<std::size_t>(n));
-    cell_start_.assign(cells + 2, 0);
+    const int planes = frame.cells[D - 1];
+    plane_ = cells / static_cast<std::size_t>(planes);
+    cell_start_.resize(2, plane_, planes + 1, 0);
+    cell_start_.fill(0);
+    int* start = cell_start_.data();
     for_each_block(n, [&](int first, int last) { find_cells(frame, first, last); });
-    for (const int cell : cell_) ++cell_start_[static_cast<std::size_t>(cell) + 2];
-    for (std::size_t i = 2; i <= cells; ++i) cell_start_[i] += cell_start_[i - 1];
+    for (const int cell : cell_) ++start[static_cast<std::size_t>(cell) + 2];
+    int before = 0;
+    for (int plane = 0; plane < planes; ++plane) {
+        if (!cell_start_.holds(plane)) continue;
+        const std::size_t first = 2 + static_cast<std::size_t>(plane) * plane_;
+        for (std::size_t i = first; i < first + plane_; ++i) before = start[i] += before;
+    }
     for (int p = 0; p < n; ++p)  // the next free place of a cell is the start of the one behind it, until that is its own
-        from_[static_cast<std::size_t>(cell_start_[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1]++)] = p;
-    cell_start_.pop_back();
+        from_[static_cast<std::size_t>(start[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1]++)] = p;
+    find_plane_starts(frame);
     find_rows(frame);
     for_each_array([&](std::vector<real>& array) {
         for_each_block(n, [&](int first, int last) {
@@ -109,14 +119,42 @@ void Markers<D>::sort(const Frame<D>& frame) {
     });
 }
 
+/// Where the starts of a plane and of the one before are not held, there is no marker.
+template <int D>
+void Markers<D>::find_plane_starts(const Frame<D>& frame) {
+    const int planes = frame.cells[D - 1];
+    plane_start_.assign(static_cast<std::size_t>(planes) + 1, 0);
+    for (int plane = 0; plane < planes; ++plane) {
+        const auto at = static_cast<std::size_t>(plane);
+        const bool held = cell_start_.holds(plane) && (plane == 0 || cell_start_.holds(plane - 1));
+        plane_start_[at + 1] = plane_start_[at] + (held ? begin((at + 1) * plane_) - begin(at * plane_) : 0);
+    }
+}
+
+/// The first cell before which there are at least so many markers.
+template <int D>
+std::size_t Markers<D>::first_cell_from(std::size_t least) const {
+    const auto plane = std::lower_bound(plane_start_.begin(), plane_start_.end(), least) - plane_start_.begin();
+    if (plane == 0) return 0;
+    const int *start = cell_start_.data(), *end = start + static_cast<std::size_t>(plane) * plane_;
+    return static_cast<std::size_t>(std::lower_bound(end - plane_, end, static_cast<int>(least)) - start);
+}
+
+template <int D>
+std::size_t Markers<D>::cell_with(std::size_t p) const {
+    return first_cell_from(p + 1) - 1;
+}
+
 template <int D>
 void Markers<D>::find_rows(const Frame<D>& frame) {
     const auto n = static_cast<std::size_t>(frame.cells[0]);
     rows_.resize(product(frame.cells) / n);
+    const std::size_t rows_in_plane = plane_ / n;
     parallel_for(0, static_cast<int>(rows_.size()), [&](int row) {
-        const auto first = cell_start_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * n);
-        const auto last = first + static_cast<std::ptrdiff_t>(n);
+        const int *const first = cell_start_.data() + static_cast<std::size_t>(row) * n, *const last = first + n;
         Extent& extent = rows_[static_cast<std::size_t>(row)] = {frame.cells[0], 0};
+        const std::size_t plane = static_cast<std::size_t>(row) / rows_in_plane;
+        if (plane_start_[plane] == plane_start_[plane + 1]) return;
         if (*first == *last) return;
         extent.begin = static_cast<int>(std::upper_bound(first, last, *first) - first) - 1;
         extent.end = static_cast<int>(std::lower_bound(first, last, *last) - first);
@@ -134,6 +172,7 @@ template <int D>
 void Markers<D>::keep_held(const Frame<D>& frame, const Cut& cut) {
     if (cut.empty()) return;
     retain([&](std::size_t p) { return holds(frame, cut, slabs().rank(), frame.cell_of(position(p))[D - 1]); });
+    trim();
     sort(frame);
 }
 
@@ -249,6 +288,39 @@ void Markers<D>::gather(const Frame<D>& frame, Markers& all) const {
 }
 
 template <int D>
+void Markers<D>::gather_to_first(const Frame<D>& frame, Markers& all) const {
+    const auto [first, last] = own(frame);
+    std::vector<std::vector<real>*> to;
+    all.for_each_array([&](std::vector<real>& array) { to.push_back(&array); });
+    std::size_t number = 0;
+    for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
+        std::vector<real>& whole = *to[number++];
+        whole.clear();
+        slabs().stream_to_first(array.data() + begin, count * sizeof(real), [&](const void* data, std::size_t bytes) {
+            const std::size_t old = whole.size();
+            whole.resize(old + bytes / sizeof(real));
+            std::memcpy(whole.data() + old, data, bytes);
+        });
+    });
+}
+
+template <int D>
+void Markers<D>::trim() {
+    const std::size_t capacity = count() + count() / 8;
+    const auto fit = [&](auto& list) {
+        if (list.capacity() <= capacity) return;
+        auto fitting = std::move(list);
+        list = {};
+        list.reserve(capacity);
+        list.insert(list.end(), fitting.begin(), fitting.end());
+    };
+    cell_.clear(), from_.clear(), scratch_.clear();
+    for (auto* list : {&cell_, &from_}) fit(*list);
+    fit(scratch_);
+    for_each_array([&](std::vector<real>& array) { fit(array); });
+}
+
+template <int D>
 void Markers<D>::reserve(std::size_t capacity) {
     for_each_array([&](std::vector<real>& array) { array.reserve(capacity); });
     scratch_.reserve(capacity);
@@ -258,7 +330,8 @@ void Markers<D>::reserve(std::size_t capacity) {
 
 template <int D>
 std::size_t Markers<D>::bytes() const {
-    std::size_t total = (cell_.capacity() + from_.capacity() + cell_start_.capacity()) * sizeof(int) + rows_.capacity() * sizeof(Extent) +
+    std::size_t total = (cell_.capacity() + from_.capacity()) * sizeof(int) + cell_start_.bytes() + rows_.capacity() * sizeof(Extent) +
+                        plane_start_.capacity() * sizeof(std::size_t) +
                         scratch_.capacity() * sizeof(real);
     for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
     for (const auto& list : going_) total += list.capacity() * sizeof(int);

@@ -2,6 +2,7 @@
 // Arrays by component, sorted by cell after every motion: all that happens between markers and grid runs in this fixed order.
 #pragma once
 #include "core/parallel.hpp"
+#include "core/plane_store.hpp"
 #include "core/types.hpp"
 #include "surface/frame.hpp"
 
@@ -55,19 +56,21 @@ public:
     /// order of the ranks, so that the stable sort finds them as in one process. Those that are beyond the domain go, where `leave`;
     /// answers how many were this rank's own, before and of those that left.
     std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Cut& cut, bool leave);
-    /// All markers of all ranks, to `all`, as they are sorted in one process.
+    /// All markers of all ranks, to `all`, as they are sorted in one process; or to that of the first rank alone.
     void gather(const Frame<D>& frame, Markers& all) const;
+    void gather_to_first(const Frame<D>& frame, Markers& all) const;
     /// Those of this rank's own planes: [first, second). Sorted.
     std::pair<std::size_t, std::size_t> own(const Frame<D>& frame) const {
-        const std::size_t plane = product(frame.cells) / static_cast<std::size_t>(frame.cells[D - 1]);
         const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(frame.cells[D - 1]);
-        return {begin(plane * static_cast<std::size_t>(lo)), begin(plane * static_cast<std::size_t>(hi))};
+        return {plane_start_[static_cast<std::size_t>(lo)], plane_start_[static_cast<std::size_t>(hi)]};
     }
 
-    /// Sorts by cell, x fastest, stable. Afterwards the markers of cell I are begin(I) .. end(I).
+    /// Sorts by cell, x fastest, stable. Afterwards the markers of cell I are begin(I) .. end(I), in planes whose markers are held.
     void sort(const Frame<D>& frame);
-    std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell]); }
-    std::size_t end(std::size_t cell) const { return static_cast<std::size_t>(cell_start_[cell + 1]); }
+    std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(cell_start_.data()[cell]); }
+    std::size_t end(std::size_t cell) const { return static_cast<std::size_t>(cell_start_.data()[cell + 1]); }
+    /// The cell that holds marker p.
+    std::size_t cell_with(std::size_t p) const;
     /// f(I, begin, end) for each cell of this rank's own planes that holds markers, after sort(); threaded by equal numbers of markers.
     template <class F>
     void for_each_occupied_cell(const Frame<D>& frame, F&& f) const;
@@ -76,7 +79,7 @@ public:
     void for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const;
     /// The part of a row of cells along x that holds markers; `row`: the place of its first cell in memory, over the length of rows.
     const Extent& in_row(std::size_t row) const { return rows_[row]; }
-    int in_cell(std::size_t cell) const { return cell_start_[cell + 1] - cell_start_[cell]; }
+    int in_cell(std::size_t cell) const { return cell_start_.data()[cell + 1] - cell_start_.data()[cell]; }
 
     /// f(array) for every array of one value a marker.
     template <class F>
@@ -86,16 +89,23 @@ public:
         const_cast<Markers*>(this)->for_each_array([&](const std::vector<real>& array) { f(array); });
     }
     void reserve(std::size_t capacity);
+    /// Room for an eighth more than there are and no more.
+    void trim();
     std::size_t bytes() const;
 
 private:
     void find_cells(const Frame<D>& frame, int first, int last);
+    void find_plane_starts(const Frame<D>& frame);
+    std::size_t first_cell_from(std::size_t least) const;
     void find_rows(const Frame<D>& frame);
     void find_holders(const Frame<D>& frame, const Cut& cut);
     std::int64_t find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
-    std::vector<int> cell_, cell_start_, from_;
+    std::vector<int> cell_, from_;
+    PlaneStore<int> cell_start_;            // with two entries more at its end; over ranks, of the planes whose markers are held
+    std::vector<std::size_t> plane_start_;  // how many markers there are before each plane
+    std::size_t plane_ = 0;                 // cells of one
     std::vector<Extent> rows_;
     std::vector<real> scratch_;
     // Over ranks: who holds the markers of each plane, which go to each rank, which do not stay, what travels, array by array
@@ -121,13 +131,10 @@ template <class F>
 void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
     constexpr int blocks = 64;
     const auto [first, last] = own(frame);
-    const auto first_cell = [&, begin = first, count = last - first](int block) {  // the first whose markers begin in this block
-        const auto least = static_cast<int>(begin + count * static_cast<std::size_t>(block) / blocks);
-        return std::lower_bound(cell_start_.begin(), cell_start_.end() - 1, least) - cell_start_.begin();
+    const auto first_cell = [&, begin = first, count = last - first](int block) {
+        return first_cell_from(begin + count * static_cast<std::size_t>(block) / blocks);
     };
-    parallel_for(0, blocks, [&](int block) {
-        for_occupied_cells(frame, static_cast<std::size_t>(first_cell(block)), static_cast<std::size_t>(first_cell(block + 1)), f);
-    });
+    parallel_for(0, blocks, [&](int block) { for_occupied_cells(frame, first_cell(block), first_cell(block + 1), f); });
 }
 
 template <int D>

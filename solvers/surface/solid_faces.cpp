@@ -29,7 +29,7 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
         forget_changed(changed, a);
         for (std::size_t box = 0; box < changed.size(); ++box)
             changed[box].faces(a).in_order([&](const Index<D>& I) {
-                if (open(I) >= least_trusted_fraction) return;
+                if (!state.u[a].store().holds(I[D - 1]) || open(I) >= least_trusted_fraction) return;
                 if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) return;  // the side's own
                 for (std::size_t other = 0; other < box; ++other)
                     if (changed[other].faces(a).holds(I)) return;  // found there
@@ -50,6 +50,7 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
         faces_[at].reserve(2 * faces_[at].size());
         solid_[at].reserve(2 * solid_[at].size());
     }
+    any_ = sum_of_ranks(std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) > 0;
 }
 
 template <int D>
@@ -101,7 +102,7 @@ Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, cons
 /// Over ranks, each those of its own planes.
 template <int D>
 void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, const Frame<D>& frame) {
-    if (std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) refresh_faces(u, frame, 1);
+    if (any_) refresh_faces(u, frame, 1);
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         parallel_for(0, static_cast<int>(solid_[at].size()), [&](int i) {

@@ -34,8 +34,9 @@ private:
         bool no_slip = false;
         real value = 0;  // what is to stand there
     };
-    FaceLists<D> faces_;
+    FaceLists<D> faces_;  // over ranks, those near this one's planes
     std::array<std::vector<SolidFace>, D> solid_;  // in the order of faces_
+    bool any_ = false;  // of all ranks
 };
 
 }  // namespace weir::surface

@@ -33,7 +33,7 @@ template <int D>
 void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, LevelSet<D>& surface) {
     Grid<real, D> raw(frame.cells);
     Grid<std::uint8_t, D> known(frame.cells);
-    for_each_cell(frame.cells, [&](const Index<D>& I) {
+    for_each_held(raw, Index<D>{}, frame.cells, [&](const Index<D>& I) {
         raw(I) = liquid.distance(frame.centre(I));
         known(I) = std::abs(raw(I)) < surface.cap() && !at_contact(liquid, solids, frame, frame.centre(I), raw(I));
         surface.phi(I) = known(I) ? raw(I) : raw(I) < 0 ? -surface.cap() : surface.cap();
@@ -64,6 +64,8 @@ void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>
             surface.phi(I) = sum / count;
             filled(I) = 1;
         });
+        refresh(surface.phi, frame.periodic(D - 1), 2);
+        refresh(filled, frame.periodic(D - 1), 2);
         known = filled;
     }
     for_each_cell(frame.cells, [&](const Index<D>& I) {

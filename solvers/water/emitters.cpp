@@ -1,5 +1,6 @@
 #include "water/emitters.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace weir::water {
@@ -45,10 +46,9 @@ real section(const geometry::Shape<D>& shape, const Frame<D>& frame, Index<D> I,
 
 template <int D>
 void Emitter<D>::place(const Frame<D>& frame) {
-    Grid<std::uint8_t, D> covered(frame.cells);
     lo = frame.cells, hi = {};
     const real diagonal = norm(frame.h);
-    for (std::size_t i = 0; i < covered.size(); ++i) {
+    for (std::size_t i = 0; i < product(frame.cells); ++i) {
         const Index<D> I = frame.index_of(i);
         const real distance = shape->distance(frame.centre(I));
         if (distance > 2 * diagonal) continue;
@@ -56,9 +56,13 @@ void Emitter<D>::place(const Frame<D>& frame) {
         if (distance > 0.5 * diagonal) continue;
         bool any = false;
         for_each_part(frame, I, -1, [&](const Vec<D>& x) { any = any || shape->contains(x); });
-        covered[i] = any;
         if (any) cells.push_back(i);
     }
+    const auto covers = [&](const Index<D>& I) {
+        std::size_t at = 0;
+        for (int d = D - 1; d >= 0; --d) at = at * static_cast<std::size_t>(frame.cells[d]) + static_cast<std::size_t>(I[d]);
+        return std::binary_search(cells.begin(), cells.end(), at);
+    };
     for (int a = 0; a < D; ++a) {
         const Index<D> extent = frame.cells + e<D>(a);
         const auto place_in_memory = [&](const Index<D>& I) {
@@ -70,7 +74,7 @@ void Emitter<D>::place(const Frame<D>& frame) {
             const Index<D> I = frame.index_of(cell);
             for (const int side : {0, 1}) {
                 Index<D> beyond = I;
-                const bool inside = frame.step(beyond, a, side == 0 ? -1 : 1), within = inside && covered(beyond);
+                const bool inside = frame.step(beyond, a, side == 0 ? -1 : 1), within = inside && covers(beyond);
                 if (within && side == 1) continue;  // it is the next cell's lower face
                 const bool ahead = velocity[a] * (side == 0 ? -1 : 1) > 0;
                 if (ahead && !inside) continue;  // into a wall nothing pours

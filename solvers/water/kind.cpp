@@ -94,16 +94,16 @@ scene::SolverKind kind() {
     for (Key& key : LiquidHeat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = effect_schemas();
     schema.without = {"sides.*.smoke", "sides.*.profile", "emitters.temperature", "emitters.smoke", "initial.smoke"};
-    scene::SolverKind water{
-        schema,
-        staggered::make<Water>,
-        {{"velocity", "pressure", "level_set", "position", "velocity"},
-         {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
-          "faces to markers"},
-         "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-        over_ranks,
-        scene::Shared::by_planes,
-        "the matrix of the pressure, which cells are of the level set's band and which faces continue the velocity, viscosity"};
+    scene::SolverKind water{schema,
+                            staggered::make<Water>,
+                            {{"velocity", "pressure", "level_set", "position", "velocity"},
+                             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project",
+                              "extrapolate", "faces to markers"},
+                             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+                            over_ranks,
+                            scene::Shared::by_planes,
+                            "the pressure's levels of fewer than 20,000 cells, the level set's continuation into solids, viscosity"};
+    water.holds_own_part = holds_own_planes;
     water.sends = traffic_of_step;
     return water;
 }

@@ -12,10 +12,16 @@ using poisson::Cell;
 static real per_open(real weight, real open) { return open > 0 ? weight / open : 0; }
 
 template <int D>
+static Index<D> lines_of(Index<D> cells) {
+    cells[0] = 1;
+    return cells;
+}
+
+template <int D>
 SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice)
     : frame_(frame),
       b_(frame.cells),
-      liquid_(b_.size() / static_cast<std::size_t>(frame.cells[0])),
+      liquid_(lines_of(frame.cells)),
       solver_(poisson::make_solver<D>(choice.method, choice.options)),
       tolerance_(choice.options.tolerance),
       h2_(frame.h[0] * frame.h[0]),
@@ -31,10 +37,24 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
 
 template <int D>
 void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state) {
+    const auto find = [&] {
+        find_liquid(surface, closed);
+        bring_liquid();
+        state.cells = A_.cells;
+        for (int a = 0; a < D; ++a) set_weights(surface, state, a);
+        refresh(A_.weight[D - 1], frame_.periodic(D - 1));  // those above the last cells
+    };
+    if (A_.cells.store().windowed()) return find();
     const AllPlanes all;
-    find_liquid(surface, closed);
-    state.cells = A_.cells;
-    for (int a = 0; a < D; ++a) set_weights(surface, state, a);
+    find();
+}
+
+/// Over ranks, what is liquid beside the cuts.
+template <int D>
+void SurfacePressure<D>::bring_liquid() {
+    if (!over_ranks()) return;
+    const std::array<Planes, 2> both{planes_of(A_.cells), planes_of(liquid_)};
+    slabs().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));
 }
 
 /// What each cell is, and where the liquid of each line begins and ends: everything below looks at that part of the line only.
@@ -58,7 +78,10 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
         while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
         liquid_[at / static_cast<std::size_t>(n)] = extent;
     });
-    has_liquid_ = std::any_of(liquid_.begin(), liquid_.end(), [](const Extent& extent) { return extent.begin < extent.end; });
+    const int lines = static_cast<int>(liquid_.stride(D - 1)), planes = frame_.cells[D - 1];
+    const int begin = detail::own_share.lower(0), end = detail::own_share.upper(planes);
+    has_liquid_ = sum_of_ranks(std::any_of(liquid_.data() + begin * lines, liquid_.data() + end * lines,
+                                           [](const Extent& extent) { return extent.begin < extent.end; })) > 0;
 }
 
 /// Face weights: the open fraction between liquid cells, over θ where the surface cuts the line between the centres.
@@ -174,7 +197,9 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         return nothing_to_do_;
     }
     set_rhs(state, surface, dt, sigma, curvature);
-    {
+    if (A_.cells.store().windowed()) {
+        solver_->setup(A_);
+    } else {
         const AllPlanes all;
         solver_->setup(A_);
     }
@@ -245,7 +270,7 @@ void SurfacePressure<D>::subtract_surface_gradient(MacState<D>& state, const Lev
 
 template <int D>
 real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
-    const int n = frame_.cells[0], planes = frame_.cells[D - 1], lines = static_cast<int>(liquid_.size()) / planes;
+    const int n = frame_.cells[0], planes = frame_.cells[D - 1], lines = static_cast<int>(liquid_.stride(D - 1));
     const auto of_line = [&](int line) {
         const auto [begin, end] = liquid_[static_cast<std::size_t>(line)];
         std::array<real, row_block> divergence;
@@ -271,8 +296,8 @@ real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
 
 template <int D>
 std::size_t SurfacePressure<D>::bytes() const {
-    std::size_t total = A_.cells.size() + b_.size() * sizeof(real) + liquid_.size() * sizeof(Extent) + solver_->bytes();
-    for (const auto& weight : A_.weight) total += weight.size() * sizeof(real);
+    std::size_t total = A_.cells.bytes() + b_.bytes() + liquid_.bytes() + solver_->bytes();
+    for (const auto& weight : A_.weight) total += weight.bytes();
     return total;
 }
 

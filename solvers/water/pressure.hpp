@@ -24,8 +24,8 @@ public:
     SurfacePressure() = default;
     SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice);
 
-    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells. Over ranks everybody finds all of it, of the
-    /// whole φ.
+    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells. Over ranks each finds its own planes of it
+    /// where it holds no more, else all of the whole φ.
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
     /// Faces follow the pressure as far as state.mobility says; state.u must be that part of itself already.
     void hold_back(const MacState<D>& state);
@@ -44,6 +44,7 @@ public:
 
 private:
     const poisson::Report& solve(MacState<D>& state);
+    void bring_liquid();
     void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
     real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;
@@ -59,7 +60,7 @@ private:
     Frame<D> frame_;
     poisson::Operator<D> A_;      // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere
     Grid<real, D> b_;             // likewise
-    std::vector<Extent> liquid_;  // of every line of cells along x
+    Grid<Extent, D> liquid_;      // of every line of cells along x
     bool has_liquid_ = false;
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;

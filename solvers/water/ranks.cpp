@@ -1,9 +1,19 @@
 // What several ranks that run one scene of liquid have of one another. Each owns the planes of cells between two cuts and the markers in
 // them, and knows the markers of one plane more beyond either cut.
 #include "core/error.hpp"
+#include "staggered/own_planes.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
+
+bool holds_own_planes(const scene::Scene& scene) {
+    if (!staggered::holds_own_planes(scene) || scene.effect("viscosity")) return false;
+    const auto cubic = [&]<int D>() {
+        const Lattice<D> lattice(scene);
+        return *std::max_element(lattice.h.begin(), lattice.h.end()) <= *std::min_element(lattice.h.begin(), lattice.h.end()) * (1 + 1e-9);
+    };
+    return scene.dim() == 2 ? cubic.operator()<2>() : cubic.operator()<3>();
+}
 
 /// The velocity as far beyond the cuts as anything moves in the step, and reads there: a marker or a cell at the end of its path, and the
 /// markers of one plane beyond.
@@ -18,6 +28,16 @@ void Water<D>::bring_faces(real dt) {
     const real cells = dt * fastest * frame_.inv_h[D - 1];
     reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
     refresh_faces(state_.u, frame_, reach_);
+    know_solids();
+}
+
+/// Solids as far as liquid moves, where this rank holds no more than its own planes.
+template <int D>
+void Water<D>::know_solids() {
+    if (kept_ == 0 || !solids_.any() || near_solid_.store().reaches(reach_)) return;
+    solids_.know(state_, reach_);
+    for (auto* bytes : {&closed_, &near_solid_}) bytes->store().open(reach_, frame_.periodic(D - 1));
+    mark_closed();
 }
 
 /// Markers beyond open sides go, and over ranks all go to those that hold them now. How many there were, and how many have gone.
@@ -82,6 +102,7 @@ void Water<D>::check_own() const {
 template <int D>
 void Water<D>::make_whole() const {
     if (whole_) return;
+    if (kept_ > 0) return bring_beside();
     const OwnPlanes mine(cut_);
     auto& own = const_cast<Water&>(*this);  // what is written is what was not here: the state stays the same
     for (int a = 0; a < D; ++a) gather(own.state_.u[a]);
@@ -90,12 +111,64 @@ void Water<D>::make_whole() const {
     whole_ = true;
 }
 
+/// Where each holds its own planes alone, what it looks at beside them. The level set is known there since it is a distance.
+template <int D>
+void Water<D>::bring_beside() const {
+    const OwnPlanes mine = own_planes();
+    auto& state = const_cast<MacState<D>&>(state_);
+    std::vector<Planes> all{planes_of(state.p)};
+    for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
+    slabs().refresh(cut_, all, 2, frame_.periodic(D - 1));
+    whole_ = true;
+}
+
 template <int D>
 void Water<D>::gather_markers() const {
-    if (cut_.empty() || markers_whole_) return;
+    if (cut_.empty() || markers_whole_ || kept_ > 0) return;
     const OwnPlanes mine(cut_);
     markers_.gather(frame_, all_markers_);
     markers_whole_ = true;
+}
+
+/// The arrays of a grid's field that is shown.
+template <int D>
+std::vector<Grid<real, D>*> Water<D>::shown(const std::string& field) const {
+    auto& own = const_cast<Water&>(*this);
+    std::vector<Grid<real, D>*> list;
+    if (field == "velocity")
+        for (int a = 0; a < D; ++a) list.push_back(&own.state_.u[a]);
+    if (field == "pressure") list.push_back(&own.state_.p);
+    if (field == level_set_name) list.push_back(&own.surface_.phi);
+    return list;
+}
+
+/// The level set always: the frame may show its surface.
+template <int D>
+std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std::string>& names) const {
+    if (kept_ == 0) return nullptr;
+    struct Lent final : Brought {
+        const Water& solver;
+        std::vector<Grid<real, D>*> grids{};
+        explicit Lent(const Water& s) : solver(s) {}
+        ~Lent() override {
+            const OwnPlanes mine = solver.own_planes();
+            for (auto* grid : grids) grid->store().close();
+            solver.all_markers_.for_each_array([](std::vector<real>& array) { std::vector<real>().swap(array); });
+        }
+    };
+    auto lent = std::make_unique<Lent>(*this);
+    make_whole();
+    const OwnPlanes mine = own_planes();
+    const auto named = [&](const std::string& name) { return names.empty() || std::find(names.begin(), names.end(), name) != names.end(); };
+    for (const std::string name : {"velocity", "pressure", level_set_name}) {
+        if (name != level_set_name && !named(name)) continue;
+        for (auto* grid : shown(name)) {
+            gather_to_first(*grid);
+            lent->grids.push_back(grid);
+        }
+    }
+    markers_.gather_to_first(frame_, all_markers_);
+    return lent;
 }
 
 #define WEIR_INSTANTIATE(D)                                      \
@@ -104,6 +177,7 @@ void Water<D>::gather_markers() const {
     template void Water<D>::rub(real);                           \
     template void Water<D>::check_own() const;                   \
     template void Water<D>::make_whole() const;                  \
+    template std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std::string>&) const; \
     template void Water<D>::gather_markers() const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -4,6 +4,8 @@
 #include "surface/measure.hpp"
 #include "water/solver.hpp"
 
+#include <numeric>
+
 namespace weir::water {
 
 using poisson::Cell;
@@ -15,6 +17,7 @@ FieldSet Water<D>::fields() const {
     const Markers<D>& markers = all_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
+    if (kept_ > 0) set.cut = &cut_;
     FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, marker_set_name, {}};
     FieldView carried{"velocity", "m/s", Where::particle, marker_set_name, {}};
     for (int a = 0; a < D; ++a) {
@@ -36,11 +39,10 @@ FieldSet Water<D>::fields() const {
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
     make_whole();
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine = own_planes();
     const auto [first, last] = markers_.own(frame_);
     const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
     const std::int64_t escaped = sum_of_ranks(escaped_), reseeded = sum_of_ranks(reseeded_);
-    const AllPlanes all;
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"marker_volume", list[0].unit, markers_.volume * count});
     list.push_back({"markers", "", count});
@@ -58,14 +60,20 @@ std::vector<Integral> Water<D>::integrals() const {
 template <int D>
 void Water<D>::save(Checkpoint& to) const {
     make_whole();
-    gather_markers();
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine = own_planes();
+    if (kept_ == 0) const_cast<LevelSet<D>&>(surface_).make_layers_whole();
     const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(escaped_), sum_of_ranks(reseeded_)};
     state_.save(to);
     if (bodies_) bodies_->save(to);
     surface_.save(to);
+    const auto [first, last] = markers_.own(frame_);
+    const std::vector<std::size_t> counts_of = of_ranks(last - first);
+    const auto before = std::accumulate(counts_of.begin(), counts_of.begin() + slabs().rank(), std::size_t{0});
+    const auto all = std::accumulate(counts_of.begin(), counts_of.end(), std::size_t{0});
     int at = 0;
-    all_markers().for_each_array([&](const std::vector<real>& array) { to.put("water.markers." + std::to_string(at++), array); });
+    markers_.for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
+        to.put_part("water.markers." + std::to_string(at++), std::span(array).subspan(begin, count), before, all);
+    });
     const std::array<real, 3> reals{volume_target_, markers_.volume, volume_shift_};
     to.put_value("water.reals", reals);
     to.put_value("water.counts", counts);
@@ -76,6 +84,8 @@ void Water<D>::save(Checkpoint& to) const {
 
 template <int D>
 void Water<D>::restore(const Checkpoint& from) {
+    const Cut whole;
+    const OwnPlanes mine(kept_ > 0 ? cut_ : whole, 1, kept_, frame_.periodic(D - 1));
     state_.restore(from);
     if (bodies_) bodies_->restore(from, solids_);
     place_solids(state_.time);
@@ -88,9 +98,12 @@ void Water<D>::restore(const Checkpoint& from) {
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
     if (hand_ && from.has("hand")) hand_->restore(from);
-    markers_.sort(frame_);
-    markers_.keep_held(frame_, cut_);
-    whole_ = true, markers_whole_ = false;
+    if (cut_.empty())
+        markers_.sort(frame_);
+    else
+        markers_.keep_held(frame_, cut_);
+    whole_ = kept_ == 0, markers_whole_ = false;
+    make_whole();
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
     mark_liquid_faces();
@@ -100,12 +113,13 @@ void Water<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
-                        (viscosity_ ? viscosity_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.size() + near_solid_.size() +
-                        not_solved_for_.size() + curvature_.size() * sizeof(real) + in_solids_.bytes();
+                        (viscosity_ ? viscosity_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.bytes() + near_solid_.bytes() +
+                        not_solved_for_.bytes() + curvature_.bytes() + in_solids_.bytes();
     if (!cut_.empty()) total += all_markers_.bytes();
     if (bodies_) total += bodies_->bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();
-    for (const auto& sum : sums_.sum) total += sum.size() * (sizeof(FaceSum) + 1);  // with its mark
+    for (const auto& sum : sums_.sum) total += sum.bytes();
+    for (const auto& known : known_) total += known.bytes();
     return total;
 }
 

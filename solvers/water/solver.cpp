@@ -8,7 +8,7 @@ namespace weir::water {
 /// the level set and free of divergence in the liquid, to the tolerance of the pressure.
 template <int D>
 StepReport Water<D>::step(real dt) {
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine = own_planes();
     bring_faces(dt);
     move_bodies(dt);
     move_solids(state_.time + dt);
@@ -53,15 +53,21 @@ template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
     solids_.place(state_, t);
-    for (const CellBox<D>& box : solids_.changed())
-        for_each_in(box.lo, box.hi, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
+    mark_closed();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
         for (std::size_t i = at; i < at + static_cast<std::size_t>(frame_.cells[0]); ++i)
             state_.cells[i] = closed_[i] ? poisson::Cell::solid : poisson::Cell::fluid;
     });
     surface_.set_closed(closed_);
-    mark_near_solids(solids_, frame_, near_solid_);
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
+}
+
+/// Where solids have been placed anew.
+template <int D>
+void Water<D>::mark_closed() {
+    for (const CellBox<D>& box : solids_.changed())
+        for_each_held(closed_, box.lo, box.hi, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
+    mark_near_solids(solids_, frame_, near_solid_);
 }
 
 template <int D>
@@ -83,7 +89,7 @@ void Water<D>::correct_surface(real dt) {
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
-    surface_.make_whole();
+    if (kept_ == 0) surface_.make_whole();
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 
@@ -241,14 +247,13 @@ void Water<D>::set_fixed_faces() {
     solids_.set_faces(state_);
     for (int a = 0; a < D; ++a) {
         auto& known = known_[static_cast<std::size_t>(a)];
-        Index<D> lo{}, hi = known.extent();
-        hi[a] = 1;
-        for_each_in(lo, hi, [&](Index<D> I) {
-            for (const int end : {0, 1}) {
-                I[a] = end == 0 ? 0 : frame_.cells[a];
-                if (!frame_.periodic(a) && !state_.sides.open(a, end)) known(I) = 1;
-            }
-        });
+        for (const int end : {0, 1}) {
+            if (frame_.periodic(a) || state_.sides.open(a, end)) continue;
+            Index<D> lo{}, hi = known.extent();
+            lo[a] = end == 0 ? 0 : frame_.cells[a];
+            hi[a] = lo[a] + 1;
+            for_each_in(lo, hi, [&](const Index<D>& I) { known(I) = 1; });
+        }
     }
 }
 

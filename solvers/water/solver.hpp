@@ -30,6 +30,10 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
+/// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where friction is solved for by everybody,
+/// nor where markers that have escaped from flat cells are looked at one after the other.
+bool holds_own_planes(const scene::Scene& scene);
+
 /// The registered solver "mac_water".
 scene::SolverKind kind();
 
@@ -62,6 +66,8 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
+    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
+    bool holds_own_planes() const override { return kept_ > 0; }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     Hand* hand() const override { return hand_.get(); }
@@ -94,6 +100,7 @@ private:
     void move_bodies(real dt);
     void move_solids(real t);
     void place_solids(real t);
+    void mark_closed();
     void move_surface(real dt);
     void pour_and_drain(real dt);
     void redistribute_markers();
@@ -120,7 +127,11 @@ private:
     std::array<std::int64_t, 2> let_depart();
     void check_own() const;
     void make_whole() const;
+    void bring_beside() const;
     void gather_markers() const;
+    void know_solids();
+    OwnPlanes own_planes() const { return OwnPlanes(cut_, 1, kept_, frame_.periodic(D - 1)); }
+    std::vector<Grid<real, D>*> shown(const std::string& field) const;
     const Markers<D>& all_markers() const { return cut_.empty() ? markers_ : all_markers_; }
     void rub(real dt);
 
@@ -138,6 +149,9 @@ private:
     real max_speed_rate() const;
 
     WaterOptions options_;
+    Cut cut_;                            // none in one process
+    int kept_;                           // where each rank holds its own planes alone, so many beyond its cuts at least; else 0
+    std::unique_ptr<OwnPlanes> making_;  // until all is made
     MacState<D> state_;
     Frame<D> frame_;
     std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none
@@ -167,9 +181,8 @@ private:
     real volume_shift_ = 0;                    // how far volume control moved the surface, all steps together [m]
     std::shared_ptr<Hand> hand_;               // none where the scene names none
     Passes passes_;
-    Cut cut_;                                           // none in one process
     int reach_ = 0;                                     // planes beyond the cuts that motion reads in this step
-    mutable bool whole_ = true, markers_whole_ = true;  // all planes stand here, not this rank's alone; all markers in all_markers_
+    mutable bool whole_ = true, markers_whole_ = true;  // all planes stand here, or those that this rank looks at; all markers in all_markers_
     mutable Markers<D> all_markers_;                    // over ranks, when somebody looks
 };
 

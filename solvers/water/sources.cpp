@@ -90,6 +90,7 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
         }
     });
     for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
+        if (!surface_.phi.store().holds(I[D - 1]) || (!closed_.empty() && !closed_.store().holds(I[D - 1]))) return;
         if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
             surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
     });
@@ -163,11 +164,15 @@ template <int D>
 void Water<D>::impose_emitters(real dt, real Emitter<D>::Face::*speed) {
     for (const auto& emitter : emitters_) {
         if (!emitter.works(state_.time, state_.time + dt)) continue;
-        for (int a = 0; a < D; ++a)
+        for (int a = 0; a < D; ++a) {
+            auto& known = known_[static_cast<std::size_t>(a)];
+            const auto plane = static_cast<std::size_t>(known.stride(D - 1));
             for (const auto& face : emitter.faces[static_cast<std::size_t>(a)]) {
+                if (!is_own_plane(static_cast<int>(face.at / plane))) continue;
                 state_.u[a][face.at] = face.*speed;
-                known_[static_cast<std::size_t>(a)][face.at] = 1;
+                known[face.at] = 1;
             }
+        }
         sync_periodic(state_.u, state_.sides);
     }
 }
@@ -177,10 +182,12 @@ template <int D>
 void Water<D>::carry_emitters_velocity(real dt) {
     for (const auto& emitter : emitters_) {
         if (!emitter.works(state_.time, state_.time + dt)) continue;
-        for (const std::size_t cell : emitter.cells)
+        for (const std::size_t cell : emitter.cells) {
+            if (!is_own_plane(frame_.index_of(cell)[D - 1])) continue;
             for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p)
                 if (emitter.shape->contains(markers_.position(p)))
                     for (int a = 0; a < D; ++a) markers_.v[static_cast<std::size_t>(a)][p] = emitter.velocity[a];
+        }
     }
 }
 
@@ -194,7 +201,8 @@ const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real dt) {
         not_solved_for_ = closed_;
     for (const auto& emitter : emitters_)
         if (emitter.works(state_.time, state_.time + dt))
-            for (const std::size_t cell : emitter.cells) not_solved_for_[cell] = 1;
+            for (const std::size_t cell : emitter.cells)
+                if (not_solved_for_.store().holds(frame_.index_of(cell)[D - 1])) not_solved_for_[cell] = 1;
     return not_solved_for_;
 }
 
@@ -224,10 +232,10 @@ void Water<D>::redistribute_markers() {
     }
     if (changed) markers_.sort(frame_);
     if (!heaps) return;
-    std::size_t cell = 0;
+    std::size_t cell = 0, first = 0, end = 0;  // of the cell's markers
     markers_.retain([&](std::size_t p) {
-        while (p >= markers_.end(cell)) ++cell;
-        return p < markers_.begin(cell) + many;
+        if (p >= end) cell = markers_.cell_with(p), first = markers_.begin(cell), end = markers_.end(cell);
+        return p < first + many;
     });
     markers_.sort(frame_);
 }

@@ -21,6 +21,9 @@ bool all_stick(const geometry::Solids<D>& solids) {
 template <int D>
 Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
+      cut_(cut_of(scene.index<D>("grid.cells")[D - 1], slabs().ranks())),
+      kept_(water::holds_own_planes(scene) ? static_cast<int>(std::ceil(options_.cfl)) + 3 : 0),
+      making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, 1, kept_, geometry::Sides<D>(scene).periodic(D - 1)) : nullptr),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       bodies_(BodiesInFlow<D>::make(scene)),
@@ -28,8 +31,7 @@ Water<D>::Water(const scene::Scene& scene)
       effects_(make_effects<D>(body_forces(), scene)),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
-      hand_(geometry::make_hand(scene, kinds_of_hand(scene))),
-      cut_(cut_of(frame_.cells[D - 1], slabs().ranks())) {
+      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
     if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
     refuse_flat_cells(scene, frame_);
     markers_ = all_markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
@@ -43,7 +45,7 @@ Water<D>::Water(const scene::Scene& scene)
     if (options_.sigma > 0) {
         curvature_ = Grid<real, D>(frame_.cells);
         effects_.declare(
-            {.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = product(frame_.cells) * sizeof(real)});
+            {.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = curvature_.bytes()});
     }
     if (options_.viscosity > 0 && state_.nu > 0) {
         viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));
@@ -65,6 +67,8 @@ Water<D>::Water(const scene::Scene& scene)
     set_fixed_faces();
     extend_velocity(0);
     seed_markers();
+    making_.reset();
+    whole_ = kept_ == 0;
 }
 
 /// Emitters, and sides through which liquid flows in: those are emitters of one layer of cells.
@@ -106,7 +110,8 @@ void Water<D>::refuse_buried_emitters(const scene::Scene& scene) const {
     const std::size_t named = scene.has("emitters") ? scene.root().tables("emitters").size() : 0;
     for (std::size_t i = 0; i < named && !closed_.empty(); ++i) {
         const auto& cells = emitters_[i].cells;
-        if (std::all_of(cells.begin(), cells.end(), [&](std::size_t cell) { return closed_[cell] != 0; }))
+        const auto is_open = [&](std::size_t cell) { return is_own_plane(frame_.index_of(cell)[D - 1]) && closed_[cell] == 0; };
+        if (sum_of_ranks(std::any_of(cells.begin(), cells.end(), is_open)) == 0)
             scene.refuse("emitters[" + std::to_string(i) + "]", "the emitter lies inside solids: nothing can leave it");
     }
 }
@@ -130,9 +135,11 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
 template <int D>
 void Water<D>::seed_markers() {
     const std::size_t cells = product(frame_.cells);
-    markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
+    refresh_faces(state_.u, frame_, 3);  // markers of a plane beyond the cuts look around themselves
+    if (!over_ranks()) markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);
+        if (over_ranks() && !markers_.holds(frame_, cut_, slabs().rank(), I[D - 1])) continue;
         if (surface_.phi(I) > norm(frame_.h)) continue;
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);
@@ -142,8 +149,10 @@ void Water<D>::seed_markers() {
         }
     }
     markers_.sort(frame_);
-    if (markers_.count() > 0)
-        markers_.volume = volume_target_ / static_cast<real>(markers_.count());
+    const auto [first, last] = markers_.own(frame_);
+    const std::int64_t count = sum_of_ranks(static_cast<std::int64_t>(last - first));
+    if (count > 0)
+        markers_.volume = volume_target_ / static_cast<real>(count);
     else
         markers_.volume = frame_.cell_volume() / Markers<D>::per_cell;
     markers_.keep_held(frame_, cut_);

@@ -1,0 +1,29 @@
+#include "staggered/own_planes.hpp"
+
+#include "core/slabs.hpp"
+#include "geometry/sides.hpp"
+#include "poisson/poisson.hpp"
+#include "staggered/state.hpp"
+
+namespace weir::staggered {
+
+bool holds_own_planes(const scene::Scene& scene) {
+    if (!slabs().several() || slabs().holds_whole() || scene.root().number_or("time.stop_when_steady", 0) > 0) return false;
+    for (const auto& probe : scene.root().tables("probes"))
+        if (const auto& kind = probe.text("kind"); kind != "point" && kind != "line" && kind != "integral") return false;
+    if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
+    const auto shares = [&]<int D>() {
+        const Lattice<D> lattice(scene);
+        const geometry::Sides<D> sides(scene);
+        Vec<D> weight;
+        std::array<bool, D> periodic;
+        for (int a = 0; a < D; ++a) {
+            const real ratio = lattice.h[0] / lattice.h[a];
+            weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
+        }
+        return poisson::multigrid_shares<D>(lattice.cells, periodic, weight, cut_of(lattice.cells[D - 1], slabs().ranks()));
+    };
+    return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
+}
+
+}  // namespace weir::staggered

@@ -1,0 +1,10 @@
+// Over ranks: may each hold its own planes of a scene on a staggered grid alone?
+#pragma once
+#include "scene/scene.hpp"
+
+namespace weir::staggered {
+
+/// Not where somebody looks at whole fields on all ranks, nor where each solves for the pressure itself.
+bool holds_own_planes(const scene::Scene& scene);
+
+}  // namespace weir::staggered

@@ -1,0 +1,103 @@
+// What several ranks that share a level set know of each other's part: where each one's cells stand in the band, and the solids' skin.
+#pragma once
+#include "core/grid.hpp"
+#include "core/parallel.hpp"
+#include "surface/frame.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace weir::surface {
+
+/// Every cell of the band has been found from another of the layer before, and so from one beside the surface: its root. In each layer the
+/// cells with roots in one rank's planes follow each other, and those of the next rank follow them: so a cell's place in the band of one
+/// process is known without the band.
+class BandOfRanks {
+public:
+    /// The cells of a layer with roots in this rank's own planes: [begin, end) of those that it knows of the layer.
+    struct Rooted {
+        std::size_t begin = 0, end = 0;
+    };
+    std::vector<Rooted> rooted;  // of each layer
+    /// Sums over blocks of the band of one process up to a layer, in its order: add(sum, place) adds what the cell at a place of this rank's
+    /// band gives. Whole blocks of one rank's cells it adds itself; of others every cell's part is gathered.
+    template <class F>
+    real sum_of_blocks(int layers, const std::vector<std::size_t>& layer_start, F&& add) const;
+    static constexpr std::size_t block = 256;
+
+private:
+    /// f(first, count) for the places [first, last) in blocks: whole ones, and one by one what is of parts.
+    template <class F>
+    static void for_each_piece(std::size_t first, std::size_t last, F&& f) {
+        for (std::size_t at = first, count = 0; at < last; at += count) {
+            count = at % block == 0 && at + block <= last ? block : 1;
+            f(at, count);
+        }
+    }
+};
+
+template <class F>
+real BandOfRanks::sum_of_blocks(int layers, const std::vector<std::size_t>& layer_start, F&& add) const {
+    const auto depth = static_cast<std::size_t>(layers), ranks = static_cast<std::size_t>(slabs().ranks());
+    const auto self = static_cast<std::size_t>(slabs().rank());
+    std::vector<std::size_t> counts(ranks * depth), rows(ranks + 1);
+    for (std::size_t r = 0; r <= ranks; ++r) rows[r] = r * depth;
+    for (std::size_t l = 0; l < depth; ++l) counts[self * depth + l] = rooted[l].end - rooted[l].begin;
+    slabs().gather_parts(counts.data(), sizeof(std::size_t), rows);
+    // What each gives, layer by layer
+    std::vector<std::size_t> begins(ranks + 1, 0);
+    std::vector<std::array<std::size_t, 2>> own;  // place here, number of cells
+    std::size_t first = 0;
+    for (std::size_t l = 0; l < depth; ++l)
+        for (std::size_t r = 0; r < ranks; ++r) {
+            const std::size_t last = first + counts[r * depth + l];
+            for_each_piece(first, last, [&](std::size_t at, std::size_t count) {
+                ++begins[r + 1];
+                if (r == self) own.push_back({layer_start[l] + rooted[l].begin + (at - first), count});
+            });
+            first = last;
+        }
+    for (std::size_t r = 0; r < ranks; ++r) begins[r + 1] += begins[r];
+    std::vector<real> pieces(begins.back());
+    parallel_for(0, static_cast<int>(own.size()), [&](int i) {
+        const auto [place, count] = own[static_cast<std::size_t>(i)];
+        real& sum = pieces[begins[self] + static_cast<std::size_t>(i)];
+        for (std::size_t k = 0; k < count; ++k) add(sum, place + k);
+    });
+    slabs().gather_parts(pieces.data(), sizeof(real), begins);
+    // Everybody adds all
+    real sum = 0, part = 0;
+    first = 0;
+    for (std::size_t l = 0; l < depth; ++l)
+        for (std::size_t r = 0; r < ranks; ++r) {
+            const std::size_t last = first + counts[r * depth + l];
+            for_each_piece(first, last, [&](std::size_t at, std::size_t count) {
+                part += pieces[begins[r]++];
+                if ((at + count) % block == 0) sum += part, part = 0;
+            });
+            first = last;
+        }
+    return first % block == 0 ? sum : sum + part;
+}
+
+/// φ in the solids' skin follows from the open cells beside it, one skin cell after the other: everybody finds all of it, from what is
+/// gathered of those cells.
+template <int D>
+class SkinOfRanks {
+public:
+    /// `closed`: of all cells, whatever planes this rank holds.
+    void find(const Frame<D>& frame, const Grid<std::uint8_t, D>& closed, const std::vector<Index<D>>& skin);
+    void continue_into(Grid<real, D>& phi, const std::vector<Index<D>>& skin);
+    std::size_t bytes() const {
+        return beside_.capacity() * sizeof(int) + rim_.capacity() * sizeof(std::size_t) +
+               (rim_value_.capacity() + value_.capacity()) * sizeof(real);
+    }
+
+private:
+    std::vector<std::size_t> rim_;  // open cells beside the skin, in the order of the grid
+    std::vector<int> beside_;       // of each skin cell its neighbours: place in rim_, or ~place in the skin if that comes before; or none
+    std::vector<real> rim_value_, value_;
+};
+
+}  // namespace weir::surface
