@@ -111,11 +111,17 @@ std::vector<T> of_ranks(const T& own) {
     return list;
 }
 
+/// Where the lists of the ranks begin when they stand one after another, this rank's of `count` entries; and where the last one ends.
+inline std::vector<std::size_t> begins_of_ranks(std::size_t count) {
+    std::vector<std::size_t> begins{0};
+    for (const std::size_t entries : of_ranks(count)) begins.push_back(begins.back() + entries);
+    return begins;
+}
+
 /// The lists that the ranks give, one after another.
 template <class T>
 std::vector<T> of_all_ranks(const std::vector<T>& own) {
-    std::vector<std::size_t> begins{0};
-    for (const std::size_t count : of_ranks(own.size())) begins.push_back(begins.back() + count);
+    const std::vector<std::size_t> begins = begins_of_ranks(own.size());
     std::vector<T> all(begins.back());
     std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(begins[static_cast<std::size_t>(slabs().rank())]));
     slabs().gather_parts(all.data(), sizeof(T), begins);

@@ -107,11 +107,8 @@ void BodyFriction<D>::multiply(const MacState<D>& s, real dt) {
     }
     for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
         const Rider<D>& rider = s.grip->riders[b];
-        for (std::size_t k = 0; k < n; ++k) {
-            real& image = image_.bodies[b][k] = 0;
-            for (std::size_t l = 0; l < n; ++l) image += rider.mass[k][l] * direction_bodies_[b][l];
-            if (k >= D) image += dt * rider.turning * direction_bodies_[b][k];
-        }
+        image_.bodies[b] = rider.with_mass(direction_bodies_[b]);
+        for (std::size_t k = D; k < n; ++k) image_.bodies[b][k] += dt * rider.turning * direction_bodies_[b][k];
     }
     for (const WallLink<D>& link : s.grip->links) {
         const real apart = direction_[link.axis](link.node) - WallGrip<D>::along(link.moves, direction_bodies_[link.body]);

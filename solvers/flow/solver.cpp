@@ -175,7 +175,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         bodies_->start(state_, solids_);
         const auto& all = bodies_->bodies().all();
         if (scene.effect("viscosity") && std::any_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; }))
-            bodies_->stick(state_);
+            bodies_->stick(state_, false);
         if (hand_) bodies_->follow(hand_, scene);
     }
     for (auto& field : state_.fields) {

@@ -7,6 +7,7 @@
 #include "flow/body_friction.hpp"
 #include "flow/effects.hpp"
 #include "flow/helmholtz.hpp"
+#include "staggered/bodies_in_flow.hpp"
 #include "staggered/projection.hpp"
 
 #include <memory>
@@ -97,13 +98,7 @@ struct Viscosity final : MacEffect<D> {
     TimeRule rule;
     std::vector<Diffuser<D>> axes;
     std::unique_ptr<BodyFriction<D>> friction;  // none where the fluid sticks to no body
-    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) {
-        for (const auto& body : scene.root().tables("bodies"))
-            if (rule.time != Time::implicit && body.text("slip") == "no")
-                scene.refuse("effects.viscosity.scheme",
-                             "effects.viscosity.scheme = \"" + table.text("scheme") + "\" takes friction where bodies are before the step",
-                             "with a body that has slip = \"no\": scheme = \"implicit\"");
-    }
+    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) { refuse_friction_of_before(table, scene); }
     Stage stage() const override { return rule.time == Time::explicit_ ? Stage::force : Stage::implicit; }
     void depart(MacState<D>& s, real dt) override {
         if (rule.departs) add(s, dt);

@@ -134,26 +134,29 @@ Vec<D> Solids<D>::normal(const Vec<D>& x, real eps, std::span<const std::size_t>
     return slope_of(x, eps, [&](const Vec<D>& y) { return distance(y, of); });
 }
 
+namespace {
+/// Out of what `distance` tells by `margin`, along `normal`: two steps of Newton's.
+template <int D, class Distance, class Normal>
+Vec<D> pushed_out(Vec<D> x, real margin, Distance&& distance, Normal&& normal) {
+    for (int newton = 0; newton < 2; ++newton) {
+        const real d = distance(x);
+        if (d >= margin) break;
+        x += (margin - d) * normal(x);
+    }
+    return x;
+}
+}  // namespace
+
 template <int D>
 Vec<D> Solids<D>::push_out(const Vec<D>& x, real margin, real eps) const {
-    Vec<D> y = x;
-    for (int newton = 0; newton < 2; ++newton) {
-        const real d = distance(y);
-        if (d >= margin) break;
-        y += (margin - d) * normal(y, eps);
-    }
-    return y;
+    return pushed_out(
+        x, margin, [&](const Vec<D>& y) { return distance(y); }, [&](const Vec<D>& y) { return normal(y, eps); });
 }
 
 template <int D>
 Vec<D> Solids<D>::push_out(const Vec<D>& x, real margin, real eps, std::span<const std::size_t> of) const {
-    Vec<D> y = x;
-    for (int newton = 0; newton < 2; ++newton) {
-        const real d = distance(y, of, margin);
-        if (d >= margin) break;
-        y += (margin - d) * normal(y, eps, of);
-    }
-    return y;
+    return pushed_out(
+        x, margin, [&](const Vec<D>& y) { return distance(y, of, margin); }, [&](const Vec<D>& y) { return normal(y, eps, of); });
 }
 
 real fraction_positive(real a, real b) {

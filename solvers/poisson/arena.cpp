@@ -1,5 +1,6 @@
 #include "poisson/arena.hpp"
 
+#include <cstdint>
 #include <new>
 
 #include <sys/mman.h>
@@ -15,33 +16,38 @@ Arena::~Arena() { release(); }
 void Arena::release() {
     if (mapping_ != nullptr) munmap(mapping_, mapped_);
     mapping_ = nullptr;
+    closed_.reset();
     begin_ = nullptr;
     size_ = used_ = mapped_ = opened_ = 0;
 }
 
 void Arena::reserve(std::size_t bytes, bool closed) {
     release();
-    closed_ = closed;
     if (bytes == 0) return;
+    size_ = bytes;
+    if (closed) {
+        closed_ = std::make_unique<Reserved>(bytes);
+        begin_ = closed_->data();
+        return;
+    }
     mapped_ = bytes + huge_page;  // room to begin on a huge page
-    mapping_ = mmap(nullptr, mapped_, closed ? PROT_NONE : PROT_READ | PROT_WRITE,
-                    MAP_PRIVATE | MAP_ANONYMOUS | (closed ? MAP_NORESERVE : 0), -1, 0);
+    mapping_ = mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (mapping_ == MAP_FAILED) {
         mapping_ = nullptr;
         throw std::bad_alloc();
     }
     const auto start = reinterpret_cast<std::uintptr_t>(mapping_);
     begin_ = reinterpret_cast<unsigned char*>((start + huge_page - 1) / huge_page * huge_page);
-    if (!closed) madvise(begin_, bytes, MADV_HUGEPAGE);  // a wish: nothing depends on it
-    size_ = bytes;
+    madvise(begin_, bytes, MADV_HUGEPAGE);  // a wish: nothing depends on it
 }
 
-void Arena::open_bytes(std::uintptr_t from, std::uintptr_t to) {
-    if (!closed_ || from >= to) return;
-    constexpr std::uintptr_t page = 4096;  // at least: what is not a whole page of the system's is refused
-    opened_ += to - from;
-    const std::uintptr_t begin = from / page * page, end = (to + page - 1) / page * page;
-    if (mprotect(reinterpret_cast<void*>(begin), end - begin, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
+void Arena::open_bytes(const void* from, const void* to) {
+    if (!closed_) return;
+    const auto begin = static_cast<std::size_t>(static_cast<const unsigned char*>(from) - begin_),
+               end = static_cast<std::size_t>(static_cast<const unsigned char*>(to) - begin_);
+    if (begin >= end) return;
+    opened_ += end - begin;
+    closed_->open(begin, end);
 }
 
 }  // namespace weir::poisson

@@ -1,7 +1,9 @@
 // One block of zeroed memory on huge pages, handed out in aligned pieces: a cycle streams through all of it, so page walks matter.
 #pragma once
+#include "core/plane_store.hpp"
+
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 
 namespace weir::poisson {
 
@@ -17,7 +19,7 @@ public:
     /// Of a closed one, the entries [from, to) of a piece.
     template <class T>
     void open(const T* from, const T* to) {
-        open_bytes(reinterpret_cast<std::uintptr_t>(from), reinterpret_cast<std::uintptr_t>(to));
+        open_bytes(from, to);
     }
     /// What has memory behind it.
     std::size_t bytes() const { return closed_ ? opened_ : size_; }
@@ -39,9 +41,9 @@ private:
     static constexpr std::size_t line = 64;
     unsigned char* begin_ = nullptr;
     void* mapping_ = nullptr;
+    std::unique_ptr<Reserved> closed_;
     std::size_t size_ = 0, used_ = 0, mapped_ = 0, opened_ = 0;
-    bool closed_ = false;
-    void open_bytes(std::uintptr_t from, std::uintptr_t to);
+    void open_bytes(const void* from, const void* to);
     void release();
 };
 

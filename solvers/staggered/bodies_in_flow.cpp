@@ -54,6 +54,14 @@ std::array<poisson::LowRank::Row, poisson::LowRank::columns> inverse_of(rigid::B
 
 }  // namespace
 
+void refuse_friction_of_before(const scene::Table& viscosity, const scene::Scene& scene) {
+    for (const auto& body : scene.root().tables("bodies"))
+        if (viscosity.text("scheme") != "implicit" && body.text("slip") == "no")
+            scene.refuse("effects.viscosity.scheme",
+                         "effects.viscosity.scheme = \"" + viscosity.text("scheme") + "\" takes friction where bodies are before the step",
+                         "with a body that has slip = \"no\": scheme = \"implicit\"");
+}
+
 template <int D>
 std::unique_ptr<BodiesInFlow<D>> BodiesInFlow<D>::make(const scene::Scene& scene) {
     return scene.has("bodies") && !scene.root().tables("bodies").empty() ? std::make_unique<BodiesInFlow>(scene) : nullptr;
@@ -94,8 +102,9 @@ void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solid
 }
 
 template <int D>
-void BodiesInFlow<D>::stick(MacState<D>& s) {
+void BodiesInFlow<D>::stick(MacState<D>& s, bool holds_closed) {
     grip_ = std::make_unique<WallGrip<D>>();
+    grip_->holds_closed = holds_closed;
     grip_->riders.resize(bodies_.count());
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
         bodies_[i].rubbed = grip_->riders[i].sticks = bodies_[i].no_slip;
@@ -108,8 +117,7 @@ void BodiesInFlow<D>::stick(MacState<D>& s) {
     });
 }
 
-/// The velocity is the body's, which the pressure of before takes for fluid like any other: it has to have fallen like any other. The
-/// pressure is that of the neighbours by the gradient of water at rest.
+/// The velocity is the body's, which the pressure of before takes for fluid like any other: it has to have fallen like any other.
 template <int D>
 void BodiesInFlow<D>::leave(MacState<D>& s, real dt) const {
     for (int a = 0; a < D; ++a) {
@@ -118,6 +126,11 @@ void BodiesInFlow<D>::leave(MacState<D>& s, real dt) const {
             if (open(I) == 0) s.u[a](I) = velocity(I) + dt * gravity_[a];
         });
     }
+    continue_pressure(s);
+}
+
+template <int D>
+void BodiesInFlow<D>::continue_pressure(MacState<D>& s) const {
     for_each_cell(s.extent(), [&](const Index<D>& I) {
         if (s.cells(I) != Cell::solid) return;
         real sum = 0;
@@ -271,13 +284,7 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
             if (open(I) == 1) return;
             const Vec<D> x = s.u.face_centre(a, I), r = x - body.at;
             if (solids.nearest(x, near_) != own) return;
-            Face f{a, open.linear(I), {}};
-            f.moves[static_cast<std::size_t>(a)] = 1;
-            if constexpr (D == 2)
-                f.moves[2] = a == 0 ? -r[1] : r[0];
-            else  // (e × r)_a
-                for (int k = 0; k < 3; ++k)
-                    if (k != a) f.moves[static_cast<std::size_t>(3 + k)] = (k + 1) % 3 == a ? -r[3 - a - k] : r[3 - a - k];
+            const Face f{a, open.linear(I), moves_at<D>(a, r)};
             faces_[b].push_back(f);
             const real closed = (1 - open(I)) * area;
             const auto count = [&](const Index<D>& cell, real flux) {

@@ -25,6 +25,9 @@
 
 namespace weir::staggered {
 
+/// Where a scene's fluid sticks to bodies its friction is of the end of the step.
+void refuse_friction_of_before(const scene::Table& viscosity, const scene::Scene& scene);
+
 template <int D>
 class BodiesInFlow {
 public:
@@ -39,10 +42,12 @@ public:
     void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
     /// What of them stands in fluid at t = 0.
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
-    /// A fluid with viscosity sticks to those that say so.
-    void stick(MacState<D>& s);
+    /// A fluid with viscosity sticks to those that say so; `holds_closed`: see WallGrip.
+    void stick(MacState<D>& s, bool holds_closed);
     /// Before they fly: what stands in the cells and faces that they leave goes on as the fluid beside, having fallen for a time dt.
     void leave(MacState<D>& s, real dt) const;
+    /// Its part of the pressure: in cells without fluid that of the neighbours, by the gradient of water at rest.
+    void continue_pressure(MacState<D>& s) const;
     /// Where it does, and what of the bodies' motion the friction of a step dt meets.
     void grip(const MacState<D>& s, const SolidPlacement<D>& solids, real dt);
     /// A time dt along their velocities.

@@ -9,19 +9,6 @@ namespace weir::staggered {
 
 namespace {
 
-/// The velocity along `a` that a unit of each of the body's velocities gives at r from its centre of mass.
-template <int D>
-rigid::Twist<D> moves_at(int a, const Vec<D>& r) {
-    rigid::Twist<D> moves{};
-    moves[static_cast<std::size_t>(a)] = 1;
-    if constexpr (D == 2)
-        moves[2] = a == 0 ? -r[1] : r[0];
-    else  // (e × r)_a
-        for (int k = 0; k < 3; ++k)
-            if (k != a) moves[static_cast<std::size_t>(3 + k)] = (k + 1) % 3 == a ? -r[3 - a - k] : r[3 - a - k];
-    return moves;
-}
-
 template <int D>
 class Finder {
 public:
@@ -50,18 +37,25 @@ private:
     bool its_own(int a, const Index<D>& I) const { return solids_.nearest(s_.u.face_centre(a, I)) == own_; }
 
     void look(int a, const Index<D>& I) {
-        if (!open(a, I)) return;
+        const bool shut = !open(a, I);
+        if (shut && !grip_.holds_closed) return;
         const real away = distance(a, I);
-        if (away <= 0) {
-            grip_.takes_part[static_cast<std::size_t>(a)](I) = 0;
-            grip_.inside.push_back({a, I, body_, moves_at<D>(a, s_.u.face_centre(a, I) - at_)});
-            return;
-        }
+        if (shut || away <= 0) return hold(a, I, away);
         for (int b = 0; b < D; ++b) {
             if (away >= s_.u.h[b]) continue;
             link(a, b, I, I - e<D>(b), away);
             link(a, b, I, I + e<D>(b), away);
         }
+    }
+
+    /// Where closed faces are held too, each belongs to one body, and those that stress does not reach are left out: it is felt on the
+    /// edges of cells that are not closed, which no point of a body is deeper in than two diagonals of a cell.
+    void hold(int a, const Index<D>& I, real away) {
+        if (!grip_.holds_closed)
+            grip_.takes_part[static_cast<std::size_t>(a)](I) = 0;
+        else if (away < -3 * norm(s_.u.h) || !its_own(a, I))
+            return;
+        grip_.inside.push_back({a, I, body_, moves_at<D>(a, s_.u.face_centre(a, I) - at_)});
     }
 
     void link(int a, int b, const Index<D>& I, const Index<D>& N, real away) {
@@ -70,7 +64,7 @@ private:
         if (deep > 0 && (open(a, N) || !its_own(a, N))) return;
         const real theta = deep < 0 ? std::max(away / (away - deep), least_open_fraction) : 1;
         const Vec<D> x = s_.u.face_centre(a, I), wall = x + theta * (s_.u.face_centre(a, N) - x);
-        grip_.links.push_back({a, b, I, N, body_, 1 / theta, moves_at<D>(a, wall - at_)});
+        grip_.links.push_back({a, b, I, N, body_, 1 / theta, moves_at<D>(a, wall - at_), moves_at<D>(a, x - at_)});
     }
 
     const MacState<D>& s_;
@@ -84,7 +78,7 @@ private:
 
 template <int D>
 void find_grip(const MacState<D>& s, const SolidPlacement<D>& placement, WallGrip<D>& grip) {
-    for (int a = 0; a < D; ++a) {
+    for (int a = 0; a < D && !grip.holds_closed; ++a) {
         auto& mask = grip.takes_part[static_cast<std::size_t>(a)];
         const auto& open = s.solid.open[static_cast<std::size_t>(a)];
         if (mask.empty()) mask = Padded<D>(open.extent());

@@ -12,6 +12,19 @@
 
 namespace weir::staggered {
 
+/// The velocity along `a` that a unit of each of a body's velocities gives at r from its centre of mass.
+template <int D>
+rigid::Twist<D> moves_at(int a, const Vec<D>& r) {
+    rigid::Twist<D> moves{};
+    moves[static_cast<std::size_t>(a)] = 1;
+    if constexpr (D == 2)
+        moves[2] = a == 0 ? -r[1] : r[0];
+    else  // (e × r)_a
+        for (int k = 0; k < 3; ++k)
+            if (k != a) moves[static_cast<std::size_t>(3 + k)] = (k + 1) % 3 == a ? -r[3 - a - k] : r[3 - a - k];
+    return moves;
+}
+
 /// A node, the neighbour behind the wall of a body, and the wall between them.
 template <int D>
 struct WallLink {
@@ -20,9 +33,10 @@ struct WallLink {
     std::size_t body;
     real nearer;            // 1/θ
     rigid::Twist<D> moves;  // the component of the wall's velocity by each of the body's
+    rigid::Twist<D> there;  // and of the body's motion at the node itself
 };
 
-/// A face that the pressure still knows, with its middle in a body.
+/// A face with its middle in a body, or closed by it.
 template <int D>
 struct InsideFace {
     int axis;
@@ -40,14 +54,22 @@ struct Rider {
     std::array<bool, rigid::freedoms<D>> held{};
     real turning = 0;  // 2 ρν V: see wall_grip.cpp
     rigid::Twist<D> impulse{};
+
+    rigid::Twist<D> with_mass(const rigid::Twist<D>& v) const {
+        rigid::Twist<D> sum{};
+        for (std::size_t k = 0; k < v.size(); ++k)
+            for (std::size_t l = 0; l < v.size(); ++l) sum[k] += mass[k][l] * v[l];
+        return sum;
+    }
 };
 
 template <int D>
 struct WallGrip {
+    bool holds_closed = false;            // `inside` has the faces that bodies close, too, as deep as stress reaches; takes_part is empty
     std::array<Padded<D>, D> takes_part;  // 1 on the faces where the fluid's velocity is its own
     std::vector<WallLink<D>> links;
-    std::vector<InsideFace<D>> inside;
-    std::vector<Rider<D>> riders;  // one a body
+    std::vector<InsideFace<D>> inside;  // those that the pressure still knows
+    std::vector<Rider<D>> riders;       // one a body
 
     static real along(const rigid::Twist<D>& moves, const rigid::Twist<D>& velocity) {
         real v = 0;

@@ -301,9 +301,7 @@ void LevelSet<D>::rescue_in_order(const Markers<D>& markers, real radius) {
     gather(phi);
     std::vector<Vec<D>> found;
     for_each_escaped([&](std::size_t p) { found.push_back(markers.position(p)); });
-    const std::vector<std::size_t> counts = of_ranks(found.size());
-    std::vector<std::size_t> begins(1, 0);
-    for (const std::size_t count : counts) begins.push_back(begins.back() + count);
+    const std::vector<std::size_t> begins = begins_of_ranks(found.size());
     std::vector<Vec<D>> list(begins.back());
     const std::size_t begin = begins[static_cast<std::size_t>(slabs().rank())];
     std::copy(found.begin(), found.end(), list.begin() + static_cast<std::ptrdiff_t>(begin));

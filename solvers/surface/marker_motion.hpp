@@ -25,7 +25,8 @@ Vec<D> trace(const MacVelocity<D>& u, const Frame<D>& frame, const Vec<D>& x, re
 /// Distances that markers keep, in cells: from walls and from solids. Small, but more than round-off of a position.
 inline constexpr real wall_margin = 1e-3;
 
-/// Which cells are so near to a solid that a marker there must be checked: within one cell diagonal, or inside.
+/// Which cells are so near to a solid that a marker there must be checked, within one cell diagonal or inside: 0 none, k + 2 near solid k
+/// alone, 1 near several (or one whose number a byte does not hold).
 template <int D>
 void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, Grid<std::uint8_t, D>& near_solid);
 

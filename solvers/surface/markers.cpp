@@ -273,9 +273,7 @@ std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut
 template <int D>
 void Markers<D>::gather(const Frame<D>& frame, Markers& all) const {
     const auto [first, last] = own(frame);
-    const std::vector<std::size_t> counts = of_ranks(last - first);
-    std::vector<std::size_t> begins(1, 0);
-    for (const std::size_t count : counts) begins.push_back(begins.back() + count);
+    const std::vector<std::size_t> begins = begins_of_ranks(last - first);
     std::vector<std::vector<real>*> to;
     all.for_each_array([&](std::vector<real>& array) { to.push_back(&array); });
     std::size_t number = 0;

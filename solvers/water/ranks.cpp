@@ -61,6 +61,7 @@ void Water<D>::rub(real dt) {
     for (int a = 0; a < D; ++a) gather(state_.u[a]);
     surface_.make_whole();
     const AllPlanes all;
+    if (state_.grip) bodies_->grip(state_, solids_, dt);
     viscosity_->apply(state_, surface_, closed_, dt);
 }
 

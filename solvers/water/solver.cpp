@@ -39,6 +39,7 @@ template <int D>
 void Water<D>::move_bodies(real dt) {
     if (!bodies_) return;
     const auto timed = passes_.time("bodies");
+    if (state_.grip) bodies_->continue_pressure(state_);
     bodies_->fly(solids_, dt);
 }
 

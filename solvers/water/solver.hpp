@@ -95,6 +95,7 @@ private:
     void refuse_buried_emitters(const scene::Scene& scene) const;
     void fill_with_liquid(const scene::Scene& scene);
     void seed_markers();
+    void stick_to_bodies(const scene::Scene& scene);
 
     // The passes of a step, in order (solver.cpp, sources.cpp)
     void move_bodies(real dt);

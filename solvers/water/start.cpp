@@ -60,6 +60,7 @@ Water<D>::Water(const scene::Scene& scene)
     }
     fill_with_liquid(scene);
     if (bodies_) bodies_->start(state_, solids_);
+    if (viscosity_ && bodies_) stick_to_bodies(scene);
     if (bodies_ && hand_) bodies_->follow(hand_, scene);
     if (LiquidHeat<D>::named(scene)) heat_ = std::make_unique<LiquidHeat<D>>(scene, state_, frame_, volume_target_);
     if (heat_ && hand_) heat_->follow(hand_);
@@ -69,6 +70,21 @@ Water<D>::Water(const scene::Scene& scene)
     seed_markers();
     making_.reset();
     whole_ = kept_ == 0;
+}
+
+/// Friction takes the pressure of before: of liquid at rest under its weight, zero in its highest cell.
+template <int D>
+void Water<D>::stick_to_bodies(const scene::Scene& scene) {
+    refuse_friction_of_before(*scene.effect("viscosity"), scene);
+    const auto& all = bodies_->bodies().all();
+    if (std::none_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; })) return;
+    bodies_->stick(state_, true);
+    const auto is_liquid = [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::fluid; };
+    const real least = -max_over(state_.extent(), [&](const Index<D>& I) { return is_liquid(I) ? -state_.p(I) : -infinity; });
+    for_each_cell(state_.extent(), [&](const Index<D>& I) {
+        if (is_liquid(I)) state_.p(I) -= least;
+    });
+    viscosity_->hold_bodies(state_, gravity_);
 }
 
 /// Emitters, and sides through which liquid flows in: those are emitters of one layer of cells.

@@ -5,8 +5,6 @@
 
 namespace weir::water {
 
-using geometry::SideKind;
-
 template <int D>
 SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick)
     : frame_(frame), sides_(&state.sides), theta_(theta), solids_stick_(solids_stick), cell_(frame.cells) {
@@ -25,47 +23,6 @@ void SurfaceViscosity<D>::for_each_unknown(F&& f) const {
     for (int a = 0; a < D; ++a) {
         const auto& list = unknown_[static_cast<std::size_t>(a)];
         parallel_for(0, static_cast<int>(list.size()), [&](int k) { f(a, list[static_cast<std::size_t>(k)]); });
-    }
-}
-
-template <int D>
-void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
-    const auto is_closed = [&](const Index<D>& I) { return !closed.empty() && closed(I); };
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { cell_(I) = is_closed(I) ? 0 : surface.fraction(I); });
-    // Whether a cell of the edge's four lies beyond a side, and whether shear acts there.
-    for (int a = 0; a < D; ++a)
-        for (int b = a + 1; b < D; ++b) {
-            auto& weight = edge_[static_cast<std::size_t>(a + b - 1)];
-            for_each_cell(weight.extent(), [&](const Index<D>& I) {
-                real sum = 0;
-                bool shears = true;
-                for (const int da : {-1, 0})
-                    for (const int db : {-1, 0}) {
-                        Index<D> J = I;
-                        bool inside = true;
-                        for (const auto& [axis, by] : {std::pair{a, da}, std::pair{b, db}}) {
-                            const int i = I[axis] + by;
-                            if ((i >= 0 && i < frame_.cells[axis]) || frame_.periodic(axis)) {
-                                J[axis] = (i + frame_.cells[axis]) % frame_.cells[axis];
-                                continue;
-                            }
-                            inside = false;
-                            const auto& side = sides_->side(axis, i < 0 ? 0 : 1);
-                            shears &= side.kind == SideKind::moving_wall || (side.kind == SideKind::wall && side.no_slip);
-                        }
-                        if (inside) sum += cell_(J), shears &= solids_stick_ || !is_closed(J);
-                    }
-                weight(I) = shears ? 0.25 * sum : 0;
-            });
-        }
-    for (int a = 0; a < D; ++a) {
-        auto& mass = mass_[static_cast<std::size_t>(a)];
-        for_each_cell(mass.extent(), [&](const Index<D>& I) {
-            const bool on_side = !frame_.periodic(a) && (I[a] == 0 || I[a] == frame_.cells[a]);
-            const bool copy = frame_.periodic(a) && I[a] == frame_.cells[a];
-            const bool shut = state.solid.any() && state.solid.open[static_cast<std::size_t>(a)](I) == 0;
-            mass(I) = on_side || copy || shut ? -1 : 0.5 * (cell_(frame_.near(I, a, -1)) + cell_(frame_.near(I, a, 0)));
-        });
     }
 }
 
@@ -202,7 +159,7 @@ real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
 
 /// Conjugate gradients with the diagonal as preconditioner: ν dt/h² is moderate, a few iterations do.
 template <int D>
-void SurfaceViscosity<D>::solve(real dt_nu) {
+void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu) {
     const real s = theta_ * dt_nu;
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
@@ -211,7 +168,11 @@ void SurfaceViscosity<D>::solve(real dt_nu) {
         p_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
     });
     real rz = dot(r_, p_);
-    const real target = 1e-18 * rz;
+    if (bodies_) {
+        rz += bodies_->precondition();
+        bodies_->turn(state, 0, p_);
+    }
+    const real target = target_ * rz;
     iterations_ = 0;
     while (rz > target && rz > 0) {
         if (++iterations_ > 1000) throw NumericalFailure("velocity", "the viscous solve missed its tolerance after 1000 iterations");
@@ -219,34 +180,91 @@ void SurfaceViscosity<D>::solve(real dt_nu) {
             const auto at = static_cast<std::size_t>(a);
             ap_[at](I) = mass_[at](I) * p_[at](I) + s * stress_divergence(p_, a, I, 0);
         });
-        const real alpha = rz / dot(p_, ap_);
+        real met = 0;
+        if (bodies_) {
+            strain_inside(state, p_, s, 0, ap_);
+            met = bodies_->multiply(state, s, p_, ap_);
+        }
+        const real alpha = rz / (dot(p_, ap_) + met);
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
             x_[at](I) += alpha * p_[at](I);
             r_[at](I) -= alpha * ap_[at](I);
             ap_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
         });
-        const real rz_next = dot(r_, ap_), beta = rz_next / rz;
+        real rz_next = dot(r_, ap_);
+        if (bodies_) {
+            bodies_->walk(alpha);
+            rz_next += bodies_->precondition();
+        }
+        const real beta = rz_next / rz;
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
             p_[at](I) = ap_[at](I) + beta * p_[at](I);
         });
+        if (bodies_) bodies_->turn(state, beta, p_);
         rz = rz_next;
     }
 }
 
 template <int D>
+void SurfaceViscosity<D>::hold_bodies(const MacState<D>& state, const Vec<D>& gravity) {
+    bodies_ = std::make_unique<BodyRows<D>>(state);
+    gravity_ = gravity;
+}
+
+/// u += dt (g − ∇p/ρ), of the pressure of before, as deep in the liquid as no surface has passed since.
+template <int D>
+void SurfaceViscosity<D>::push(MacState<D>& state, const LevelSet<D>& surface, real dt) const {
+    const real deep = -1.5 * frame_.h_max();
+    const auto is_deep = [&](const Index<D>& I) { return surface.phi(I) < deep && state.cells(I) == poisson::Cell::fluid; };
+    for_each_unknown([&](int a, const Index<D>& I) {
+        const Index<D> below = frame_.near(I, a, -1), above = frame_.near(I, a, 0);
+        if (is_deep(below) && is_deep(above))
+            state.u[a](I) += dt * (gravity_[a] - (state.p(above) - state.p(below)) * frame_.inv_h[a] / state.rho);
+    });
+}
+
+/// dt ν K u on the faces inside bodies.
+template <int D>
+void SurfaceViscosity<D>::strain_inside(const MacState<D>& state, const Faces& u, real dt_nu, real fixed, Faces& out) const {
+    const auto& inside = state.grip->inside;
+    parallel_for(0, static_cast<int>(inside.size()), [&](int i) {
+        const InsideFace<D>& f = inside[static_cast<std::size_t>(i)];
+        out[static_cast<std::size_t>(f.axis)](f.face) = dt_nu * stress_divergence(u, f.axis, f.face, fixed);
+    });
+}
+
+template <int D>
 void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt) {
+    const real dt_nu = dt * state.nu;
+    if (bodies_) bodies_->find(state, closed);
     set_weights(state, surface, closed);
     list_unknowns();
+    if (bodies_) {
+        list_walls(state);
+        bodies_->add_diagonal(state, dt_nu, diagonal_);
+        push(state, surface, dt);
+        bodies_->carry(state, state.u.face);
+    }
     for (int a = 0; a < D; ++a) {
         p_[static_cast<std::size_t>(a)].fill(0);
         x_[static_cast<std::size_t>(a)].fill(0);
     }
     for_each_unknown(
         [&](int a, const Index<D>& I) { r_[static_cast<std::size_t>(a)](I) = -dt * state.nu * stress_divergence(state.u.face, a, I, 1); });
-    solve(dt * state.nu);
+    if (bodies_) {
+        strain_inside(state, state.u.face, -dt_nu, 1, r_);
+        bodies_->begin(state, dt_nu, state.u.face, r_);
+    }
+    solve(state, dt_nu);
     for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += x_[static_cast<std::size_t>(a)](I); });
+    if (bodies_) {
+        bodies_->carry(state, state.u.face);
+        strain_inside(state, state.u.face, dt_nu, 1, ap_);
+        bodies_->finish(state, dt_nu, state.u.face, ap_);
+        push(state, surface, -dt);
+    }
     sync_periodic(state.u, state.sides);
 }
 
@@ -257,7 +275,7 @@ std::size_t SurfaceViscosity<D>::bytes() const {
     for (const auto& grid : mass_) total += 6 * grid.size();
     total *= sizeof(real);
     for (const auto& list : unknown_) total += list.capacity() * sizeof(Index<D>);
-    return total;
+    return total + (bodies_ ? bodies_->bytes() : 0);
 }
 
 template class SurfaceViscosity<2>;

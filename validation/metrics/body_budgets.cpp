@@ -3,6 +3,7 @@
 #include "rigid/bodies.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
+#include "validation/metrics/signal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -79,28 +80,11 @@ Curve missing_momentum(const RunRecord& run, const std::string& metric, const st
     return missing;
 }
 
-/// For a figure: every so many of its points, and the last.
-Curve thinned(const Curve& c) {
-    constexpr std::size_t shown = 80;
-    const std::size_t each = c.size() / shown + 1;
-    Curve thin = c;
-    thin.x.clear(), thin.y.clear();
-    for (std::size_t i = 0; i < c.size(); ++i)
-        if (i % each == 0 || i + 1 == c.size()) thin.x.push_back(c.x[i]), thin.y.push_back(c.y[i]);
-    return thin;
-}
-
-/// NaN wherever one is.
-real greatest(const Curve& c) {
-    real most = 0;
-    for (const real y : c.y) most = (std::abs(y) > most || std::isnan(y)) ? std::abs(y) : most;
-    return most;
-}
-
 /// The largest momentum that bodies have had along any axis.
 real momentum_of_bodies(const RunRecord& run) {
     real most = 0;
-    for (int a = 0; a < run.scene->dim(); ++a) most = std::max(most, greatest(run.series(std::string("bodies_momentum_") + axis_names[a])));
+    for (int a = 0; a < run.scene->dim(); ++a)
+        most = std::max(most, largest_magnitude(run.series(std::string("bodies_momentum_") + axis_names[a])));
     return most;
 }
 
@@ -111,7 +95,7 @@ Metric momentum_metric(int axis) {
             .doc = "Largest change of the momentum of fluid and bodies along " + letter +
                    " that the pressure on the walls does not account for, over the largest momentum of the bodies.",
             .measure = [=](const RunRecord& run,
-                           const Reference&) { return greatest(missing_momentum(run, name, letter)) / momentum_of_bodies(run); },
+                           const Reference&) { return largest_magnitude(missing_momentum(run, name, letter)) / momentum_of_bodies(run); },
             .figure =
                 [=](const RunRecord& run, const Reference&) {
                     Curve bodies = run.series("bodies_momentum_" + letter), fluid = momentum_of_fluid(run, letter);
@@ -119,7 +103,7 @@ Metric momentum_metric(int axis) {
                     return Panel{.title = "Momentum along " + letter + ", " + run.scene->solver(),
                                  .x = {"t [s]"},
                                  .y = {"[kg m/s]"},
-                                 .curves = {thinned(bodies), thinned(fluid), thinned(missing_momentum(run, name, letter))}};
+                                 .curves = {bodies, fluid, missing_momentum(run, name, letter)}};
                 },
             .observe = [=](const FieldSet& fields, const scene::Scene&, real) { return force_on_walls(fields, axis); }};
 }
@@ -154,7 +138,7 @@ real missing_turning(const RunRecord& run, const Reference&) {
     const Curve fluid = run.series("angular_momentum_z"), bodies = run.series("budget.angular_momentum");
     Curve sum = fluid;
     for (std::size_t i = 0; i < sum.size(); ++i) sum.y[i] += bodies.y[i] - fluid.y[0] - bodies.y[0];
-    return greatest(sum) / greatest(bodies);
+    return largest_magnitude(sum) / largest_magnitude(bodies);
 }
 
 /// A cell's water is counted in so many places along each axis where a surface or a body may cut it.
@@ -311,8 +295,7 @@ Panel energy_panel(const RunRecord& run, const Reference&) {
     for (real& y : all.y) y = 1 + (y - lost) / first;
     for (real& y : bodies.y) y /= first;
     bodies.label = "bodies, kinetic";
-    return {
-        .title = "Energy over the first, " + run.scene->solver(), .x = {"t [s]"}, .y = {"E/E0"}, .curves = {thinned(all), thinned(bodies)}};
+    return {.title = "Energy over the first, " + run.scene->solver(), .x = {"t [s]"}, .y = {"E/E0"}, .curves = {all, bodies}};
 }
 
 }  // namespace

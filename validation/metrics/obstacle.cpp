@@ -2,6 +2,7 @@
 #include "geometry/solids.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
+#include "validation/metrics/signal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,12 +36,6 @@ Curve missing_impulse(const RunRecord& run) {
     const real first = missing.y.at(0);
     for (std::size_t i = 0; i < missing.size(); ++i) missing.y[i] += impulse.y[i] - first;
     return missing;
-}
-
-real largest_magnitude(const Curve& c) {
-    real m = 0;
-    for (const real y : c.y) m = (std::abs(y) > m || std::isnan(y)) ? std::abs(y) : m;
-    return m;
 }
 
 Panel impulse_panel(const RunRecord& run) {

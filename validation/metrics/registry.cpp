@@ -6,29 +6,12 @@ namespace weir::validation {
 const std::vector<Metric>& metrics() {
     static const std::vector<Metric> all = [] {
         std::vector<Metric> list;
-        for (const auto& part : {cavity_metrics(),
-                                 energy_metrics(),
-                                 wave_metrics(),
-                                 dam_break_metrics(),
-                                 growth_metrics(),
-                                 shape_metrics(),
-                                 exactness_metrics(),
-                                 obstacle_metrics(),
-                                 particle_metrics(),
-                                 phase_metrics(),
-                                 lattice_metrics(),
-                                 height_field_metrics(),
-                                 procedural_metrics(),
-                                 pond_metrics(),
-                                 body_metrics(),
-                                 body_budget_metrics(),
-                                 ice_metrics(),
-                                 substance_metrics(),
-                                 melting_metrics(),
-                                 melting_convection_metrics(),
-                                 surface_metrics(),
-                                 vessel_metrics(),
-                                 boiling_metrics()})
+        for (const auto& part :
+             {cavity_metrics(),      energy_metrics(),       wave_metrics(),       dam_break_metrics(), growth_metrics(),
+              shape_metrics(),       exactness_metrics(),    obstacle_metrics(),   particle_metrics(),  phase_metrics(),
+              lattice_metrics(),     height_field_metrics(), procedural_metrics(), pond_metrics(),      body_metrics(),
+              body_budget_metrics(), ice_metrics(),          substance_metrics(),  melting_metrics(),   melting_convection_metrics(),
+              surface_metrics(),     vessel_metrics(),       boiling_metrics()})
             list.insert(list.end(), part.begin(), part.end());
         return list;
     }();

@@ -68,6 +68,12 @@ real power_law(const Curve& c, real from, real to) {
     return x.size() < 3 ? std::nan("") : slope(x, y);
 }
 
+real largest_magnitude(const Curve& c) {
+    real most = 0;
+    for (const real y : c.y) most = (std::abs(y) > most || std::isnan(y)) ? std::abs(y) : most;
+    return most;
+}
+
 real largest(const Curve& c) {
     real m = 0;
     for (const real y : c.y) m = (y > m || std::isnan(y)) ? y : m;

@@ -14,6 +14,8 @@ Curve extrema(const Curve& c);
 real decay(const Curve& c);
 /// Exponent of the best y = C x^p over points with from <= x <= to (least squares in logarithms).
 real power_law(const Curve& c, real from, real to);
+/// The largest |y|; NaN if any y is.
+real largest_magnitude(const Curve& c);
 /// The largest y of a curve that is nowhere negative; NaN if any is.
 real largest(const Curve& c);
 /// Slope of the least-squares line.
