@@ -60,6 +60,35 @@ void tally_multigrid(const Index<D>& n, const std::array<bool, D>& periodic, con
     tally_means();
 }
 
+template <int D>
+void tally_multigrid_setup(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Runs& runs,
+                           Tally& tally) {
+    const auto levels = cut_levels_of<D>(n, periodic, axis_weight, tally.cut());
+    const auto ranks = static_cast<std::size_t>(tally.cut().ranks());
+    const auto list = [&](std::size_t entries, std::size_t bytes) {  // how many each gives, and they
+        tally.everywhere(sizeof(std::size_t), 1, sizeof(std::size_t) * ranks);
+        tally.everywhere(entries * bytes, 1, entries * bytes * ranks);
+    };
+    tally.gather({sizeof(int) * static_cast<std::size_t>(D == 2 ? 1 : n[1]), n[D - 1]});  // runs in each row
+    tally.everywhere(runs.own * sizeof(Run), 1, runs.own * sizeof(Run) * ranks);
+    list(runs.own + runs.below > 0 ? runs.own + runs.below - 1 : 0, 2 * sizeof(int));  // pairs that are joined
+    list(runs.own > 0 ? 1 : 0, sizeof(int));                                           // runs joined to p = 0
+    for (std::size_t l = 0; l < levels.size() && !levels[l].cut.empty(); ++l) {
+        const Level<D>&fine = levels[l], &coarse = levels[l + 1];
+        const std::vector<PlaneSize> weights(2 * D, colour_of(fine));
+        tally.refresh(fine.cut, fine.at.periodic[D - 1], weights, 1, 1);
+        const std::size_t plane = coarse.cells() / static_cast<std::size_t>(coarse.at.planes());
+        std::vector<PlaneSize> matrix(D + 1, {sizeof(float) * plane, coarse.at.planes()});  // faces, and what leads to p = 0
+        matrix.push_back({sizeof(std::uint8_t) * plane, coarse.at.planes()});               // is it fluid?
+        if (!coarse.cut.empty())
+            tally.refresh(coarse.cut, coarse.at.periodic[D - 1], matrix, 1, 1);
+        else
+            for (const PlaneSize& array : matrix) tally.gather(VCycle<D>::halved_cut(fine), array, 1);
+    }
+}
+
+template void tally_multigrid_setup<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Runs&, Tally&);
+template void tally_multigrid_setup<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, const Runs&, Tally&);
 template void tally_multigrid<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, bool, int, Tally&);
 template void tally_multigrid<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, bool, int, Tally&);
 

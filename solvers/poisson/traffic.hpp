@@ -14,4 +14,14 @@ template <int D>
 void tally_multigrid(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, bool closed, int iterations,
                      Tally& tally);
 
+/// Runs of fluid cells of a rank's own rows, all joined, and of the plane below its first.
+struct Runs {
+    std::size_t own = 0, below = 0;
+};
+/// Setting up "multigrid" where each rank holds its own planes alone, with weights on faces and some of the fluid joined to p = 0: what a
+/// rank sends of its runs and of each level's matrix.
+template <int D>
+void tally_multigrid_setup(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Runs& runs,
+                           Tally& tally);
+
 }  // namespace weir::poisson

@@ -6,8 +6,10 @@
 
 namespace weir::water {
 
-bool holds_own_planes(const scene::Scene& scene) {
-    if (!staggered::holds_own_planes(scene) || scene.effect("viscosity")) return false;
+bool holds_own_planes(const scene::Scene& scene) { return !slabs().holds_whole() && could_hold_own_planes(scene, slabs().ranks()); }
+
+bool could_hold_own_planes(const scene::Scene& scene, int ranks) {
+    if (!staggered::could_hold_own_planes(scene, ranks) || scene.effect("viscosity")) return false;
     const auto cubic = [&]<int D>() {
         const Lattice<D> lattice(scene);
         return *std::max_element(lattice.h.begin(), lattice.h.end()) <= *std::min_element(lattice.h.begin(), lattice.h.end()) * (1 + 1e-9);
@@ -172,12 +174,12 @@ std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std:
     return lent;
 }
 
-#define WEIR_INSTANTIATE(D)                                      \
-    template void Water<D>::bring_faces(real);                   \
-    template std::array<std::int64_t, 2> Water<D>::let_depart(); \
-    template void Water<D>::rub(real);                           \
-    template void Water<D>::check_own() const;                   \
-    template void Water<D>::make_whole() const;                  \
+#define WEIR_INSTANTIATE(D)                                                                                    \
+    template void Water<D>::bring_faces(real);                                                                 \
+    template std::array<std::int64_t, 2> Water<D>::let_depart();                                               \
+    template void Water<D>::rub(real);                                                                         \
+    template void Water<D>::check_own() const;                                                                 \
+    template void Water<D>::make_whole() const;                                                                \
     template std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std::string>&) const; \
     template void Water<D>::gather_markers() const;
 WEIR_INSTANTIATE(2)

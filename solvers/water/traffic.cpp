@@ -31,6 +31,7 @@ public:
           n_(lattice_.cells),
           transfer_(scene.text("scheme.transfer")),
           ring_(sides_.periodic(D - 1)),
+          windowed_(could_hold_own_planes(scene, of.ranks)),
           shape_(shape),
           reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
           layers_(static_cast<int>(std::ceil(scene.number("time.cfl"))) + 4),
@@ -89,24 +90,44 @@ private:
         if (rank + 1 < ranks || ring_) tally_.parcel(bytes_in(last));
         if (open) tally_.everywhere(sizeof(std::int64_t), 2, sizeof(std::int64_t) * static_cast<std::size_t>(ranks));
     }
-    /// Who is inside everybody learns; values of a layer are found twice, each time from those beside them; and the matrix is everybody's.
+    /// Who is inside is known as far as the band is found beyond the cuts; values of a layer are found twice, each time from those beside
+    /// them. Then what is liquid, and how it is joined.
     void find_surface() {
-        tally_.gather(plane(n_, sizeof(std::uint8_t)));
+        const int found = 2 * layers_;
+        tally_.refresh({plane(n_, sizeof(std::uint8_t))}, found + 1);
         tally_.refresh({cells_}, 1, 1 + 2 * (layers_ - 1));
-        tally_.refresh({cells_}, 2);
+        tally_.refresh({cells_}, layers_);
         if (scene_.effect("surface_tension")) tally_.refresh({cells_}, 1);  // curvature
-        tally_.gather(cells_);
+        if (!windowed_) return tally_.gather(cells_);
+        Index<D> lines = n_;
+        lines[0] = 1;
+        const auto ranks = static_cast<std::size_t>(tally_.cut().ranks());
+        tally_.everywhere(sizeof(std::int64_t), 1, sizeof(std::int64_t) * ranks);  // is there liquid?
+        tally_.refresh({plane(n_, sizeof(poisson::Cell)), plane(lines, sizeof(Extent))}, 2);
+        sync();  // weights above the last cells
     }
-    /// Which faces are known everybody learns; a layer is found from three planes at the cuts, or four around the axis, later ones from
-    /// one.
+    /// Which faces are known as far as a slope looks behind the last layer; a layer is found from three planes at the cuts, or four around
+    /// the axis, later ones from one.
     void continue_velocity(int layers) {
         const int behind = ring_ ? 4 : 3;
-        for (int a = 0; a < D; ++a) tally_.gather(plane(n_ + e<D>(a), sizeof(std::uint8_t)));
+        std::array<PlaneSize, D> marks;
+        for (int a = 0; a < D; ++a) marks[static_cast<std::size_t>(a)] = plane(n_ + e<D>(a), sizeof(std::uint8_t));
+        tally_.refresh(marks, layers + 4);
         tally_.refresh(faces_, behind);
         for (const PlaneSize& component : faces_) {
             if (layers > 1) tally_.refresh({component}, behind);
             if (layers > 2) tally_.refresh({component}, 1, layers - 2);
         }
+    }
+    /// Wet rows of this rank, one run each, as the scene begins; and those of the plane below it.
+    poisson::Runs runs() const {
+        const int first = tally_.cut().begin(tally_.rank()), end = tally_.cut().end(tally_.rank(), n_[D - 1]);
+        const int rows = D == 2 ? 1 : n_[1];
+        const auto wet = [&](int at) { return std::llround(geometry::wet_part_of_plane<D>(scene_, at) * rows); };
+        poisson::Runs runs;
+        for (int at = first; at < end; ++at) runs.own += static_cast<std::size_t>(wet(at));
+        if (tally_.rank() > 0) runs.below = static_cast<std::size_t>(wet(first - 1));
+        return runs;
     }
     void project() {
         Vec<D> weight;
@@ -115,6 +136,7 @@ private:
             const real ratio = lattice_.h[0] / lattice_.h[a];
             weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides_.periodic(a);
         }
+        if (windowed_) poisson::tally_multigrid_setup<D>(n_, periodic, weight, runs(), tally_);
         if (scene_.text("scheme.poisson.method") == "multigrid" && poisson::multigrid_shares<D>(n_, periodic, weight, tally_.cut())) {
             poisson::tally_multigrid<D>(n_, periodic, weight, false, shape_.iterations, tally_);
             tally_.refresh({cells_}, 1);
@@ -130,7 +152,7 @@ private:
     staggered::Lattice<D> lattice_;
     Index<D> n_;
     std::string transfer_;
-    bool ring_;
+    bool ring_, windowed_;
     StepShape shape_;
     int reach_, layers_;
     PlaneSize cells_;

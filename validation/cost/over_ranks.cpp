@@ -68,6 +68,12 @@ RankOf rank_of(const scene::Scene& scene, const scene::SolverKind& kind, int ran
     return of;
 }
 
+/// As many as everybody has, and those that are read of neighbours: so far beyond a cut as a kernel reaches, of all planes.
+double part_of_particles(const scene::Scene& scene, int rank, int ranks) {
+    const double cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
+    return std::min(1.0, 1.0 / ranks + cuts * scene.number("scheme.support") / planes_of_scene(scene));
+}
+
 /// The scene with so many planes for each of so many ranks, in a domain that is as much longer.
 scene::Scene with_planes(const scene::Scene& scene, int planes, const std::vector<scene::SolverSchema>& schemas) {
     auto cells = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size");
@@ -140,14 +146,14 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
                .particles = f.particles ? f.count : 0};
     {
         const Pretended several(0, ranks);
-        o.own_part = ranks > 1 && kind.holds_own_part && kind.holds_own_part(scene);
+        o.own_part = ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene)));
     }
     for (int rank = 0; rank < ranks; ++rank) {
         const RankOf of = rank_of(scene, kind, rank, ranks);
         o.cut = of.cut;
-        o.bytes.push_back(!o.own_part      ? f.held.bytes
-                          : of.cut.empty() ? f.held.bytes / ranks
-                                           : sim::bytes_of_rank(f.held.bytes, of.cut, rank));
+        o.bytes.push_back(!o.own_part       ? f.held.bytes
+                          : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank)
+                                            : f.held.bytes * part_of_particles(scene, rank, ranks));
         if (ranks > 1 && kind.sends) o.sent.push_back(kind.sends(scene, of, o.shape));
     }
     if (!o.sent.empty()) o.weak = weak_scaling(scene, kind, o, o.shape.particles, scene::schemas_of(kinds));
@@ -181,9 +187,9 @@ std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::
     std::string s = fmt::format("over {} ranks, cut along {}, {}\n", o.ranks, scene.dim() == 2 ? "y" : "z",
                                 planes ? "each with its planes" : "as many particles to each");
     s += fmt::format("  each holds {}{}{}\n",
-                     o.own_part ? "its own planes and those near its cuts"
-                     : planes   ? "the whole grids"
-                                : "all particles",
+                     !o.own_part ? "the whole grids"
+                     : planes    ? "its own planes and those near its cuts"
+                                 : "its own particles and those near its cuts",
                      o.by_all.empty() ? "" : ", and does alone: ", o.by_all);
     for (std::size_t rank = 0; rank < o.bytes.size(); ++rank) {
         const int r = static_cast<int>(rank);
