@@ -6,6 +6,7 @@
 #include "validation/cost/command.hpp"
 #include "validation/cost/effect_cost.hpp"
 #include "validation/cost/forecast.hpp"
+#include "validation/cost/over_ranks.hpp"
 #include "validation/report/command.hpp"
 
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 
 namespace weir::app {
 
@@ -25,15 +27,31 @@ struct CostArguments : StudyArguments<validation::CostOptions> {
     std::string plan;
     std::vector<std::string> set;
     bool effects = false;
+    int ranks = 0;
+    double latency = 0, bandwidth = 0;
     CostArguments() : StudyArguments("out/cost", "results/cost") {}
 };
+
+/// The network that is named; none: what this machine has.
+std::optional<validation::Link> link_of(const CostArguments& arguments) {
+    if ((arguments.latency > 0) != (arguments.bandwidth > 0))
+        throw BadInput("--latency and --bandwidth describe one network: both are needed");
+    if (arguments.latency == 0) return std::nullopt;
+    return validation::Link{arguments.latency, arguments.bandwidth, "as given"};
+}
 
 /// Before it runs: what a scene is made of and will cost.
 int forecast(const CostArguments& arguments) {
     std::vector<scene::Override> overrides;
     for (const auto& text : arguments.set) overrides.push_back(scene::to_override(text));
     const scene::Scene scene = scene::read(validation::scene_named(arguments.plan), sim::schemas(), overrides);
-    std::fputs(validation::forecast_text(validation::forecast(scene), scene).c_str(), stdout);
+    if (arguments.ranks > 0) sim::require_ranks(scene, arguments.ranks);
+    const validation::Forecast f = validation::forecast(scene);
+    std::fputs(validation::forecast_text(f, scene).c_str(), stdout);
+    if (arguments.ranks > 0)
+        std::fputs(
+            validation::over_ranks_text(validation::forecast_over_ranks(scene, f, arguments.ranks, link_of(arguments)), f, scene).c_str(),
+            stdout);
     return exit_success;
 }
 
@@ -57,6 +75,7 @@ int cost(CostArguments& arguments) {
     arguments.options.drawn = frames_in_window;
     const auto& options = arguments.chosen();
     if (!arguments.plan.empty()) return forecast(arguments);
+    if (arguments.ranks > 0) throw BadInput("--ranks tells what a scene takes over so many ranks: it needs --plan SCENE");
     if (!arguments.effects) return validation::cost_command(options);
     std::vector<std::filesystem::path> folders{arguments.out};
     if (arguments.publish) folders.push_back(arguments.publish_to);
@@ -81,6 +100,13 @@ void add_cost(CLI::App& app, int& exit_code) {
     command->add_flag("--effects", arguments->effects, "What each effect of each solver costs: effects.csv and effects.md");
     command->add_option("--plan", arguments->plan,
                         "A scene or a case: its memory and the time of its steps, before it runs; nothing is written");
+    command->add_option("--ranks", arguments->ranks, "With --plan: over so many ranks, their memory, messages and weak scaling")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--latency", arguments->latency,
+                     "With --ranks: of a message between them, in seconds (default: through this machine's memory)")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--bandwidth", arguments->bandwidth, "With --latency: bytes a second")->check(CLI::PositiveNumber);
     command->add_option("--set", arguments->set, "With --plan: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
     command->callback([arguments, &exit_code] { exit_code = cost(*arguments); });
 }

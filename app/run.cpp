@@ -18,6 +18,7 @@
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
 #include "sim/solid_cells.hpp"
+#include "validation/cost/over_ranks.hpp"
 #include "validation/report/command.hpp"
 
 #include <chrono>
@@ -38,6 +39,7 @@ struct RunArguments {
     std::string reference;
     int threads = 0;
     std::int64_t checkpoint_every = 0;
+    int planned_ranks = 0;
     bool quiet = false, explain = false, any_size = false;
 };
 
@@ -86,6 +88,12 @@ std::string explain_ranks(const Simulation& simulation) {
     return text + "\n";
 }
 
+/// The same of ranks that there may be.
+std::string explain_planned_ranks(const scene::Scene& scene, int ranks) {
+    const validation::Forecast f = validation::forecast(scene);
+    return validation::over_ranks_text(validation::forecast_over_ranks(scene, f, ranks), f, scene);
+}
+
 /// What of this process stands in memory and in no file [bytes]; 0 where the system does not say.
 std::size_t resident_bytes() {
     std::ifstream status("/proc/self/status");
@@ -100,8 +108,7 @@ double memory_for_all(const scene::Scene& scene) {
     const double available = sim::available_memory(), ranks = slabs().ranks();
     const auto& kind = sim::kind_named(scene.solver());
     if (!slabs().several() || !kind.holds_own_part || !kind.holds_own_part(scene)) return available / ranks;
-    constexpr double planes_near_cuts = 9;  // of a rank, where nothing crosses more than a cell in a step: 4 beyond either, and one
-    return available / (1 + ranks * planes_near_cuts / scene.root().numbers("grid.cells").back());
+    return available / (1 + ranks * sim::planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
 
 /// Writes everything that a run leaves behind, and shows how it goes. Over ranks the first writes; what is looked at all look at.
@@ -249,6 +256,11 @@ int simulate(const RunArguments& arguments) {
     scene::Scene scene = arguments.scene.empty() ? scene_of(*checkpoint, overrides)
                                                  : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
     sim::require_ranks(scene, slabs().ranks());
+    if (arguments.planned_ranks > 0) {
+        if (!arguments.explain)
+            throw BadInput("--ranks tells what a run over so many ranks takes: it needs --explain; mpirun -n N starts one");
+        sim::require_ranks(scene, arguments.planned_ranks);
+    }
     if (!arguments.measure.empty()) slabs().hold_whole(true);  // metrics look at all of it
     if (!arguments.explain)
         sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run,
@@ -263,6 +275,7 @@ int simulate(const RunArguments& arguments) {
     if (arguments.explain) {
         const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
         std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation)).c_str(), stdout);
+        if (arguments.planned_ranks > 0) std::fputs(explain_planned_ranks(simulation.scene(), arguments.planned_ranks).c_str(), stdout);
         return exit_success;
     }
     if (checkpoint && simulation.finished()) return tell_finished(simulation);
@@ -321,6 +334,8 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
     run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");
+    run->add_option("--ranks", arguments->planned_ranks, "With --explain: over so many ranks, their memory and messages")
+        ->check(CLI::PositiveNumber);
     run->add_flag("--any-size", arguments->any_size, "Begin though the frames may not fit on the disk");
     run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files");
     run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });

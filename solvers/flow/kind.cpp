@@ -66,6 +66,7 @@ scene::SolverKind kind() {
                           {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
                           over_ranks};
     mac.holds_own_part = staggered::holds_own_planes;
+    mac.sends = traffic_of_step;
     return mac;
 }
 

@@ -43,9 +43,6 @@ StepReport FlowSolver<D>::step(real dt) {
     return report(dt);
 }
 
-namespace {
-
-/// What the scene's effects, emitters and initial values ask for.
 template <int D>
 FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& scene) {
     FieldPlan plan = effects.plan();
@@ -55,14 +52,15 @@ FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& sc
     return plan;
 }
 
-/// Beyond the cuts, of arrays that nobody asks for more of: a difference of differences looks so far.
-constexpr int planes_beside = 2;
-
-/// Planes beyond a cut that a path of so many cells reads, with the stencil at its end.
 int planes_reached(real cells, int planes) {
     if (!(cells < planes)) return planes;
     return std::min(planes, static_cast<int>(std::ceil(cells)) + ghost_layers);
 }
+
+namespace {
+
+/// Beyond the cuts, of arrays that nobody asks for more of: a difference of differences looks so far.
+constexpr int planes_beside = 2;
 
 /// Fastest crossing of a cell along a moving wall or through an inflow [1/s].
 template <int D>
@@ -655,6 +653,8 @@ std::size_t FlowSolver<D>::bytes() const {
     return total;
 }
 
+template FieldPlan field_plan(const Effects<MacState<2>>&, const scene::Scene&);
+template FieldPlan field_plan(const Effects<MacState<3>>&, const scene::Scene&);
 template class FlowSolver<2>;
 template class FlowSolver<3>;
 

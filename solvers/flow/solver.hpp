@@ -16,6 +16,17 @@
 
 namespace weir::flow {
 
+/// What a rank sends in a step of a scene that is cut so: an exchange after each pass that is read across cuts, and the numbers of planes
+/// that everybody adds up.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
+
+/// What the scene's effects, emitters and initial values ask for.
+template <int D>
+FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& scene);
+
+/// Planes beyond a cut that a path of so many cells reads, with the stencil at its end.
+int planes_reached(real cells, int planes);
+
 /// The registered solver "mac".
 scene::SolverKind kind();
 

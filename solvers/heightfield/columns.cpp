@@ -1,7 +1,7 @@
 #include "heightfield/columns.hpp"
 
 #include "core/error.hpp"
-#include "core/parallel.hpp"
+#include "core/grid.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,6 @@
 namespace weir::heightfield {
 
 namespace {
-
-constexpr int checked_every = 16;  // steps: a look at all columns costs as much as half a step
 
 void refuse_what_columns_cannot(const scene::Scene& scene, const State& state) {
     for (const char* effect : {"friction", "rain"})
@@ -50,6 +48,7 @@ Columns::Columns(const scene::Scene& scene)
       hand_(geometry::make_hand(scene, {HandKind::pour, HandKind::drain})),
       depth_(state_.plane.count()),
       nothing_(state_.plane.count(), 0),
+      cut_(cut_of(state_.plane.nz, slabs().ranks())),
       cfl_(scene.number("time.cfl")) {
     refuse_what_columns_cannot(scene, state_);
     Field().swap(state_.qx), Field().swap(state_.qz);
@@ -113,6 +112,9 @@ void Columns::make_stiffness() {
 real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pace(state_.time)); }
 
 StepReport Columns::step(real dt) {
+    const OwnPlanes mine(cut_);
+    whole_ = cut_.empty();
+    if (over_ranks()) slabs().refresh(cut_, planes_of(surface_), 1, periodic_z_);
     if (hand_) {
         const auto timed = passes_.time("effect hand");
         pour_and_drain(*hand_, state_, surface_, dt, [&](std::size_t c) { return floats_.covers(c); });
@@ -134,7 +136,7 @@ StepReport Columns::step(real dt) {
         const auto timed = passes_.time("effect damping");
         const real left = std::exp(-dt * damping_);
         const auto n = static_cast<std::size_t>(state_.plane.nx);
-        parallel_for(0, state_.plane.nz, [&](int r) {
+        for_each_plane(0, state_.plane.nz, [&](int r) {
             for (std::size_t c = static_cast<std::size_t>(r) * n; c < static_cast<std::size_t>(r + 1) * n; ++c) rate_[c] *= left;
         });
         through_ *= left;
@@ -148,23 +150,46 @@ StepReport Columns::step(real dt) {
 /// Open sides take what arrives: the discharge through the side is c times the height of the wave, so that dw/dt = -c/dx w there.
 void Columns::let_out(real dt) {
     const Plane& plane = state_.plane;
-    real taken = 0;
-    const auto slow = [&](int i, int r, real d) {
+    const auto slow = [&](int i, int r, real d) -> real {
+        if (!is_own_plane(r)) return 0;
         const std::size_t c = plane.at(i, r);
         const real before = rate_[c];
         rate_[c] = before / (1 + dt * std::sqrt(state_.g * state_.h[c]) / d);
-        taken += rate_[c] - before;
+        return rate_[c] - before;
     };
-    for (int end = 0; end < 2; ++end) {
-        for (int r = 0; state_.sides.open(0, end) && r < plane.nz; ++r) slow(end == 0 ? 0 : plane.nx - 1, r, plane.dx);
-        for (int i = 0; state_.sides.open(1, end) && i < plane.nx; ++i) slow(i, end == 0 ? 0 : plane.nz - 1, plane.dz);
+    const auto nx = static_cast<std::size_t>(plane.nx), nz = static_cast<std::size_t>(plane.nz);
+    for (std::size_t end = 0; end < 2; ++end) {
+        const bool first = end == 0;
+        taken_[end].assign(state_.sides.open(0, static_cast<int>(end)) ? nz : 0, 0);
+        taken_[2 + end].assign(state_.sides.open(1, static_cast<int>(end)) ? nx : 0, 0);
+        for (std::size_t r = 0; r < taken_[end].size(); ++r) taken_[end][r] = slow(first ? 0 : plane.nx - 1, static_cast<int>(r), plane.dx);
+        for (std::size_t i = 0; i < taken_[2 + end].size(); ++i)
+            taken_[2 + end][i] = slow(static_cast<int>(i), first ? 0 : plane.nz - 1, plane.dz);
     }
+    if (over_ranks()) gather_taken();
+    real taken = 0;
+    for (const std::size_t side : {0, 2, 1, 3})  // x_min, z_min, x_max, z_max
+        for (const real change : taken_[side]) taken += change;
     through_ += plane.area() * taken;
+}
+
+/// Of the rows along x each rank's own; of the first and the last row those of the ranks at the ends.
+void Columns::gather_taken() {
+    const auto ranks = static_cast<std::size_t>(cut_.ranks());
+    for (std::size_t end = 0; end < 2; ++end) {
+        if (Field& rows = taken_[end]; !rows.empty()) slabs().gather(cut_, {rows.data(), sizeof(real), state_.plane.nz});
+        Field& row = taken_[2 + end];
+        if (row.empty()) continue;
+        std::vector<std::size_t> begins(ranks + 1, end == 0 ? row.size() : 0);
+        begins.front() = 0, begins.back() = row.size();
+        slabs().gather_parts(row.data(), sizeof(real), begins);
+    }
 }
 
 void Columns::check() const {
     const Plane& plane = state_.plane;
-    const real least = -ordered_max(plane.nz, [&](int r) {
+    const real least = -plane_max(plane.nz, [&](int r) {
+        if (r == 0 && std::isinf(surface_[0])) return not_applicable;
         real most = -infinity;
         for (int i = 0; i < plane.nx; ++i) {
             const std::size_t c = plane.at(i, r);
@@ -174,11 +199,23 @@ void Columns::check() const {
         }
         return most;
     });
-    if (std::isnan(least) || std::isinf(surface_[0])) throw NumericalFailure("surface", "surface is no longer finite");
+    if (std::isnan(least)) throw NumericalFailure("surface", "surface is no longer finite");
     if (least < 0)
         throw NumericalFailure("depth",
                                "a column ran dry: columns that pull their neighbours keep their depth; scheme.model = \"shallow_water\" "
                                "has dry ground");
+}
+
+Planes Columns::planes_of(Field& field) const {
+    return {field.data(), sizeof(real) * static_cast<std::size_t>(state_.plane.nx), state_.plane.nz};
+}
+
+/// Brings the rows of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
+void Columns::make_whole() const {
+    if (whole_) return;
+    auto& own = const_cast<Columns&>(*this);  // what is written is what was not here: the state stays the same
+    for (Field* field : {&own.surface_, &own.rate_}) slabs().gather(cut_, planes_of(*field));
+    whole_ = true;
 }
 
 std::string Columns::concern() const {
@@ -189,6 +226,7 @@ std::string Columns::concern() const {
 }
 
 FieldSet Columns::fields() const {
+    make_whole();
     for (std::size_t c = 0; c < depth_.size(); ++c) depth_[c] = surface_[c] - state_.bed[c];
     FieldSet set{.grid = state_.plane.view(),
                  .fields = {{"velocity", "m/s", Where::cell, "", {nothing_, rate_}},
@@ -220,6 +258,7 @@ real Columns::volume() const {
 }
 
 std::vector<Integral> Columns::integrals() const {
+    make_whole();
     const real volume = this->volume();
     if (!floats_.empty()) floats_.displaced(surface_, displaced_);
     // of the water's top over its level at rest; below objects it is lower than the height that its pressure stands for
@@ -266,6 +305,7 @@ void Columns::edited(const EditableField& field) {
 }
 
 void Columns::save(Checkpoint& to) const {
+    make_whole();
     to.put("surface", surface_);
     to.put("rate", rate_);
     to.put_value("time", state_.time);
@@ -285,12 +325,14 @@ void Columns::restore(const Checkpoint& from) {
     steps_ = from.get_value<std::int64_t>("steps");
     if (hand_ && from.has("hand")) hand_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
+    whole_ = true;
 }
 
 std::size_t Columns::bytes() const {
     std::size_t total = state_.bytes() + k_.bytes() + sweep_.bytes() + floats_.bytes();
     for (const Field* f : {&surface_, &rate_, &std::as_const(depth_), &std::as_const(displaced_), &nothing_})
         total += f->capacity() * sizeof(real);
+    for (const Field& side : taken_) total += side.capacity() * sizeof(real);
     return total;
 }
 

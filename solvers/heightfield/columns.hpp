@@ -1,5 +1,6 @@
 // Columns as real-time graphics moves them (sweep.hpp), with objects that float or are dragged (floats.hpp).
 #pragma once
+#include "core/slabs.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/floats.hpp"
 #include "heightfield/hand.hpp"
@@ -9,6 +10,7 @@ namespace weir::heightfield {
 
 class Columns final : public Solver {
 public:
+    static constexpr int checked_every = 16;  // steps: a look at all columns costs as much as half a step
     explicit Columns(const scene::Scene& scene);
     StepReport step(real dt) override;
     real advised_dt() const override;
@@ -31,6 +33,9 @@ public:
 private:
     void make_stiffness();
     void let_out(real dt);
+    void gather_taken();
+    void make_whole() const;
+    Planes planes_of(Field& field) const;
     void check() const;
     real volume() const;
     bool is_wet(std::size_t c) const { return state_.h[c] > 0; }
@@ -48,6 +53,9 @@ private:
     std::shared_ptr<Hand> hand_;  // none where the scene names none
     mutable Field depth_, displaced_;
     Field nothing_;
+    std::array<Field, 4> taken_;  // by open sides, of each column beside them: x_min, x_max, z_min, z_max
+    Cut cut_;                     // over ranks: who owns which rows
+    mutable bool whole_ = true;   // whether all rows are here, and not this rank's alone
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;
     real through_ = 0;  // volume a second that sides let in [m^3/s]

@@ -1,6 +1,6 @@
 #include "heightfield/effects.hpp"
 
-#include "core/parallel.hpp"
+#include "core/grid.hpp"
 #include "geometry/hand.hpp"
 #include "scene/gravity.hpp"
 
@@ -16,7 +16,7 @@ using scene::Type;
 template <class F>
 void for_each_row(const State& s, F&& f) {
     const auto n = static_cast<std::size_t>(s.plane.nx);
-    parallel_for(0, s.plane.nz, [&](int k) { f(static_cast<std::size_t>(k) * n, static_cast<std::size_t>(k + 1) * n); });
+    for_each_plane(0, s.plane.nz, [&](int k) { f(static_cast<std::size_t>(k) * n, static_cast<std::size_t>(k + 1) * n); });
 }
 
 /// The part of gravity that is not along y: a bed that is drawn level and stands on a slope.
@@ -99,7 +99,7 @@ public:
     void apply(State& s, real dt) override {
         const real seconds = std::min(s.time + dt, end_) - std::max(s.time, start_), depth = rate_ * std::max(0.0, seconds);
         if (depth == 0) return;
-        s.poured += s.plane.area() * depth * ordered_sum(s.plane.nz, [&](int k) {
+        s.poured += s.plane.area() * depth * plane_sum(s.plane.nz, [&](int k) {
                         real sum = 0;
                         for (int i = 0; i < s.plane.nx; ++i) {
                             const std::size_t c = s.plane.at(i, k);

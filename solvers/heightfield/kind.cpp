@@ -151,6 +151,42 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
     return std::make_unique<ShallowWater>(scene);
 }
 
+/// What of a scene is not cut into slabs.
+void over_ranks(const scene::Scene& scene) {
+    const auto refuse = [&](const std::string& key, const std::string& what) {
+        scene.refuse(key, key + ": " + what + " in one process only");
+    };
+    if (scene.dim() == 2) refuse("dim", "one row of columns, which is never cut, runs");
+    if (!scene.root().tables("floats").empty()) refuse("floats", "objects float");
+    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
+}
+
+/// Of a step over ranks: rows beside the cuts before each stage, and what stages say of all rows.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
+    const Plane plane(scene);
+    const Sides sides(scene);
+    const PlaneSize row{sizeof(real) * static_cast<std::size_t>(plane.nx), plane.nz}, number{sizeof(real), plane.nz};
+    Tally tally(of.cut, of.rank, sides(1, 0).kind == SideKind::periodic);
+    if (scene.text("scheme.model") == "columns") {
+        tally.refresh({row}, 1);
+        for (int end = 0; end < 2; ++end) {
+            const bool owns = of.rank == (end == 0 ? 0 : of.ranks - 1);
+            if (sides.open(0, end)) tally.gather(number);
+            if (sides.open(1, end)) tally.everywhere(owns ? row.bytes : 0, 1, row.bytes);
+        }
+        if (shape.step % Columns::checked_every == 0) tally.gather(number);
+    } else {
+        tally.refresh({row, row, row}, rows_beside, 2);
+        tally.gather({sizeof(RowReport), plane.nz}, 2);
+    }
+    tally_run(tally);
+    if (const auto* gravity = scene.effect("gravity"); gravity && scene.text("scheme.model") != "columns")
+        if (const auto& g = gravity->numbers("g"); g[0] != 0 || g[2] != 0) tally.gather(number, 2);  // pace and volume after a push
+    if (scene.effect("rain")) tally.sent().besides.emplace_back("effects.rain");
+    if (scene.has("probes") && !scene.root().tables("probes").empty()) tally.sent().besides.emplace_back("probes");
+    return tally.sent();
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -178,7 +214,12 @@ scene::SolverKind kind() {
             make,
             {{"velocity", "depth", "surface", "bed"},
              {"move water"},
-             "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"}};
+             "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"},
+            over_ranks,
+            scene::Shared::by_planes,
+            "the bed under solids that move",
+            {},
+            traffic_of_step};
 }
 
 }  // namespace weir::heightfield

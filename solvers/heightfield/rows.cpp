@@ -1,6 +1,7 @@
 #include "heightfield/rows.hpp"
 
 #include "core/parallel.hpp"
+#include "core/slabs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -324,14 +325,16 @@ private:
 
 template <Limiter limiter>
 void run_parts(const StageOf& stage, std::vector<std::vector<real>>& scratch, RowReport* reports) {
-    const int nz = stage.state.plane.nz;
+    const int nz = stage.state.plane.nz, begin = detail::own_share.lower(0), end = detail::own_share.upper(nz);
     const auto own = [&] { return scratch[static_cast<std::size_t>(omp_get_thread_num())].data(); };
     if (stage.state.plane.dim == 2) {
         Part<limiter, false>(stage, scratch[0].data(), reports).run(0, 1);
         return;
     }
-    parallel_for(0, (nz + rows_apart - 1) / rows_apart,
-                 [&](int p) { Part<limiter, true>(stage, own(), reports).run(p * rows_apart, std::min(nz, (p + 1) * rows_apart)); });
+    parallel_for(0, (end - begin + rows_apart - 1) / rows_apart, [&](int p) {
+        const int first = begin + p * rows_apart;
+        Part<limiter, true>(stage, own(), reports).run(first, std::min(end, first + rows_apart));
+    });
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "heightfield/shallow_water.hpp"
 
 #include "core/error.hpp"
-#include "core/parallel.hpp"
+#include "core/grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +27,7 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
       raised_(make_raised_bed(scene, state_.plane)),
       effects_(make_effects(scene, state_, "move water")),
       hand_(geometry::make_hand(scene, geometry::moving_kinds)),
+      cut_(cut_of(state_.plane.nz, slabs().ranks())),
       cfl_(scene.number("time.cfl")) {
     if (hand_) effects_.add("hand", hand_effect(hand_));
     if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column a step: the depth may become negative", "cfl is at most 0.5");
@@ -41,7 +42,7 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
 void ShallowWater::measure() {
     const Plane& plane = state_.plane;
     const real rx = 1 / plane.dx, rz = 1 / plane.dz, dry = state_.dry;
-    rate_ = ordered_max(plane.nz, [&](int k) {
+    rate_ = plane_max(plane.nz, [&](int k) {
         real most = 0;
         for (int i = 0; i < plane.nx; ++i) {
             const std::size_t c = plane.at(i, k);
@@ -51,7 +52,7 @@ void ShallowWater::measure() {
         }
         return most;
     });
-    volume_ = plane.area() * ordered_sum(plane.nz, [&](int k) {
+    volume_ = plane.area() * plane_sum(plane.nz, [&](int k) {
                   real sum = 0;
                   for (int i = 0; i < plane.nx; ++i) sum += state_.h[plane.at(i, k)];
                   return sum;
@@ -60,6 +61,8 @@ void ShallowWater::measure() {
 
 /// Audusse et al. 2004 with Heun's method.
 StepReport ShallowWater::step(real dt) {
+    const OwnPlanes mine(cut_);
+    whole_ = cut_.empty();
     const real cfl = dt * rate_;
     effects_.apply(Stage::source, state_, dt, passes_);
     if (raised_) raise_bed(state_.time + dt);
@@ -79,13 +82,35 @@ void ShallowWater::raise_bed(real t) {
 void ShallowWater::move_water(real dt) {
     const auto timed = passes_.time("move water");
     const Water now{state_.h.data(), state_.qx.data(), state_.qz.data()}, next{h1_.data(), qx1_.data(), qz1_.data()};
+    bring_beside(now);
     rows_.stage({.state = state_, .from = now, .to = next, .dt = dt, .second = false}, reports_);
     take_reports(0.5);
+    bring_beside(next);
     rows_.stage({.state = state_, .from = next, .to = now, .dt = dt, .second = true}, reports_);
     take_reports(0.5);
 }
 
+/// Over ranks, the rows beyond the cuts that a face's two reconstructions read.
+void ShallowWater::bring_beside(const Water& water) const {
+    if (!over_ranks()) return;
+    const std::array<Planes, 3> all{planes_of(water.h), planes_of(water.qx), planes_of(water.qz)};
+    slabs().refresh(cut_, all, rows_beside, state_.sides(1, 0).kind == SideKind::periodic);
+}
+
+Planes ShallowWater::planes_of(real* field) const {
+    return {field, sizeof(real) * static_cast<std::size_t>(state_.plane.nx), state_.plane.nz};
+}
+
+/// Brings the rows of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
+void ShallowWater::make_whole() const {
+    if (whole_) return;
+    auto& state = const_cast<State&>(state_);  // what is written is what was not here: the state stays the same
+    for (Field* field : {&state.h, &state.qx, &state.qz}) slabs().gather(cut_, planes_of(field->data()));
+    whole_ = true;
+}
+
 void ShallowWater::take_reports(real weight) {
+    if (over_ranks()) slabs().gather(cut_, {reports_.data(), sizeof(RowReport), state_.plane.nz});
     volume_ = 0, rate_ = 0;
     for (const RowReport& r : reports_) {
         volume_ += r.volume * state_.plane.dz;
@@ -104,6 +129,7 @@ StepLimit ShallowWater::stable_dt() const {
 }
 
 FieldSet ShallowWater::fields() const {
+    make_whole();
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
     parallel_for(0, state_.plane.nz, [&](int k) {
         for (int i = 0; i < state_.plane.nx; ++i) {
@@ -124,6 +150,7 @@ FieldSet ShallowWater::fields() const {
 }
 
 std::vector<Integral> ShallowWater::integrals() const {
+    make_whole();
     const Plane& plane = state_.plane;
     const auto sum = [&](const auto& f) {
         return plane.area() * ordered_sum(plane.nz, [&](int k) {
@@ -172,6 +199,7 @@ void ShallowWater::edited(const EditableField&) {
 }
 
 void ShallowWater::save(Checkpoint& to) const {
+    make_whole();
     to.put("depth", state_.h);
     to.put("discharge_x", state_.qx);
     to.put("discharge_z", state_.qz);
@@ -195,6 +223,7 @@ void ShallowWater::restore(const Checkpoint& from) {
     rate_ = from.get_value<real>("rate");
     clipped_ = from.get_value<real>("clipped");
     if (hand_ && from.has("hand")) hand_->restore(from);
+    whole_ = true;
 }
 
 std::size_t ShallowWater::bytes() const {

@@ -1,11 +1,15 @@
 // The shallow-water equations on a plane of columns: second order in space and time, water at rest at rest, no negative depth.
 #pragma once
+#include "core/slabs.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/hand.hpp"
 #include "heightfield/rows.hpp"
 #include "heightfield/start.hpp"
 
 namespace weir::heightfield {
+
+/// Rows beyond a cut that a stage reads.
+inline constexpr int rows_beside = 2;
 
 class ShallowWater final : public Solver {
 public:
@@ -32,6 +36,9 @@ private:
     void take_reports(real weight);
     void raise_bed(real t);
     void measure();
+    void bring_beside(const Water& water) const;
+    void make_whole() const;
+    Planes planes_of(real* field) const;
 
     State state_;
     Rows rows_;
@@ -41,6 +48,8 @@ private:
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
     std::shared_ptr<Hand> hand_;  // none where the scene names none
+    Cut cut_;                     // over ranks: who owns which rows
+    mutable bool whole_ = true;   // whether all rows are here, and not this rank's alone
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "heightfield/sweep.hpp"
 
 #include "core/parallel.hpp"
+#include "core/slabs.hpp"
 
 #include <algorithm>
 
@@ -62,26 +63,34 @@ Sweep::Sweep(const Plane& plane, bool periodic_x, bool periodic_z)
     : plane_(plane),
       periodic_x_(periodic_x),
       periodic_z_(periodic_z),
-      parts_((plane.nz + rows_of_part - 1) / rows_of_part),
-      edges_(2 * static_cast<std::size_t>(parts_) * static_cast<std::size_t>(plane.nx)) {}
+      edges_(2 * static_cast<std::size_t>(OwnRows{0, plane.nz}.parts()) * static_cast<std::size_t>(plane.nx)) {}
 
-void Sweep::part(int p, Field& surface, Field& rate, const Stiffness& k, real dt, real* scratch) {
+int Sweep::OwnRows::parts() const { return (end - begin + rows_of_part - 1) / rows_of_part; }
+int Sweep::OwnRows::part_begin(int p) const { return begin + p * rows_of_part; }
+int Sweep::OwnRows::part_end(int p) const { return std::min(end, part_begin(p + 1)); }
+
+void Sweep::part(const OwnRows& own, int p, Field& surface, Field& rate, const Stiffness& k, real dt, real* scratch) {
     const TinyIsZero here;
-    const int n = plane_.nx, begin = p * rows_of_part, end = std::min(plane_.nz, begin + rows_of_part);
+    const int n = plane_.nx, begin = own.part_begin(p), end = own.part_end(p);
     const auto row_size = static_cast<std::size_t>(n);
     const std::size_t padded = row_size + 16;
     real *old = scratch + 8, *before = scratch + padded + 8;
     const auto edge = [&](int of, int last) {
         return edges_.data() + (2 * static_cast<std::size_t>(of) + static_cast<std::size_t>(last)) * row_size;
     };
-    // beyond the ends of the plane a row meets itself: no difference, no pull
-    const real* below = begin > 0 ? edge(p - 1, 1) : periodic_z_ ? edge(parts_ - 1, 1) : edge(p, 0);
+    // the old rows before and after this part: those that others overwrite were kept, those of other ranks stay as they were; beyond the
+    // ends of the plane a row meets itself: no difference, no pull
+    const auto before_row = [&](int row) {
+        return own.has(row) ? edge(row < begin ? p - 1 : own.parts() - 1, 1) : surface.data() + plane_.at(0, row);
+    };
+    const auto after_row = [&](int row) { return own.has(row) ? edge(row < end ? 0 : p + 1, 0) : surface.data() + plane_.at(0, row); };
+    const real* below = begin > 0 ? before_row(begin - 1) : periodic_z_ ? before_row(plane_.nz - 1) : edge(p, 0);
     for (int r = begin; r < end; ++r) {
         real *s = surface.data() + plane_.at(0, r), *w = rate.data() + plane_.at(0, r);
         std::copy(s, s + n, old);
         old[-1] = periodic_x_ ? old[n - 1] : old[0];
         old[n] = periodic_x_ ? old[0] : old[n - 1];
-        const real* above = r + 1 < end ? s + n : r + 1 < plane_.nz ? edge(p + 1, 0) : periodic_z_ ? edge(0, 0) : old;
+        const real* above = r + 1 < end ? s + n : r + 1 < plane_.nz ? after_row(r + 1) : periodic_z_ ? after_row(0) : old;
         if (k.uniform)
             uniform_row(old, below, above, s, w, n, k.along_x, k.along_z, dt);
         else
@@ -96,13 +105,15 @@ void Sweep::step(Field& surface, Field& rate, const Stiffness& k, real dt) {
     const auto row = static_cast<std::size_t>(plane_.nx);
     const auto wanted = static_cast<std::size_t>(plane_.dim == 2 ? 1 : threads());
     if (scratch_.size() < wanted) scratch_.resize(wanted, Field(2 * (row + 16)));
-    parallel_for(0, parts_, [&](int p) {
-        const int begin = p * rows_of_part, last = std::min(plane_.nz, begin + rows_of_part) - 1;
+    const OwnRows own{detail::own_share.lower(0), detail::own_share.upper(plane_.nz)};
+    parallel_for(0, own.parts(), [&](int p) {
+        const int begin = own.part_begin(p), last = own.part_end(p) - 1;
         std::copy_n(surface.data() + plane_.at(0, begin), row, edges_.data() + 2 * static_cast<std::size_t>(p) * row);
         std::copy_n(surface.data() + plane_.at(0, last), row, edges_.data() + (2 * static_cast<std::size_t>(p) + 1) * row);
     });
-    if (parts_ == 1) return part(0, surface, rate, k, dt, scratch_[0].data());
-    parallel_for(0, parts_, [&](int p) { part(p, surface, rate, k, dt, scratch_[static_cast<std::size_t>(omp_get_thread_num())].data()); });
+    if (own.parts() == 1) return part(own, 0, surface, rate, k, dt, scratch_[0].data());
+    parallel_for(0, own.parts(),
+                 [&](int p) { part(own, p, surface, rate, k, dt, scratch_[static_cast<std::size_t>(omp_get_thread_num())].data()); });
 }
 
 std::size_t Sweep::bytes() const {

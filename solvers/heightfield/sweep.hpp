@@ -27,10 +27,17 @@ public:
     std::size_t bytes() const;
 
 private:
-    void part(int p, Field& surface, Field& rate, const Stiffness& k, real dt, real* scratch);
+    /// The rows of this rank, all in one process, in parts of so many.
+    struct OwnRows {
+        int begin, end;
+        int parts() const;
+        int part_begin(int p) const;
+        int part_end(int p) const;
+        bool has(int row) const { return row >= begin && row < end; }
+    };
+    void part(const OwnRows& own, int p, Field& surface, Field& rate, const Stiffness& k, real dt, real* scratch);
     Plane plane_;
     bool periodic_x_, periodic_z_;
-    int parts_;
     std::vector<Field> scratch_;  // one a thread: two rows
     Field edges_;                 // the first and the last row of each part, as they were
 };

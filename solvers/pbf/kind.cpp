@@ -1,5 +1,6 @@
 // The registration of "pbf": its keys, its effects, its maker.
 #include "particles/kind.hpp"
+#include "particles/traffic.hpp"
 #include "pbf/device_solver.hpp"
 #include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
@@ -85,14 +86,33 @@ std::vector<scene::Variant> effects() {
              {"k"}}};
 }
 
+/// Of a step over ranks: those near the cuts, and the multipliers and positions that neighbours read in each iteration.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
+    const Options options(scene);
+    const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);
+    const int warm = options.warm_start > 0 ? 1 : 0, dim = scene.dim();
+    Tally tally({}, of.rank);
+    particles::tally_migration(shared, of, dim + 1 + warm, tally);  // position, place
+    particles::tally_halos(shared, of, 4 * sizeof(float), 2 * std::int64_t{shape.iterations} + warm, tally);
+    particles::tally_end(of, tally);
+    tally_run(tally);
+    tally.sent().besides = particles::not_counted(scene, {"xsph", "vorticity"});
+    if (options.tolerance > 0) tally.sent().besides.emplace_back("scheme.tolerance");
+    return tally.sent();
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
     const char* doc = "Position Based Fluids (Macklin & Müller 2013): liquid particles kept at rest density by constraints.";
     return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"fluid.viscosity"}}, {}),
             particles::make_solver<PbfSolver, ReferencePbfSolver, DevicePbfSolver>,
-            particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"}), particles::refuse_over_ranks,
-            scene::Shared::by_particles};
+            particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"}),
+            particles::refuse_over_ranks,
+            scene::Shared::by_particles,
+            {},
+            {},
+            traffic_of_step};
 }
 
 }  // namespace weir::pbf

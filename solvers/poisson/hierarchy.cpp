@@ -276,11 +276,19 @@ std::size_t Hierarchy<D>::bytes() const {
 }
 
 template <int D>
-bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut) {
+std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut) {
     std::array<bool, D> wraps = periodic;
     for (int a = 0; a < D; ++a) wraps[static_cast<std::size_t>(a)] = wraps[static_cast<std::size_t>(a)] && n[a] > 1;
     auto levels = levels_below(finest_of<D>(n, wraps, axis_weight, true));
     Hierarchy<D>::cut_levels(levels, cut);
+    return levels;
+}
+template std::vector<Level<2>> cut_levels_of<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Cut&);
+template std::vector<Level<3>> cut_levels_of<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, const Cut&);
+
+template <int D>
+bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut) {
+    const auto levels = cut_levels_of<D>(n, periodic, axis_weight, cut);
     return !levels.empty() && !levels[0].cut.empty();
 }
 template bool multigrid_shares<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Cut&);

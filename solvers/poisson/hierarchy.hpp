@@ -42,4 +42,8 @@ private:
     Vector x_, b_;
 };
 
+/// The levels of such a problem without their memory, the large ones cut as the finest is; none where the shape does not suit.
+template <int D>
+std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut);
+
 }  // namespace weir::poisson

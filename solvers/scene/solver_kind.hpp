@@ -2,6 +2,7 @@
 // run, validate, studies) finds it there.
 #pragma once
 #include "core/solver.hpp"
+#include "core/traffic.hpp"
 #include "scene/scene.hpp"
 
 #include <functional>
@@ -31,6 +32,8 @@ struct SolverKind {
     std::string by_all{};
     /// Whether each of the ranks that there are would hold its own part of a scene alone. None: all hold everything.
     std::function<bool(const Scene&)> holds_own_part{};
+    /// What a rank sends in such a step, by formula. None: not known.
+    std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> sends{};
 };
 
 /// What each may be told.

@@ -362,6 +362,12 @@ double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool fr
            (frames ? copies_of_frame * foretell_output(scene, foretold).bytes_of_frame + foretold.surface_bytes : 0);
 }
 
+double bytes_of_rank(double bytes, const Cut& cut, int rank) {
+    const double planes = cut.planes(), own = cut.end(rank, cut.planes()) - cut.begin(rank);
+    const bool outer = rank == 0 || rank + 1 == cut.ranks();
+    return bytes * std::min(planes, own + (outer ? (planes_near_cuts + 1) / 2 : planes_near_cuts)) / planes;
+}
+
 void require_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, Use use, double available) {
     const double cells = product(scene.root().numbers("grid.cells"));
     if (cells <= cells_of_copy || (cells * most_bytes_a_cell <= available && !factorises(scene))) return;

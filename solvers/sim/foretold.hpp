@@ -2,6 +2,7 @@
 // are built in its place, hold what it would hold a cell and a particle, and tell how both grow. Whatever solvers, effects and pressure
 // methods allocate is counted as they count it; no table of theirs is kept here.
 #pragma once
+#include "core/halo.hpp"
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
 #include "scene/solver_kind.hpp"
@@ -58,6 +59,11 @@ ForetoldOutput foretell_output(const scene::Scene& scene, const Foretold& foreto
 /// Memory of a run [bytes]: the solver's, the last good state that the loop keeps (its fields), and, where frames are written, one of them
 /// as arrays, as the encoder's text and as the copy of it that goes to the disk.
 double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool frames);
+
+/// Planes that a rank holds of those that others own, where nothing crosses more than a cell in a step: 4 beyond either cut, and one.
+inline constexpr double planes_near_cuts = 9;
+/// Of what one process would hold, the part of a rank that holds its own planes and those near its cuts alone.
+double bytes_of_rank(double bytes, const Cut& cut, int rank);
 
 enum class Use { solver, run, run_with_frames };
 /// Refuses a scene that needs more memory than is available, at grid.cells, with both numbers. Costs nothing for scenes that cannot.

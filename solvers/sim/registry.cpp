@@ -51,11 +51,13 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
         scene.refuse("solver", "solver " + scene::quote(scene.solver()) + " runs in one process, and there are " + std::to_string(ranks),
                      "over ranks: " + able);
     }
+    kind.over_ranks(scene);
     const int planes = static_cast<int>(scene.root().numbers("grid.cells").back());
     if (kind.shared == scene::Shared::by_planes && planes < ranks)
-        scene.refuse("grid.cells", std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") +
-                                       " cannot be shared by " + std::to_string(ranks) + " ranks");
-    kind.over_ranks(scene);
+        scene.refuse("grid.cells",
+                     std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") + " cannot be shared by " +
+                         std::to_string(ranks) + " ranks",
+                     "at most " + std::to_string(planes));
 }
 
 }  // namespace weir::sim

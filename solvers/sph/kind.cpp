@@ -1,5 +1,6 @@
 // The registration of "sph": its keys, its effects, its maker.
 #include "particles/kind.hpp"
+#include "particles/traffic.hpp"
 #include "sph/device_solver.hpp"
 #include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
@@ -92,6 +93,21 @@ Key surface() {
             .length = -1};
 }
 
+/// Of a step over ranks: those near the cuts, and their new velocities or their summed densities.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
+    const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);
+    const auto dim = static_cast<std::size_t>(scene.dim());
+    Tally tally({}, of.rank);
+    particles::tally_migration(shared, of, 2 * scene.dim() + 2, tally);  // position, place, velocity, density
+    const bool continuity = scene.text("scheme.density") == "continuity";
+    particles::tally_halos(shared, of, continuity ? dim * sizeof(real) : sizeof(float), 1, tally);
+    particles::tally_end(of, tally);
+    tally_run(tally);
+    tally.sent().besides =
+        particles::not_counted(scene, {"xsph", "vorticity", "viscosity", "artificial_viscosity", "density_diffusion", "surface_tension"});
+    return tally.sent();
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -99,8 +115,12 @@ scene::SolverKind kind() {
     return {
         particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"time.cfl"}}, {surface()}),
         particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
-        particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"}), particles::refuse_over_ranks,
-        scene::Shared::by_particles};
+        particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"}),
+        particles::refuse_over_ranks,
+        scene::Shared::by_particles,
+        {},
+        {},
+        traffic_of_step};
 }
 
 }  // namespace weir::sph

@@ -6,5 +6,7 @@ namespace weir::staggered {
 
 /// Not where somebody looks at whole fields on all ranks, nor where each solves for the pressure itself.
 bool holds_own_planes(const scene::Scene& scene);
+/// Of so many ranks, where nobody but the scene asks for more.
+bool could_hold_own_planes(const scene::Scene& scene, int ranks);
 
 }  // namespace weir::staggered

@@ -33,9 +33,14 @@ using namespace surface;  // the words of the grid and of its free surface are t
 /// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where friction is solved for by
 /// everybody, nor where markers that have escaped from flat cells are looked at one after the other.
 bool holds_own_planes(const scene::Scene& scene);
+/// Of so many ranks, where nobody but the scene asks for more.
+bool could_hold_own_planes(const scene::Scene& scene, int ranks);
 
 /// The registered solver "mac_water".
 scene::SolverKind kind();
+
+/// What a rank sends in a step of a scene that is cut so.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
 
 /// How momentum travels: on the grid by semi-Lagrangian advection, or on the markers.
 enum class Transfer { grid, pic, flip, apic };

@@ -48,7 +48,7 @@ compare() {
 }
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
-water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml
+water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
 # without what everybody finds of whole grids, friction and a gauge; and with cells that a periodic axis can halve
 frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
     --set 'probes=[{name="sums",kind="integral",field="volume"},{name="wall",kind="point",field="pressure",at=[0.2,0.3]}]')
@@ -99,6 +99,24 @@ water_schemes)
     ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.06
     diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
     ;;
+heightfield)
+    compare shallow "$every" "$shallow"
+    grep -q '"storage":"every rank holds whole grids"' shallow-2-1/run.json || fail "run.json does not tell that grids are whole"
+    compare columns "$every" "$columns"
+    around='--set sides={z_min={kind="periodic"},z_max={kind="periodic"},x_max={kind="wall"}}'
+    compare ring "2 1,3 2" "$shallow" $around --set scheme.limiter=van_leer
+    compare ring_columns "2 1,3 2" "$columns" $around
+    compare thin "4 1" "$shallow" --set grid.cells=[37,1,6]
+    compare thin_columns "4 1" "$columns" --set grid.cells=[37,1,5]
+    # saved on three, continued on two
+    for scene in "$shallow" "$columns"; do
+        rm -rf parts whole
+        ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
+        ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.4
+        ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.4
+        diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    done
+    ;;
 particles_schemes)
     compare tolerant "3 2" "$drops" --set scheme.tolerance=1e-3 --set scheme.warm_start=0.4 --set scheme.kernel=muller --set effects.artificial_pressure.k=1e-4
     compare summed "3 1" "$drops" $sph --set scheme.density=summation --set scheme.tension=true --set effects.surface_tension.sigma=0.07
@@ -121,116 +139,6 @@ schemes)
     compare paths "3 1" "$flat" --set scheme.advection=semi_lagrangian --set effects.viscosity.scheme=implicit
     compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
     compare small "4 1" "$flat" --set grid.cells=[16,5]
-    ;;
-traffic) # what is sent is what must be, in the steps by which one run is longer than another: particles that stand on a lattice, and a flow
-    cat >still.toml <<-END
-	solver = "sph"
-	dim = 2
-	grid = { cells = [16, 40], size = [0.16, 0.4] }
-	time = { end = 0.01, dt = 1e-4 }
-	scheme = { support = 2.0 }
-	liquid = [ { shape = "box", min = [0.0, 0.0], max = [0.16, 0.34] } ]
-	output = { every = 1.0 }
-	END
-    # sent WHAT RANK: in the last 20 steps of 30, over two ranks
-    sent() { echo $(($(told long "$1" "$2") - $(told short "$1" "$2"))); }
-    told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
-    both() { # SCENE [--set ...]: 10 steps and 30, of 1e-4 s
-        rm -rf short long
-        ends 0 over 2 "$weir" run "$@" --quiet --threads 1 --out short --set time.end=0.001
-        ends 0 over 2 "$weir" run "$@" --quiet --threads 1 --out long --set time.end=0.003
-        [ "$(grep -c '"step":' short/run.json)" -eq 10 ] && [ "$(grep -c '"step":' long/run.json)" -eq 30 ] || fail "not 10 and 30 steps"
-    }
-    expect() { [ "$1" -eq "$2" ] || fail "$3: $1, and $2 by the formula"; }
-    # 34 rows of 16. Cells are two spacings wide and a hair more: the first of an axis holds 3, the others 2, the eighth along x 1. Rank 0
-    # has 17 rows, 8 whole rows of cells; 1 reads the last of these and the cell before it, 0 the first row of 1's and the cell behind it.
-    to_1=$((2 * 16 + 2 * 1)) to_0=$((2 * 16 + 2 * 3))
-    # A step: the box and the number of own particles (7 numbers); how many go to each rank, and are shown to it (2 of 4 bytes); to the
-    # neighbour position, place, velocity and density of those shown (6); then their new velocities (2), or their summed densities, single;
-    # how the step went (the sum of compression in 16 bytes, its largest, what walls corrected, three more, and a word: padded to 80); and the
-    # run: whether rank 0 could write, and whether anybody was asked to end. None changes hands.
-    for density in continuity summation; do
-        both still.toml --set scheme.density=$density --set scheme.sound_speed=1e-3 # so that nothing moves as far as that hair
-        after=$([ $density = continuity ] && echo 16 || echo 4)
-        for rank in 0 1; do
-            beside=$([ $rank = 0 ] && echo $to_1 || echo $to_0)
-            expect "$(sent messages $rank)" $((20 * 7)) "messages of rank $rank, $density"
-            expect "$(sent bytes $rank)" $((20 * (56 + 2 * 8 + beside * (6 * 8 + after) + 80 + 2 * 4))) "bytes of rank $rank, $density"
-        done
-    done
-    # PBF: as much, but of those shown position and place (3), and two halos an iteration, of 4 single numbers. It moves particles over the hair:
-    # of the cell at the end of the two rows there may be any part.
-    both still.toml --set solver=pbf --set scheme.iterations=5 --set scheme.warm_start=0
-    for rank in 0 1; do
-        expect "$(sent messages $rank)" $((20 * (2 * 5 + 4 + 2))) "messages of rank $rank, pbf"
-        shown=$(sent bytes $rank) each=$((3 * 8 + 2 * 5 * 16))
-        shown=$((shown - 20 * (56 + 2 * 8 + 80 + 2 * 4)))
-        expect $((shown % each)) 0 "bytes of rank $rank, pbf, that are of no particle"
-        beside=$((shown / each / 20))
-        [ $beside -ge $((2 * 16)) ] && [ $beside -le $((2 * 16 + 3 * 3)) ] || fail "$beside particles are shown by rank $rank, pbf"
-    done
-    # A pool at rest: its pressure is everybody's, of gathered numbers.
-    cat >pool.toml <<-END
-	solver = "mac_water"
-	dim = 2
-	grid = { cells = [16, 40], size = [0.16, 0.4] }
-	time = { end = 0.01, max_dt = 1e-4 }
-	liquid = [ { shape = "box", min = [0.0, 0.0], max = [0.16, 0.3] } ]
-	output = { every = 1.0 }
-	END
-    both pool.toml
-    for rank in 0 1; do
-        # Cut before plane 16 of 40, with a plane of faces more at the end. A row of cells, and of faces along x.
-        planes=$([ $rank = 0 ] && echo 16 || echo 24) faces=$([ $rank = 0 ] && echo 16 || echo 25)
-        row=$((8 * 16)) both=$((8 * 17 + 8 * 16)) number_a_row=$((8 * (planes + faces)))
-        # The fastest flow; the velocity 3 rows deep; the level set as deep, before and after it moves; how many markers go; the 4 of each cell
-        # at the cut, with 4 numbers.
-        messages=6 bytes=$((8 * faces + 3 * both + 6 * row + 2 * 4 + 16 * 4 * 4 * 8))
-        # The level set: what is inside, a byte a cell, 11 rows, as far as its 5 layers go there and back; a row of it, twice for each of 4
-        # layers, 5 at the end; all of it.
-        messages=$((messages + 1 + 9 + 1 + 1)) bytes=$((bytes + 11 * 16 + 14 * row + planes * row))
-        # Faces, 2 layers on from the markers and 4 on from the liquid: what is known, a byte a face, 4 rows more than layers; 3 rows; for the
-        # second layer 3 more, for others one, each component by itself. Faces at the cut: before, behind, as forces and as the pressure
-        # leave them, at the end.
-        messages=$((messages + 2 * (1 + 1 + 2) + 2 * 2 + 5))
-        bytes=$((bytes + (6 + 8) * (17 + 16) + 2 * 6 * both + 2 * both + 5 * row))
-        # The right-hand side and the pressure; what diverges; the fastest flow; FLIP's difference, one row; whether all is finite; the run's.
-        messages=$((messages + 2 + 1 + 2 + 1 + 1 + 2)) bytes=$((bytes + 2 * planes * row + 8 * planes + number_a_row + both + 4 + 2 * 4))
-        expect "$(sent messages $rank)" $((20 * messages)) "messages of rank $rank, mac_water"
-        expect "$(sent bytes $rank)" $((20 * bytes)) "bytes of rank $rank, mac_water"
-    done
-    cat >stirred.toml <<-END
-	solver = "mac"
-	dim = 2
-	grid = { cells = [144, 152], size = [0.045, 0.0475] }
-	time = { end = 0.01, max_dt = 1e-4 }
-	sides.y_max = { kind = "outflow" }
-	initial.velocity = { name = "random", speed = 0.3 }
-	scheme.poisson.tolerance = 0.3
-	output = { every = 1.0 }
-	END
-    both stirred.toml
-    iterations() { echo $(($(grep -o '"iterations":[0-9]*' "$1/run.json" | cut -d: -f2 | paste -sd+))); }
-    [ "$(grep -o '"iterations":[0-9]*' long/run.json | cut -d: -f2 | sort -n | tail -n 1)" -eq 1 ] || fail "a step of more than one iteration"
-    cycles=$(($(iterations long) - $(iterations short)))
-    [ $cycles -gt 0 ] || fail "no iteration"
-    for rank in 0 1; do
-        # Cut before plane 72 of 152, with a plane of faces more at the end. A row with its ghosts, of faces across it and of others; a row of
-        # cells; rows of one colour, padded to 16 single numbers and 16 more, on the grid and on the next coarser one, which all ranks solve.
-        planes=$([ $rank = 0 ] && echo 72 || echo 80) faces=$([ $rank = 0 ] && echo 72 || echo 81)
-        padded=$((8 * (144 + 6 + 1) + 8 * (144 + 6))) row=$((8 * 144)) colour=$((4 * (80 + 16))) coarse=$((4 * (48 + 16)))
-        # A step: velocities 1 + 3 rows deep twice, before and as they are carried; what is predicted, one row of each; faces or pressure
-        # at the cut 5 times; the largest of each velocity at both ends, of the pressure, and of what diverges, whether the pressure is 0,
-        # and the norm of the right-hand side, a number a plane; 4 sums of the first residual; and the run's 2.
-        messages=$((20 * (2 + 2 + 5 + 4 + 4 + 1 + 2)))
-        bytes=$((20 * ((2 * 4 + 1) * padded + 5 * row + 8 * (2 * (planes + faces) + 4 * planes) + 32 * planes + 8)))
-        # An iteration, the only one of its solve: a cycle of 5 stages down and 6 up with a row of one colour after each but the last, the
-        # right-hand side of the coarser grid in two colours, sums; and the end: the pressure at the cut, sums.
-        messages=$((messages + cycles * (4 + 5 + 2 + 1 + 2)))
-        bytes=$((bytes + cycles * (9 * colour + 2 * coarse * planes / 2 + 32 * planes + row + 32 * planes)))
-        expect "$(sent messages $rank)" $messages "messages of rank $rank, mac"
-        expect "$(sent bytes $rank)" $bytes "bytes of rank $rank, mac"
-    done
     ;;
 storage) # each rank holds its own planes and those near its cuts, by its own count and as the system sees it
     cat >plume.toml <<-END
@@ -353,6 +261,12 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
         alike liquid_3d liquid_3d_poisoned
     done
+    for case in "$shallow" "$columns"; do
+        rm -rf field field_poisoned
+        ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field
+        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field_poisoned
+        alike field field_poisoned
+    done
     for case in "$drops" "$drops_deep" "$drops $sph" "$drops_deep $sph" "$drops $sph --set scheme.density=summation"; do
         rm -rf drops drops_poisoned
         ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops
@@ -382,6 +296,10 @@ ends)
     refused "scheme.backend: this backend runs in one process only" "$drops" --set scheme.backend=reference
     refused 'solids\[0\].motion' "$scenes/smoke.toml"
     refused scheme.poisson.method "$flat" --set scheme.poisson.method=petsc_gamg
+    refused "dim: one row of columns, which is never cut, runs in one process only" "$scenes/../../../cases/dam_break_ritter/scene.toml"
+    refused "floats: objects float in one process only" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
+    refused "effects.hand: the hand pushes in one process only" "$shallow" --set effects.hand={}
+    refused "at most 2" "$flat" --set grid.cells=[16,2]
     refused "planes of cells" "$flat" --set grid.cells=[16,2]
     refused "unknown key" "$flat" --set grid.cell=2
     ends 2 over 2 "$weir" list solvers

@@ -18,6 +18,8 @@ struct Rates {
     std::vector<Pass> passes{};  // seconds: of that median, by their shares
     double dt = 0;               // [s] the mean
     double least_dt = 0, most_dt = 0;
+    double iterations = 0;  // of a step's solve: the mean
+    double most_cfl = 0;    // cells that anything crosses in a step; 0 where nobody says
 };
 
 struct Forecast {
@@ -31,6 +33,7 @@ struct Forecast {
     double ms = 0;                             // a step
     double dt = 0, least_dt = 0, most_dt = 0;  // a step: mean, shortest and longest of the small runs, on this scene's cells
     std::vector<Pass> passes{};                // seconds a step
+    double iterations = 0, most_cfl = 0;       // of the larger copy
     std::vector<Rates> measured{};             // at which sizes
 };
 

@@ -1,0 +1,169 @@
+// What a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of what stands in surface/, pass by pass.
+#include "poisson/traffic.hpp"
+#include "geometry/wet_part.hpp"
+#include "water/solver.hpp"
+
+#include <cmath>
+
+namespace weir::water {
+
+namespace {
+
+/// What the formula does not know the messages of.
+std::vector<std::string> not_counted(const scene::Scene& scene) {
+    std::vector<std::string> keys;
+    const auto lists = [&](const char* key) { return scene.has(key) && !scene.root().tables(key).empty(); };
+    for (const char* list : {"solids", "emitters", "probes"})
+        if (lists(list)) keys.emplace_back(list);
+    for (const char* effect : {"viscosity", "volume_control"})
+        if (scene.effect(effect)) keys.push_back(std::string("effects.") + effect);
+    if (scene.root().number_or("time.stop_when_steady", 0) > 0) keys.emplace_back("time.stop_when_steady");
+    return keys;
+}
+
+template <int D>
+class Step {
+public:
+    Step(const scene::Scene& scene, const RankOf& of, const StepShape& shape)
+        : scene_(scene),
+          sides_(scene),
+          lattice_(scene),
+          n_(lattice_.cells),
+          transfer_(scene.text("scheme.transfer")),
+          ring_(sides_.periodic(D - 1)),
+          windowed_(could_hold_own_planes(scene, of.ranks)),
+          shape_(shape),
+          reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
+          layers_(static_cast<int>(std::ceil(scene.number("time.cfl"))) + 4),
+          cells_(plane(n_, sizeof(real))),
+          tally_(of.cut, of.rank, ring_) {
+        for (int a = 0; a < D; ++a) faces_[static_cast<std::size_t>(a)] = plane(n_ + e<D>(a), sizeof(real));
+    }
+
+    StepTraffic sent() {
+        move();
+        find_surface();
+        sync();  // what the markers brought, beside walls
+        continue_velocity(2);
+        if (transfer_ == "flip") sync();
+        sync();  // what forces leave
+        project();
+        continue_velocity(layers_ - 1);
+        sync();
+        for (int a = 0; a < D; ++a) largest(faces_[static_cast<std::size_t>(a)].count);  // the fastest flow
+        if (transfer_ != "grid") tally_.refresh(faces_, 1);                              // the velocity, or FLIP's difference
+        tally_.everywhere(sizeof(int), 1, sizeof(int));                                  // whether all is finite
+        tally_run(tally_);
+        tally_.sent().besides = not_counted(scene_);
+        return tally_.sent();
+    }
+
+private:
+    static PlaneSize plane(const Index<D>& n, std::size_t each) {
+        for (int d = 0; d + 1 < D; ++d) each *= static_cast<std::size_t>(n[d]);
+        return {each, n[D - 1]};
+    }
+    void sync() { tally_.refresh({faces_[D - 1]}, 1); }
+    void largest(int planes) { tally_.gather({sizeof(real), planes}); }
+
+    void move() {
+        largest(faces_[D - 1].count);
+        tally_.refresh(faces_, reach_);
+        tally_.refresh({cells_}, reach_, 2);  // the level set, before and after it moves
+        migrate();
+    }
+    /// How many markers go, and those that neighbours know beyond the cuts: of the planes beside them.
+    void migrate() {
+        const int ranks = tally_.cut().ranks(), rank = tally_.rank();
+        const std::size_t row = sizeof(int) * static_cast<std::size_t>(ranks);
+        tally_.everywhere(row, 1, row * static_cast<std::size_t>(ranks));
+        bool open = false;
+        for (int a = 0; a < D; ++a) open = open || sides_.open(a, 0) || sides_.open(a, 1);
+        const int numbers = D + (transfer_ == "grid" ? 0 : D) + (transfer_ == "apic" ? D * D : 0);
+        const auto bytes_in = [&](int at) {
+            const double markers =
+                geometry::wet_part_of_plane<D>(scene_, at) * static_cast<double>(cells_.bytes / sizeof(real)) * Markers<D>::per_cell;
+            return static_cast<std::size_t>(std::llround(markers)) * static_cast<std::size_t>(numbers) * sizeof(real);
+        };
+        const int first = tally_.cut().begin(rank), last = tally_.cut().end(rank, n_[D - 1]) - 1;
+        if (rank > 0 || ring_) tally_.parcel(bytes_in(first));
+        if (rank + 1 < ranks || ring_) tally_.parcel(bytes_in(last));
+        if (open) tally_.everywhere(sizeof(std::int64_t), 2, sizeof(std::int64_t) * static_cast<std::size_t>(ranks));
+    }
+    /// Who is inside is known as far as the band is found beyond the cuts; values of a layer are found twice, each time from those beside
+    /// them. Then what is liquid, and how it is joined.
+    void find_surface() {
+        const int found = 2 * layers_;
+        tally_.refresh({plane(n_, sizeof(std::uint8_t))}, found + 1);
+        tally_.refresh({cells_}, 1, 1 + 2 * (layers_ - 1));
+        tally_.refresh({cells_}, layers_);
+        if (scene_.effect("surface_tension")) tally_.refresh({cells_}, 1);  // curvature
+        if (!windowed_) return tally_.gather(cells_);
+        Index<D> lines = n_;
+        lines[0] = 1;
+        const auto ranks = static_cast<std::size_t>(tally_.cut().ranks());
+        tally_.everywhere(sizeof(std::int64_t), 1, sizeof(std::int64_t) * ranks);  // is there liquid?
+        tally_.refresh({plane(n_, sizeof(poisson::Cell)), plane(lines, sizeof(Extent))}, 2);
+        sync();  // weights above the last cells
+    }
+    /// Which faces are known as far as a slope looks behind the last layer; a layer is found from three planes at the cuts, or four around
+    /// the axis, later ones from one.
+    void continue_velocity(int layers) {
+        const int behind = ring_ ? 4 : 3;
+        std::array<PlaneSize, D> marks;
+        for (int a = 0; a < D; ++a) marks[static_cast<std::size_t>(a)] = plane(n_ + e<D>(a), sizeof(std::uint8_t));
+        tally_.refresh(marks, layers + 4);
+        tally_.refresh(faces_, behind);
+        for (const PlaneSize& component : faces_) {
+            if (layers > 1) tally_.refresh({component}, behind);
+            if (layers > 2) tally_.refresh({component}, 1, layers - 2);
+        }
+    }
+    /// Wet rows of this rank, one run each, as the scene begins; and those of the plane below it.
+    poisson::Runs runs() const {
+        const int first = tally_.cut().begin(tally_.rank()), end = tally_.cut().end(tally_.rank(), n_[D - 1]);
+        const int rows = D == 2 ? 1 : n_[1];
+        const auto wet = [&](int at) { return std::llround(geometry::wet_part_of_plane<D>(scene_, at) * rows); };
+        poisson::Runs runs;
+        for (int at = first; at < end; ++at) runs.own += static_cast<std::size_t>(wet(at));
+        if (tally_.rank() > 0) runs.below = static_cast<std::size_t>(wet(first - 1));
+        return runs;
+    }
+    void project() {
+        Vec<D> weight;
+        std::array<bool, D> periodic;
+        for (int a = 0; a < D; ++a) {
+            const real ratio = lattice_.h[0] / lattice_.h[a];
+            weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides_.periodic(a);
+        }
+        if (windowed_) poisson::tally_multigrid_setup<D>(n_, periodic, weight, runs(), tally_);
+        if (scene_.text("scheme.poisson.method") == "multigrid" && poisson::multigrid_shares<D>(n_, periodic, weight, tally_.cut())) {
+            poisson::tally_multigrid<D>(n_, periodic, weight, false, shape_.iterations, tally_);
+            tally_.refresh({cells_}, 1);
+        } else {
+            tally_.gather(cells_, 2);  // right-hand side and guess: each solves for itself
+        }
+        sync();
+        largest(n_[D - 1]);  // of what diverges
+    }
+
+    const scene::Scene& scene_;
+    geometry::Sides<D> sides_;
+    staggered::Lattice<D> lattice_;
+    Index<D> n_;
+    std::string transfer_;
+    bool ring_, windowed_;
+    StepShape shape_;
+    int reach_, layers_;
+    PlaneSize cells_;
+    std::array<PlaneSize, D> faces_{};
+    Tally tally_;
+};
+
+}  // namespace
+
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
+    return scene.dim() == 2 ? Step<2>(scene, of, shape).sent() : Step<3>(scene, of, shape).sent();
+}
+
+}  // namespace weir::water

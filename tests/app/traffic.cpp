@@ -1,0 +1,297 @@
+// What ranks send, told before a run by the formulas of the solvers (SolverKind::sends), against what runs over ranks have counted: in the
+// steps by which one run is longer than another, so that neither beginning nor end counts.
+#include "app/process.hpp"
+#include "core/slabs.hpp"
+#include "sim/registry.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test.hpp"
+#include "validation/cost/over_ranks.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <fstream>
+
+namespace weir {
+namespace {
+
+using nlohmann::json;
+
+/// As ctest takes a test that could not be made: no MPI here.
+bool there_are_ranks() { return WEIR_HAS_MPI && std::system("command -v mpirun >/dev/null") == 0; }
+
+struct Run {
+    json log;
+    std::int64_t sent(const char* what, int rank) const { return log["ranks"][what][static_cast<std::size_t>(rank)].get<std::int64_t>(); }
+    std::size_t steps() const { return log["steps"].size(); }
+    int iterations(std::size_t step) const { return log["steps"][step].value("iterations", 0); }
+};
+
+class Runs {
+public:
+    explicit Runs(std::string scene) : text_(std::move(scene)) { std::ofstream(folder_.path() / "scene.toml") << text_; }
+
+    scene::Scene scene() const { return scene::read(folder_.path() / "scene.toml", sim::schemas()); }
+
+    /// Over so many ranks, up to a time [s].
+    Run run(int ranks, double end) const {
+        const auto out = folder_.path() / fmt::format("out-{}-{}", ranks, end);
+        const std::string command = fmt::format(
+            "bash -c 'source {}/tests/support/mpirun.sh; over {} {} run {} --quiet --threads 1 --out {} --set time.end={}' >{} 2>&1 "
+            "</dev/null",
+            WEIR_SOURCE_DIR, ranks, WEIR_EXECUTABLE, (folder_.path() / "scene.toml").string(), out.string(), end,
+            (folder_.path() / "log").string());
+        EXPECT_EQ(std::system(command.c_str()), 0) << test::text_of(folder_.path() / "log");
+        return {json::parse(test::text_of(out / "run.json"), nullptr, false)};
+    }
+
+private:
+    std::string text_;
+    test::TemporaryFolder folder_;
+};
+
+/// What the formula says of the steps from `first` on, each with its iterations.
+Traffic told(const scene::Scene& scene, int ranks, int rank, const Run& run, std::size_t first, double beside) {
+    const auto& kind = sim::kind_named(scene.solver());
+    RankOf of{.rank = rank, .ranks = ranks};
+    if (kind.shared == scene::Shared::by_planes) of.cut = cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), ranks);
+    Traffic sum;
+    for (std::size_t step = first; step < run.steps(); ++step) {
+        const double cfl = run.log["steps"][step].value("cfl", 0.0);
+        const StepTraffic sent = kind.sends(scene, of,
+                                            {.iterations = run.iterations(step),
+                                             .cells_crossed = cfl > 0 ? 1 : 0,
+                                             .step = static_cast<std::int64_t>(step) + 1,
+                                             .beside = beside});
+        EXPECT_TRUE(sent.besides.empty()) << sent.besides[0];
+        sum.messages += sent.all().messages, sum.bytes += sent.all().bytes;
+    }
+    return sum;
+}
+
+struct Steps {
+    double dt;
+    int few, many;
+};
+
+/// Messages and bytes of every rank, exactly; `wrong` of the bytes, where the formula only estimates how many particles are beside a cut.
+void expect_as_told(const std::string& text, const std::vector<int>& ranks, const Steps& steps,
+                    const std::vector<double>& beside = {0, 0, 0}, double wrong = 0) {
+    if (!there_are_ranks()) GTEST_SKIP() << "no MPI";
+    const Runs runs(text);
+    for (const int n : ranks) {
+        const Run few = runs.run(n, steps.few * steps.dt), many = runs.run(n, steps.many * steps.dt);
+        ASSERT_EQ(few.steps(), static_cast<std::size_t>(steps.few));
+        ASSERT_EQ(many.steps(), static_cast<std::size_t>(steps.many));
+        for (int rank = 0; rank < n; ++rank) {
+            const Traffic by_formula = told(runs.scene(), n, rank, many, few.steps(), beside[static_cast<std::size_t>(rank)]);
+            const std::int64_t messages = many.sent("messages", rank) - few.sent("messages", rank),
+                               bytes = many.sent("bytes", rank) - few.sent("bytes", rank);
+            EXPECT_GT(messages, 0);
+            EXPECT_EQ(by_formula.messages, messages) << "rank " << rank << " of " << n;
+            if (wrong == 0)
+                EXPECT_EQ(by_formula.bytes, bytes) << "rank " << rank << " of " << n;
+            else
+                EXPECT_NEAR(static_cast<double>(by_formula.bytes) / static_cast<double>(bytes), 1, wrong) << "rank " << rank << " of " << n;
+        }
+    }
+}
+
+const std::string stirred =
+    "solver = \"mac\"\ndim = 2\ntime = { end = 0.01, max_dt = 1e-4 }\nsides.y_max = { kind = \"outflow\" }\n"
+    "initial.velocity = { name = \"random\", speed = 0.3 }\noutput = { every = 1.0 }\n";
+
+}  // namespace
+
+TEST("mac: a stirred box with an open side, of one iteration a step, sends what the formula says") {
+    expect_as_told(stirred + "grid = { cells = [144, 152], size = [0.045, 0.0475] }\nscheme.poisson.tolerance = 0.3\n", {2, 3},
+                   {1e-4, 5, 15});
+}
+
+// Iterations are fixed, so that it is known beforehand which one is the last: its residual is found anew in place of the exchange of
+// directions, as the formula has it. (Where a residual has fallen by a thousandth within the iterations it is found anew there too.)
+TEST("mac: two iterations on two levels that are cut, and one that is gathered, as the formula says") {
+    expect_as_told(stirred + "grid = { cells = [320, 512], size = [0.1, 0.16] }\nscheme.poisson = { fixed = true, max_iterations = 2 }\n",
+                   {2, 3}, {1e-4, 2, 5});
+}
+
+TEST("mac: a closed room in 3D with smoke, heat, buoyancy and confinement sends what the formula says") {
+    expect_as_told(
+        "solver = \"mac\"\ndim = 3\ngrid = { cells = [28, 30, 26], size = [0.56, 0.6, 0.52] }\ntime = { end = 0.06, max_dt = 1e-3 }\n"
+        "effects = { buoyancy = { alpha = 0.1, beta = 0.2, ambient = 293.0 }, confinement = { epsilon = 0.2 } }\n"
+        "emitters = [ { shape = \"sphere\", centre = [0.25, 0.15, 0.24], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]\n"
+        "scheme.poisson = { fixed = true, max_iterations = 2 }\noutput = { every = 1.0 }\n",
+        {2, 3}, {1e-3, 3, 8});
+}
+
+TEST("mac: around a periodic cut axis, and by a method that every rank runs for itself, as the formula says") {
+    expect_as_told(
+        "solver = \"mac\"\ndim = 2\ngrid = { cells = [40, 48], size = [0.4, 0.48] }\ntime = { end = 0.06, max_dt = 1e-3 }\n"
+        "sides = { y_min = { kind = \"periodic\" }, y_max = { kind = \"periodic\" } }\n"
+        "initial.velocity = { name = \"random\", speed = 0.3 }\nscheme.poisson.method = \"cg_mic0\"\noutput = { every = 1.0 }\n",
+        {2, 3}, {1e-3, 2, 6});
+}
+
+const std::string pool = "solver = \"mac_water\"\ntime = { end = 0.01, max_dt = 1e-4 }\noutput = { every = 1.0 }\n";
+
+// At rest no marker crosses a cut: those that neighbours know are of the planes beside it, four or eight a cell.
+TEST("mac_water: a pool at rest sends what the formula says, where each rank solves for the pressure") {
+    expect_as_told(pool +
+                       "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\n"
+                       "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.3] } ]\n",
+                   {2, 3}, {1e-4, 10, 30});
+}
+
+TEST("mac_water: the same in 3D with a shared pressure, for every transfer") {
+    for (const char* transfer : {"flip", "apic", "grid"})
+        expect_as_told(pool +
+                           "dim = 3\ngrid = { cells = [32, 24, 40], size = [0.32, 0.24, 0.4] }\n"
+                           "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.32, 0.16, 0.4] } ]\neffects.gravity = { g = "
+                           "[0.0, -9.81, 0.0] }\nscheme.transfer = \"" +
+                           std::string(transfer) + "\"\n",
+                       std::string(transfer) == "flip" ? std::vector<int>{2, 3} : std::vector<int>{3}, {1e-4, 3, 6});
+}
+
+const std::string still =
+    "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\ntime = { end = 0.01, dt = 1e-4 }\n"
+    "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.34] } ]\noutput = { every = 1.0 }\n";
+
+// 34 rows of 16. Cells are two spacings wide and a hair more: the first of an axis holds 3, the others 2, the eighth along x 1. Rank 0
+// has 17 rows, 8 whole rows of cells; 1 reads the last of these and the cell before it, 0 the first row of 1's and the cell behind it.
+TEST("sph: particles at rest send what the formula says, with both ways to find densities") {
+    for (const char* density : {"continuity", "summation"})  // slow sound, so that nothing moves as far as that hair
+        expect_as_told(still + "solver = \"sph\"\nscheme = { support = 2.0, sound_speed = 1e-3, density = \"" + density + "\" }\n", {2},
+                       {1e-4, 10, 30}, {2 * 16 + 2 * 1, 2 * 16 + 2 * 3});
+}
+
+// The iterations move particles over that hair: of the cell at the end of the two rows there may be any part, 3 of 34 or 38. The middle one
+// of three ranks has two neighbours, and rows that are cut within: up to a row of 16 more or less of 36.
+TEST("pbf: particles at rest send as many messages as the formula says, and as many bytes but for what crosses the edges of cells") {
+    expect_as_told(still + "solver = \"pbf\"\nscheme = { support = 2.0, iterations = 5, warm_start = 0.0 }\n", {2}, {1e-4, 10, 30},
+                   {34, 38}, 0.1);
+    expect_as_told(still + "solver = \"pbf\"\nscheme = { support = 2.0, iterations = 3 }\n", {2, 3}, {1e-4, 10, 30}, {36, 36, 36}, 0.45);
+}
+
+// Rows beside a cut, and what stages say of all rows: 3 rows of 2 numbers a column, 4 numbers a row. Columns look at all of them once in 16
+// steps.
+TEST("heightfield: both models send what the formula says, with open and periodic sides") {
+    const std::string field =
+        "solver = \"heightfield\"\ndim = 3\ngrid = { cells = [30, 1, 44], size = [3.0, 1.0, 4.4] }\ntime = { end = 0.3, max_dt = 1e-3 }\n"
+        "initial = { surface = \"0.4 + 0.05*sin(2*x)\" }\noutput = { every = 10.0 }\n";
+    const std::string open = "sides = { x_min = { kind = \"open\" }, z_min = { kind = \"outflow\" }, z_max = { kind = \"open\" } }\n",
+                      ring = "sides = { z_min = { kind = \"periodic\" }, z_max = { kind = \"periodic\" } }\n";
+    const std::string down = "effects.gravity = { g = [0.0, -9.81, 0.0] }\n", slope = "effects.gravity = { g = [0.1, -9.81, 0.0] }\n";
+    expect_as_told(field + open + slope, {2, 3}, {1e-3, 5, 15});
+    expect_as_told(field + ring + down, {2, 3}, {1e-3, 5, 15});
+    expect_as_told(field + open + down + "scheme.model = \"columns\"\n", {2, 3}, {1e-3, 5, 40});
+    expect_as_told(field + ring + down + "scheme.model = \"columns\"\n", {2, 3}, {1e-3, 5, 40});
+}
+
+namespace {
+
+const std::string plume =
+    "solver = \"mac\"\ndim = 3\ngrid = { cells = [48, 48, 128], size = [0.48, 0.48, 1.28] }\ntime = { end = 0.003, max_dt = 0.001 }\n"
+    "effects = { buoyancy = { alpha = 0.1, beta = 0.2, ambient = 293.0 }, confinement = { epsilon = 0.2 } }\n"
+    "emitters = [ { shape = \"sphere\", centre = [0.25, 0.15, 0.64], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]\n"
+    "output = { every = 1.0, fields = [\"smoke\"] }\n";
+
+/// What `weir` says and ends with.
+std::pair<int, std::string> said(std::vector<std::string> arguments) {
+    const test::TemporaryFolder folder;
+    test::Process run(std::move(arguments), folder.path() / "log");
+    const int code = run.wait();
+    return {code, run.said()};
+}
+
+}  // namespace
+
+// The whole is foretold within a tenth. Of a rank's part of mac, the pressure's levels of fewer than 20,000 cells are whole, less than a
+// tenth of the half or quarter that it holds. In mac_water a rank has markers twice, its own and all for whoever looks: 4 a cell of half
+// the cells with 4 numbers, 64 bytes of some 400 a cell.
+TEST("what each rank of mac will hold is foretold within a fifth, and of mac_water, where it is whole, within a quarter") {
+    if (!there_are_ranks()) GTEST_SKIP() << "no MPI";
+    const auto compare = [](const std::string& text, double end, double wrong) {
+        const Runs runs(text);
+        const auto scene = runs.scene();
+        validation::Forecast f;
+        f.held = sim::foretell(scene, sim::registry());
+        f.count = 1, f.ms = 1;
+        for (const int ranks : {2, 4}) {
+            const Run run = runs.run(ranks, end);
+            const validation::OverRanks told = validation::forecast_over_ranks(scene, f, ranks, validation::Link{1e-6, 1e9, ""});
+            for (int rank = 0; rank < ranks; ++rank)
+                EXPECT_NEAR(told.bytes[static_cast<std::size_t>(rank)] / static_cast<double>(run.sent("solver_bytes", rank)), 1, wrong)
+                    << "rank " << rank << " of " << ranks;
+        }
+    };
+    compare(plume, 0.003, 0.2);
+    compare(pool +
+                "dim = 2\ngrid = { cells = [128, 160], size = [1.28, 1.6] }\n"
+                "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [1.28, 0.8] } ]\n",
+            2e-4, 0.25);
+}
+
+TEST("cost --plan --ranks prints the formula's numbers, the constants with their source, and weak scaling") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.path() / "pool.toml") << pool << "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\n"
+                                               << "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.3] } ]\n";
+    const auto [code, text] =
+        said({"cost", "--plan", folder.path() / "pool.toml", "--ranks", "2", "--latency", "2e-6", "--bandwidth", "1e10"});
+    EXPECT_EQ(code, 0) << text;
+    const auto scene = scene::read(folder.path() / "pool.toml", sim::schemas());
+    for (int rank = 0; rank < 2; ++rank) {
+        const Traffic sent = sim::kind_named("mac_water").sends(scene, {cut_of(40, 2), rank, 2}, {}).all();
+        EXPECT_NE(text.find(fmt::format("{:6} messages {:>12} bytes a step", sent.messages, sent.bytes)), std::string::npos) << text;
+    }
+    for (const char* part : {"over 2 ranks, cut along y", "each holds the whole grids, and does alone: the pressure's levels",
+                             "planes     0 to    15", "2 us a message and 10 GB/s as given", "1024 ranks", "weak scaling"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
+    const auto [explained, explanation] = said({"run", folder.path() / "pool.toml", "--explain", "--ranks", "2"});
+    EXPECT_EQ(explained, 0) << explanation;
+    EXPECT_NE(explanation.find("over 2 ranks, cut along y"), std::string::npos) << explanation;
+    EXPECT_NE(explanation.find("between two processes of this machine through its memory, measured now"), std::string::npos);
+}
+
+TEST("what cannot run over so many ranks is refused by a plan as by the run, with the key and what is allowed") {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.path() / "scene.toml";
+    std::ofstream(file) << pool << "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\n"
+                        << "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.3] } ]\n";
+    const auto refused = [&](std::vector<std::string> arguments, const std::string& why) {
+        const auto [code, text] = said(std::move(arguments));
+        EXPECT_EQ(code, 2);
+        EXPECT_NE(text.find(why), std::string::npos) << text;
+    };
+    for (const bool plan : {true, false}) {
+        const auto ask = [&](const std::string& ranks, std::vector<std::string> more, const std::string& why) {
+            std::vector<std::string> arguments =
+                plan ? std::vector<std::string>{"cost", "--plan", file} : std::vector<std::string>{"run", file, "--explain"};
+            arguments.insert(arguments.end(), {"--ranks", ranks});
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            refused(arguments, why);
+        };
+        ask("41", {}, "40 planes of cells along y cannot be shared by 41 ranks");
+        ask("41", {}, "at most 40");
+        ask("3", {"--set", "solver=tallcell"}, "solver \"tallcell\" runs in one process, and there are 3");
+        ask("3", {"--set", "effects.hand={}"}, "effects.hand: the hand pushes in one process only");
+    }
+    refused({"cost", "--ranks", "2"}, "--ranks tells what a scene takes over so many ranks: it needs --plan SCENE");
+    refused({"run", file, "--ranks", "2"}, "--ranks tells what a run over so many ranks takes: it needs --explain; mpirun -n N starts one");
+    refused({"cost", "--plan", file, "--ranks", "2", "--latency", "1e-6"},
+            "--latency and --bandwidth describe one network: both are needed");
+}
+
+TEST("the model: rounds of neighbours take one latency, those of all the logarithm of the ranks, and bytes their time") {
+    StepTraffic sent{.beside = {20, 1000}, .everywhere = {3, 100}, .rounds = 13, .received = 4000};
+    const validation::ModelStep step = validation::model_step(1e-3, sent, 8, {1e-6, 1e9, ""});
+    EXPECT_DOUBLE_EQ(step.sending, (10 + 3 * 3) * 1e-6 + 5000e-9);
+    EXPECT_DOUBLE_EQ(validation::model_step(1e-3, sent, 1, {1e-6, 1e9, ""}).efficiency(), 1);
+    const validation::Link link = validation::measure_link();
+    EXPECT_GT(link.latency, 1e-8);  // a cache line does not go to another processor and back in less than 20 ns
+    EXPECT_LT(link.latency, 1e-2);  // a processor that is shared changes hands in milliseconds
+    EXPECT_GT(link.bandwidth, 1e7);
+    EXPECT_LT(link.bandwidth, 1e12);
+}
+
+}  // namespace weir

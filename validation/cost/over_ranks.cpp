@@ -1,0 +1,211 @@
+#include "validation/cost/over_ranks.hpp"
+
+#include "core/error.hpp"
+#include "core/slabs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace weir::validation {
+namespace {
+
+constexpr int tries = 5, round_trips = 2000;
+constexpr std::size_t large_message = std::size_t{1} << 22;
+constexpr int most_ranks = 1024;  // of the table of weak scaling
+constexpr int most_listed = 64;   // each by itself
+
+/// What two processes share: whose turn it is, and a message.
+struct Meeting {
+    std::atomic<int> turn{0};
+    unsigned char message[large_message];
+};
+
+/// Gives the turn back and waits for it again.
+void pass_turn(Meeting& meeting, int self) {
+    meeting.turn.store(1 - self, std::memory_order_release);
+    while (meeting.turn.load(std::memory_order_acquire) != self) sched_yield();
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// The other process: it answers each message, and takes the large ones in.
+[[noreturn]] void answer(Meeting& meeting) {
+    std::vector<unsigned char> taken(large_message);
+    while (meeting.turn.load(std::memory_order_acquire) != 1) sched_yield();
+    for (int i = 0; i < tries * (round_trips + 1); ++i) {
+        if (i % (round_trips + 1) == round_trips) std::memcpy(taken.data(), meeting.message, large_message);
+        if (i + 1 == tries * (round_trips + 1)) break;
+        pass_turn(meeting, 1);
+    }
+    meeting.turn.store(0, std::memory_order_release);
+    _exit(0);
+}
+
+/// While it lives, slabs() are those of a rank that exchanges nothing: for whoever asks how many there are.
+class Pretended {
+public:
+    Pretended(int rank, int ranks) { set_slabs(std::make_unique<Slabs>(rank, ranks)); }
+    ~Pretended() { set_slabs(nullptr); }
+    Pretended(const Pretended&) = delete;
+    Pretended& operator=(const Pretended&) = delete;
+};
+
+int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.root().numbers("grid.cells").back()); }
+
+RankOf rank_of(const scene::Scene& scene, const scene::SolverKind& kind, int rank, int ranks) {
+    RankOf of{.rank = rank, .ranks = ranks};
+    if (kind.shared == scene::Shared::by_planes) of.cut = cut_of(planes_of_scene(scene), ranks);
+    return of;
+}
+
+/// As many as everybody has, and those that are read of neighbours: so far beyond a cut as a kernel reaches, of all planes.
+double part_of_particles(const scene::Scene& scene, int rank, int ranks) {
+    const double cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
+    return std::min(1.0, 1.0 / ranks + cuts * scene.number("scheme.support") / planes_of_scene(scene));
+}
+
+/// The scene with so many planes for each of so many ranks, in a domain that is as much longer.
+scene::Scene with_planes(const scene::Scene& scene, int planes, const std::vector<scene::SolverSchema>& schemas) {
+    auto cells = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size");
+    size.back() *= planes / cells.back();
+    cells.back() = planes;
+    auto overrides = scene.overrides();
+    overrides.push_back({"grid.cells", fmt::format("[{}]", fmt::join(cells, ", "))});
+    overrides.push_back({"grid.size", fmt::format("[{}]", fmt::join(size, ", "))});
+    return scene::parse(scene.source(), scene.file(), schemas, overrides);
+}
+
+std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const scene::SolverKind& kind, const OverRanks& o, double particles,
+                                    const std::vector<scene::SolverSchema>& schemas) {
+    const double each = particles > 0 ? particles / o.ranks : static_cast<double>(planes_of_scene(scene)) / o.ranks;
+    double cells = 1;
+    for (const double n : scene.root().numbers("grid.cells")) cells *= n;
+    const double units = particles > 0 ? each : cells / planes_of_scene(scene) * each;
+    std::vector<ModelStep> list{{1, units * o.seconds_each, 0}};
+    for (int ranks = 2; ranks <= most_ranks; ranks *= 2) try {
+            const scene::Scene other = particles > 0 ? scene : with_planes(scene, static_cast<int>(std::lround(each * ranks)), schemas);
+            StepShape shape = o.shape;
+            shape.particles = each * ranks;
+            const StepTraffic sent = kind.sends(other, rank_of(other, kind, ranks / 2, ranks), shape);  // one that has two neighbours
+            list.push_back(model_step(units * o.seconds_each, sent, ranks, o.link));
+        } catch (const BadInput&) {  // in a shorter domain there may be no place for an emitter
+        }
+    return list;
+}
+
+}  // namespace
+
+Link measure_link() {
+    void* shared = mmap(nullptr, sizeof(Meeting), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) throw OutputError("no memory to measure messages in");
+    auto& meeting = *new (shared) Meeting;
+    const pid_t other = fork();
+    if (other < 0) throw OutputError("no second process to measure messages with");
+    if (other == 0) answer(meeting);
+    Link link{infinity, 0, "between two processes of this machine through its memory, measured now"};
+    std::vector<unsigned char> sent(large_message, 1);
+    for (int i = 0; i < tries; ++i) {
+        double start = now();
+        for (int k = 0; k < round_trips; ++k) pass_turn(meeting, 0);
+        link.latency = std::min(link.latency, (now() - start) / (2 * round_trips));
+        start = now();
+        std::memcpy(meeting.message, sent.data(), large_message);
+        pass_turn(meeting, 0);
+        link.bandwidth = std::max(link.bandwidth, static_cast<double>(large_message) / (now() - start));
+    }
+    waitpid(other, nullptr, 0);
+    munmap(shared, sizeof(Meeting));
+    return link;
+}
+
+ModelStep model_step(double computing, const StepTraffic& sent, int ranks, const Link& link) {
+    if (ranks == 1) return {1, computing, 0};
+    const double hops = std::ceil(std::log2(ranks));
+    const auto all = static_cast<double>(sent.everywhere.messages), beside = static_cast<double>(sent.rounds) - all;
+    const double rounds = beside + hops * all;
+    return {ranks, computing, rounds * link.latency + (static_cast<double>(sent.beside.bytes) + sent.received) / link.bandwidth};
+}
+
+OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int ranks, const std::optional<Link>& link,
+                              const std::vector<scene::SolverKind>& kinds) {
+    sim::require_ranks(scene, ranks, kinds);
+    const auto& kind = sim::kind_named(scene.solver(), kinds);
+    OverRanks o{.ranks = ranks, .by_all = kind.by_all, .link = link ? *link : measure_link(), .seconds_each = 1e-3 * f.ms / f.count};
+    o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
+               .cells_crossed = std::max(1, static_cast<int>(std::ceil(f.most_cfl))),
+               .particles = f.particles ? f.count : 0};
+    {
+        const Pretended several(0, ranks);
+        o.own_part = ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene)));
+    }
+    for (int rank = 0; rank < ranks; ++rank) {
+        const RankOf of = rank_of(scene, kind, rank, ranks);
+        o.cut = of.cut;
+        o.bytes.push_back(!o.own_part       ? f.held.bytes
+                          : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank)
+                                            : f.held.bytes * part_of_particles(scene, rank, ranks));
+        if (ranks > 1 && kind.sends) o.sent.push_back(kind.sends(scene, of, o.shape));
+    }
+    if (!o.sent.empty()) o.weak = weak_scaling(scene, kind, o, o.shape.particles, scene::schemas_of(kinds));
+    return o;
+}
+
+namespace {
+
+std::string constants_text(const OverRanks& o, const Forecast& f) {
+    return fmt::format("  constants: {:.3g} ns a {} and step, of the rates above; {:.3g} us a message and {:.3g} GB/s {}\n",
+                       1e9 * o.seconds_each, f.particles ? "particle" : "cell", 1e6 * o.link.latency, 1e-9 * o.link.bandwidth,
+                       o.link.source);
+}
+
+std::string weak_text(const OverRanks& o, const Forecast& f) {
+    std::string s = f.particles ? "weak scaling, as many particles a rank as here: a model\n"
+                                : "weak scaling, as many planes a rank as here: a model\n";
+    for (const ModelStep& step : o.weak)
+        s += fmt::format("  {:5} ranks  {:10.4g} ms computing  {:10.4g} ms sending  {:5.1f}%\n", step.ranks, 1e3 * step.computing,
+                         1e3 * step.sending, 100 * step.efficiency());
+    s += constants_text(o, f);
+    if (!o.by_all.empty()) s += "  what every rank does alone is taken as shared: in truth it is less\n";
+    return s;
+}
+
+}  // namespace
+
+std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::Scene& scene) {
+    if (o.ranks == 1) return "over 1 rank: nothing is cut, nothing is sent\n";
+    const bool planes = !o.cut.empty();
+    std::string s = fmt::format("over {} ranks, cut along {}, {}\n", o.ranks, scene.dim() == 2 ? "y" : "z",
+                                planes ? "each with its planes" : "as many particles to each");
+    s += fmt::format("  each holds {}{}{}\n",
+                     !o.own_part ? "the whole grids"
+                     : planes    ? "its own planes and those near its cuts"
+                                 : "its own particles and those near its cuts",
+                     o.by_all.empty() ? "" : ", and does alone: ", o.by_all);
+    for (std::size_t rank = 0; rank < o.bytes.size(); ++rank) {
+        const int r = static_cast<int>(rank);
+        if (o.ranks > most_listed && r != 0 && r != o.ranks / 2 && r + 1 != o.ranks) continue;  // those at the ends, and one between
+        s += fmt::format("  rank {:4}", r);
+        if (planes) s += fmt::format("  planes {:5} to {:5}", o.cut.begin(r), o.cut.end(r, o.cut.planes()) - 1);
+        s += fmt::format("  {:>10.4g} MB", o.bytes[rank] / 1e6);
+        if (!o.sent.empty()) s += fmt::format("  {:6} messages {:>12} bytes a step", o.sent[rank].all().messages, o.sent[rank].all().bytes);
+        s += "\n";
+    }
+    if (o.sent.empty()) return s + "  what is sent has no formula\n";
+    s += fmt::format("  in a step of {} iteration(s) in which nothing crosses more than {} cell(s)\n", o.shape.iterations,
+                     o.shape.cells_crossed);
+    if (const auto& besides = o.sent[0].besides; !besides.empty())
+        s += fmt::format("  not counted: what these send: {}\n", fmt::join(besides, ", "));
+    return s + weak_text(o, f);
+}
+
+}  // namespace weir::validation
