@@ -33,8 +33,8 @@ private:
 /// axis where it comes so near. `margin`: planes before the first and after the last. Entry 0 is of plane -margin.
 std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int deep, bool ring);
 
-/// Of `count` planes this rank's and so many beyond its cuts, around the ends of a periodic axis too: which are near. None where there is one
-/// rank: then all are.
+/// Of `count` planes this rank's and so many beyond its cuts, around the ends of a periodic axis too: which are near. None where there is
+/// one rank: then all are.
 std::vector<char> planes_near(int count, int deep, bool ring);
 
 namespace detail {
@@ -179,8 +179,8 @@ private:
             return;
         }
         const Window& from = *other.window_;
-        const bool fits = window_ && size_ == other.size_ && window_->head == from.head && window_->plane == from.plane &&
-                          window_->margin == from.margin;
+        const bool fits =
+            window_ && size_ == other.size_ && window_->head == from.head && window_->plane == from.plane && window_->margin == from.margin;
         if (!fits) {
             whole_ = {};
             size_ = other.size_;
