@@ -1,4 +1,5 @@
 // Cuts that give every rank as much to do, where planes are not alike: water that fills the lower half of a tank, a valley between hills.
+// For the problems here; solvers cut their grids into as many planes each, and particles by their number.
 #pragma once
 #include "core/halo.hpp"
 
