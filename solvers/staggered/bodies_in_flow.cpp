@@ -68,7 +68,7 @@ BodiesInFlow<D>::BodiesInFlow(const scene::Scene& scene)
     added_.resize(bodies_.count());
     masses_.resize(bodies_.count());
     free_.resize(n * bodies_.count());
-    for (auto* list : lists()) list->resize(free_.size());
+    for_each_list(*this, [&](std::vector<real>& list) { list.resize(free_.size()); });
     joined_.resize(bodies_.count()), inverse_.resize(bodies_.count());
     for (std::size_t b = 0; b < bodies_.count(); ++b)
         for (std::size_t k = 0; k < n; ++k) free_[b * n + k] = !bodies_[b].held[k];
@@ -744,7 +744,7 @@ std::size_t BodiesInFlow<D>::bytes() const {
     for (const auto& faces : faces_) total += faces.capacity() * sizeof(Face);
     for (const auto& cuts : cuts_) total += cuts.capacity() * sizeof(Cut);
     total += mobility_.entries.capacity() * sizeof(real) + masses_.capacity() * sizeof(rigid::Block<D>) + free_.size();
-    for (const auto* list : const_cast<BodiesInFlow*>(this)->lists()) total += list->capacity() * sizeof(real);
+    for_each_list(*this, [&](const std::vector<real>& list) { total += list.capacity() * sizeof(real); });
     total += matrix_.bytes() + joined_.capacity() + inverse_.capacity() * sizeof(inverse_[0]) + near_.capacity() * sizeof(near_[0]);
     return total;
 }

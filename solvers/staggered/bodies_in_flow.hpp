@@ -115,8 +115,11 @@ private:
     real adopt(const MacState<D>& s, real dt, Grid<real, D>* b);
     void take_velocities(MacState<D>& s, SolidPlacement<D>& placement, real dt);
     void turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b);
-    std::array<std::vector<real>*, 11> lists() {
-        return {&velocity_, &next_, &before_, &gained_, &heavy_, &met_, &last_, &change_, &missing_, &base_, &others_};
+    /// f(list) of each list with a number a free velocity.
+    static void for_each_list(auto& self, auto&& f) {
+        for (auto* list : {&self.velocity_, &self.next_, &self.before_, &self.gained_, &self.heavy_, &self.met_, &self.last_, &self.change_,
+                           &self.missing_, &self.base_, &self.others_})
+            f(*list);
     }
 
     rigid::Bodies<D> bodies_;
