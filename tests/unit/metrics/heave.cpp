@@ -39,7 +39,7 @@ RunRecord swing(F&& height) {
 Reference reference() {
     Curve heave{.label = "exact"};
     for (int i = 0; i <= 400; ++i) heave.x.push_back(0.01 * i), heave.y.push_back(std::cos(2 * std::numbers::pi * 0.01 * i));
-    return {.numbers = {{"start", start}}, .curves = {{"heave", heave}}};
+    return {.source = "cosine", .curves = {{"heave", heave}}, .numbers = {{"start", start}}};
 }
 
 }  // namespace
