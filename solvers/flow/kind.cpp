@@ -1,4 +1,5 @@
 // What a scene may say to the solver "mac".
+#include "core/traffic.hpp"
 #include "staggered/kind.hpp"
 #include "flow/effects.hpp"
 #include "flow/solver.hpp"

@@ -1,4 +1,5 @@
 // What a scene may say to the solver "heightfield".
+#include "core/traffic.hpp"
 #include "heightfield/columns.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/shallow_water.hpp"

@@ -80,6 +80,7 @@ private:
     void push(std::size_t row, real impulse, std::vector<real>& velocities) const;
     void find_runs(const real* response);
 
+    real strongest(const std::vector<real>& impulses) const;
     real wanted(std::size_t row, const std::vector<real>& velocities) const;
     real unrest(std::size_t row, const std::vector<real>& velocities) const;
     real unrest(const std::vector<real>& velocities) const;

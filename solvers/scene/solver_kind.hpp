@@ -2,11 +2,16 @@
 // run, validate, studies) finds it there.
 #pragma once
 #include "core/solver.hpp"
-#include "core/traffic.hpp"
 #include "scene/scene.hpp"
 
 #include <functional>
 #include <memory>
+
+namespace weir {
+struct RankOf;
+struct StepShape;
+struct StepTraffic;  // core/traffic.hpp
+}  // namespace weir
 
 namespace weir::scene {
 

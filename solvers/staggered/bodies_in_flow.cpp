@@ -28,10 +28,6 @@ constexpr real differs = 5;
 /// lighter one takes turns with the pressure.
 constexpr real most_added = 60;
 
-/// Of a cell's diagonal: gaps that are larger do not close in a step, in which no body crosses more than two cells. What the first turn
-/// says of the velocities may be more.
-constexpr real most_reach = 4;
-
 /// Of a cell: how deep a body may dive into liquid that has not felt it yet.
 constexpr real unfelt = 0.1;
 
@@ -504,7 +500,8 @@ void BodiesInFlow<D>::find_contacts(const geometry::Solids<D>& solids, real dt) 
         for (std::size_t k = 0; k < n; ++k) (k < D ? speed : turning) += std::abs(next_[b * n + k]);
         fastest = std::max(fastest, speed + turning * bodies_[b].radius);
     }
-    around.reach = std::min(2 * dt * fastest, most_reach * norm(h_)) + 1e-2 * norm(h_);
+    // What the first turn says of a light body may be many times what it comes to: what is in its way then is what holds it back.
+    around.reach = 2 * dt * fastest + 1e-2 * norm(h_);
     contacts_.find(bodies_.all(), around);
 }
 

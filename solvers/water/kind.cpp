@@ -1,4 +1,5 @@
 // What a scene may say to the solver "mac_water".
+#include "core/traffic.hpp"
 #include "staggered/kind.hpp"
 #include "matter/heat.hpp"
 #include "scene/surface_keys.hpp"

@@ -244,7 +244,7 @@ TEST("cost --plan --ranks prints the formula's numbers, the constants with their
         const Traffic sent = sim::kind_named("mac_water").sends(scene, {cut_of(40, 2), rank, 2}, {}).all();
         EXPECT_NE(text.find(fmt::format("{:6} messages {:>12} bytes a step", sent.messages, sent.bytes)), std::string::npos) << text;
     }
-    for (const char* part : {"over 2 ranks, cut along y", "each holds the whole grids, and does alone: the pressure's levels",
+    for (const char* part : {"over 2 ranks, cut along y", "each holds the whole grids, and does alone: the levels of the pressure",
                              "planes     0 to    15", "2 us a message and 10 GB/s as given", "1024 ranks", "weak scaling"})
         EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
     const auto [explained, explanation] = said({"run", folder.path() / "pool.toml", "--explain", "--ranks", "2"});
