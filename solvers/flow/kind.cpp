@@ -1,6 +1,6 @@
 // What a scene may say to the solver "mac".
-#include "core/traffic.hpp"
 #include "staggered/kind.hpp"
+#include "core/traffic.hpp"
 #include "flow/effects.hpp"
 #include "flow/solver.hpp"
 #include "geometry/hand.hpp"

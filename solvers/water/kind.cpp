@@ -1,6 +1,6 @@
 // What a scene may say to the solver "mac_water".
-#include "core/traffic.hpp"
 #include "staggered/kind.hpp"
+#include "core/traffic.hpp"
 #include "matter/heat.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
