@@ -9,10 +9,6 @@ namespace {
 
 /// Sweeps over all rows end when no impulse changes a velocity by more than this part of the largest one, or here.
 constexpr int most_sweeps = 400;
-
-/// After so many of them Newton's method is tried, and again after three times as many: what is not stiff takes fewer.
-constexpr int patience = 40;
-
 constexpr real still = 1e-10;
 
 }  // namespace
@@ -178,34 +174,30 @@ real Rows<D>::limited(const Row<D>& row, real impulse) const {
     if (row.limit == Limit::pushes) return std::max(0.0, impulse);
     if (row.limit == Limit::pulls) return std::min(0.0, impulse);
     if (row.limit == Limit::none) return impulse;
-    const real most = row.friction * std::max(0.0, impulse_[row.normal]);
+    const real most = row.friction * impulse_[row.normal];
     return std::clamp(impulse, -most, most);
 }
 
 /// Further along the last direction, as conjugate gradients do; the velocities follow from the impulses anew.
 template <int D>
 void Rows<D>::go_on(real beta, std::vector<real>& velocities) {
-    for (std::size_t i = 0; i < list_.size(); ++i) impulse_[i] = limited(list_[i], impulse_[i] + beta * direction_[i]);
-    follow_impulses(velocities);
+    velocities = free_;
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+        impulse_[i] = limited(list_[i], impulse_[i] + beta * direction_[i]);
+        if (impulse_[i] != given_[i]) push(i, impulse_[i] - given_[i], velocities);
+    }
 }
 
 template <int D>
 void Rows<D>::solve(std::vector<real>& velocities) {
     free_ = velocities;
-    follow_impulses(velocities);
+    for (std::size_t i = 0; i < list_.size(); ++i)
+        if (impulse_[i] != given_[i]) push(i, impulse_[i] - given_[i], velocities);
     real fastest = 0, slope = 0;
-    int settles = patience;
     for (const real v : velocities) fastest = std::max(fastest, std::abs(v));
     direction_.assign(list_.size(), 0.0), gained_.assign(list_.size(), 0.0);
     for (int count = 0; count < most_sweeps; ++count) {
         if (sweep(velocities) <= still * fastest) break;
-        if (count == settles) {
-            settles *= 3;
-            if (settle(velocities, still * fastest)) break;
-            slope = 0;  // the last direction leads nowhere from here
-            std::fill(direction_.begin(), direction_.end(), 0.0);
-            continue;
-        }
         real gained = 0;
         for (const real g : gained_) gained += g * g;
         const real beta = slope > 0 ? gained / slope : 2;

@@ -1,6 +1,6 @@
 // Constraints on the velocities of bodies, one number each, and the impulses that keep them: projected Gauss-Seidel in a fixed order, each
-// sweep a step of nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe & Erleben 2010); where that crawls, as it does in stacks
-// of light bodies and heavy ones, Newton's method between the sweeps (settle.cpp).
+// sweep a step of nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe & Erleben 2010), so that stacks of light and heavy
+// bodies converge too.
 #pragma once
 #include "rigid/body.hpp"
 
@@ -80,17 +80,6 @@ private:
     void push(std::size_t row, real impulse, std::vector<real>& velocities) const;
     void find_runs(const real* response);
 
-    real strongest(const std::vector<real>& impulses) const;
-    real wanted(std::size_t row, const std::vector<real>& velocities) const;
-    real unrest(std::size_t row, const std::vector<real>& velocities) const;
-    real unrest(const std::vector<real>& velocities) const;
-    void follow_impulses(std::vector<real>& velocities) const;
-    void guess(std::size_t row, const std::vector<real>& velocities);
-    void hold(std::vector<real>& velocities);
-    bool reach_targets(std::vector<real>& velocities);
-    /// Newton's method from where sweeps have come to. False: it went astray, and what it leaves is no worse than it was.
-    bool settle(std::vector<real>& velocities, real enough);
-
     std::vector<Row<D>> list_;
     std::vector<real> impulse_, direction_, gained_;  // of each row
     std::vector<real> given_;                         // that part of each impulse which the velocities have already
@@ -104,12 +93,6 @@ private:
     std::vector<std::size_t> runs_end_;  // of each row, in runs_
     std::vector<real> free_;             // velocities without any impulse
     std::size_t size_ = 0;
-    // Of Newton's method
-    enum class State : char { held, reaches };
-    std::vector<State> state_;                 // of each row: is its impulse at a limit, or does it reach its target?
-    std::vector<real> share_;                  // of each row of friction at its limit, that of what presses; else zero
-    std::vector<std::size_t> solved_, wrong_;  // rows that reach their targets; of which the guess was wrong
-    std::vector<real> matrix_, rest_, moved_, kept_;
 };
 
 }  // namespace weir::rigid
