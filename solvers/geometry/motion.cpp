@@ -6,14 +6,6 @@
 namespace weir::geometry {
 
 template <int D>
-Vec<D> Pose<D>::to_rest(const Vec<D>& world) const {
-    const Vec<D> y = world - offset - centre;
-    Vec<D> x = centre;  // Rᵀ y: rotations are orthogonal
-    for (int row = 0; row < D; ++row) x += y[row] * rotation[static_cast<std::size_t>(row)];
-    return x;
-}
-
-template <int D>
 Vec<D> Pose<D>::to_world(const Vec<D>& rest) const {
     Vec<D> x = centre + offset;
     for (int row = 0; row < D; ++row) x[row] += dot(rotation[static_cast<std::size_t>(row)], rest - centre);

@@ -19,7 +19,12 @@ struct Pose {
     Pose() {
         for (int d = 0; d < D; ++d) rotation[static_cast<std::size_t>(d)] = Vec<D>::unit(d);
     }
-    Vec<D> to_rest(const Vec<D>& world) const;
+    Vec<D> to_rest(const Vec<D>& world) const {
+        const Vec<D> y = world - offset - centre;
+        Vec<D> x = centre;  // Rᵀ y: rotations are orthogonal
+        for (int row = 0; row < D; ++row) x += y[row] * rotation[static_cast<std::size_t>(row)];
+        return x;
+    }
     Vec<D> to_world(const Vec<D>& rest) const;
     Vec<D> velocity_at(const Vec<D>& world) const;
 };

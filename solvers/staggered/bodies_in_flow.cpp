@@ -24,9 +24,12 @@ constexpr real first_turn = 1e-2, of_change = 1e-2;
 /// A change tells the added mass if it is this much larger than the residual that was left before it.
 constexpr real differs = 5;
 
+/// Of the tolerance: what the pressure may leave where it decides alone, so that the change of the velocities after it is of round-off.
+constexpr real alone = 0.9;
+
 /// A body whose added mass is up to this much of its own is part of the pressure's matrix, which it makes as much harder to solve; a
 /// lighter one takes turns with the pressure.
-constexpr real most_added = 60;
+constexpr real most_added = 600;
 
 /// Of a cell: how deep a body may dive into liquid that has not felt it yet.
 constexpr real unfelt = 0.1;
@@ -703,7 +706,7 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
     const real enough = coupled ? 0.5 * tolerance : tolerance;
     real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: of the residual, before the last change
     if (coupled && join_matrix(s)) {
-        if (fluid_decides(placement.solids(), dt)) aim = enough;
+        if (fluid_decides(placement.solids(), dt)) aim = alone * tolerance;
         expect_others(s, dt);
         adopt(s, dt, b);
     }
@@ -719,7 +722,7 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
         touch(placement.solids(), dt, count == 0);
         const real added = adopt(s, dt, b);
         left = aim, change = added == 0 ? 0 : added / whole_;
-        if (!coupled || (change <= enough && aim <= enough)) break;
+        if (!coupled || aim + change <= tolerance) break;
         again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so far off that turns lead away
         if (again) {
             next_ = before_;
