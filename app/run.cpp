@@ -68,23 +68,20 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
 }
 
-/// Empty where particles are shared, whose cut moves with them.
-Cut cut_of_run(const scene::Scene& scene) {
-    if (sim::kind_named(scene.solver()).shared == scene::Shared::by_particles) return {};
-    return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks());
-}
-
 std::string explain_ranks(const Simulation& simulation) {
     const scene::Scene& scene = simulation.scene();
     if (!slabs().several()) return {};
-    const Cut cut = cut_of_run(scene);
-    std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, cut along " + (scene.dim() == 2 ? "y" : "z");
+    const sim::Shares shares = sim::shares_of(scene, slabs().ranks());
+    const Cut& cut = shares.cut;
+    std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, ";
+    if (shares.nothing_shared()) return text + "every rank does all of it: there is nothing to cut\n";
+    text += std::string("cut along ") + (scene.dim() == 2 ? "y" : "z");
     if (cut.empty()) return text + " into as many particles each; every rank holds and moves its own, and knows those near its cuts\n";
     text += " before planes";
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
     text += simulation.solver().holds_own_planes() ? "; every rank holds and computes its own planes of the grids"
                                                    : "; every rank holds the whole grids and computes its own planes of them";
-    if (const std::string& by_all = sim::kind_named(scene.solver()).by_all; !by_all.empty()) text += ", but does alone: " + by_all;
+    if (!shares.by_all.empty()) text += ", but does alone: " + shares.by_all;
     return text + "\n";
 }
 
@@ -171,9 +168,12 @@ private:
     using clock = std::chrono::steady_clock;
     void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankMemory>& memory) {
         if (!slabs().several()) return;
-        const scene::Scene& scene = simulation.scene();
-        log_.set_ranks(slabs().ranks(), cut_of_run(scene), simulation.solver().holds_own_planes(), sim::kind_named(scene.solver()).by_all,
-                       sent, memory);
+        const sim::Shares shares = sim::shares_of(simulation.scene(), slabs().ranks());
+        using Holds = output::RunLog::Holds;
+        const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
+                            : simulation.solver().holds_own_planes()     ? Holds::own_planes
+                                                                         : Holds::whole_grids;
+        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.by_all, sent, memory);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);

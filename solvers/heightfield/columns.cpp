@@ -48,7 +48,7 @@ Columns::Columns(const scene::Scene& scene)
       hand_(geometry::make_hand(scene, {HandKind::pour, HandKind::drain})),
       depth_(state_.plane.count()),
       nothing_(state_.plane.count(), 0),
-      cut_(cut_of(state_.plane.nz, slabs().ranks())),
+      cut_(state_.plane.dim == 3 ? cut_of(state_.plane.nz, slabs().ranks()) : Cut{}),
       cfl_(scene.number("time.cfl")) {
     refuse_what_columns_cannot(scene, state_);
     Field().swap(state_.qx), Field().swap(state_.qz);

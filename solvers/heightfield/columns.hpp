@@ -54,7 +54,7 @@ private:
     mutable Field depth_, displaced_;
     Field nothing_;
     std::array<Field, 4> taken_;  // by open sides, of each column beside them: x_min, x_max, z_min, z_max
-    Cut cut_;                     // over ranks: who owns which rows
+    Cut cut_;                     // over ranks in 3D: who owns which rows
     mutable bool whole_ = true;   // whether all rows are here, and not this rank's alone
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;

@@ -152,13 +152,17 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
     return std::make_unique<ShallowWater>(scene);
 }
 
+/// Rows along x are never cut: a scene in 2D is one row, which every rank moves.
+Cut cut_of_rows(const scene::Scene& scene, int ranks) {
+    return scene.dim() == 3 ? cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), ranks) : Cut{};
+}
+
 /// What of a scene is not cut into slabs.
 void over_ranks(const scene::Scene& scene) {
     const auto refuse = [&](const std::string& key, const std::string& what) {
         scene.refuse(key, key + ": " + what + " in one process only");
     };
-    if (scene.dim() == 2) refuse("dim", "one row of columns, which is never cut, runs");
-    if (!scene.root().tables("floats").empty()) refuse("floats", "objects float");
+    if (scene.dim() == 3 && !scene.root().tables("floats").empty()) refuse("floats", "objects float");
     if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
 }
 
@@ -168,6 +172,7 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     const Sides sides(scene);
     const PlaneSize row{sizeof(real) * static_cast<std::size_t>(plane.nx), plane.nz}, number{sizeof(real), plane.nz};
     Tally tally(of.cut, of.rank, sides(1, 0).kind == SideKind::periodic);
+    if (of.cut.empty()) return tally_run(tally), tally.sent();
     if (scene.text("scheme.model") == "columns") {
         tally.refresh({row}, 1);
         for (int end = 0; end < 2; ++end) {
@@ -220,7 +225,8 @@ scene::SolverKind kind() {
             scene::Shared::by_planes,
             "the bed under solids that move",
             {},
-            traffic_of_step};
+            traffic_of_step,
+            cut_of_rows};
 }
 
 }  // namespace weir::heightfield

@@ -27,7 +27,7 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
       raised_(make_raised_bed(scene, state_.plane)),
       effects_(make_effects(scene, state_, "move water")),
       hand_(geometry::make_hand(scene, geometry::moving_kinds)),
-      cut_(cut_of(state_.plane.nz, slabs().ranks())),
+      cut_(state_.plane.dim == 3 ? cut_of(state_.plane.nz, slabs().ranks()) : Cut{}),
       cfl_(scene.number("time.cfl")) {
     if (hand_) effects_.add("hand", hand_effect(hand_));
     if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column a step: the depth may become negative", "cfl is at most 0.5");

@@ -48,7 +48,7 @@ private:
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
     std::shared_ptr<Hand> hand_;  // none where the scene names none
-    Cut cut_;                     // over ranks: who owns which rows
+    Cut cut_;                     // over ranks in 3D: who owns which rows
     mutable bool whole_ = true;   // whether all rows are here, and not this rank's alone
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;

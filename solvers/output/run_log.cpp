@@ -78,11 +78,11 @@ void RunLog::add_step(std::int64_t step, real t, const StepReport& report, const
     steps_.push_back(j.dump());
 }
 
-void RunLog::set_ranks(int count, const Cut& cut, bool own_planes, const std::string& by_all, const std::vector<Traffic>& sent,
+void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string& by_all, const std::vector<Traffic>& sent,
                        const std::vector<RankMemory>& memory) {
     json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
-    if (own_planes) ranks["storage"] = "every rank holds its own planes and those near its cuts";
-    if (cut.empty())
+    if (holds == Holds::own_planes) ranks["storage"] = "every rank holds its own planes and those near its cuts";
+    if (holds == Holds::own_particles)
         ranks["cut"] = "as many particles to each", ranks["storage"] = "every rank holds its own particles and those near its cuts";
     if (!by_all.empty()) ranks["every_rank_does"] = by_all;
     for (const Traffic& rank : sent) {

@@ -32,9 +32,10 @@ public:
     struct RankMemory {
         std::size_t solver = 0, resident = 0;
     };
-    /// Where the ranks of the run are cut (an empty cut: they share particles), whether each holds its own planes alone, what of a step
-    /// each does alone (nothing said: all is shared), and at the end what each has sent and holds; it is told of several ranks only.
-    void set_ranks(int count, const Cut& cut, bool own_planes, const std::string& by_all, const std::vector<Traffic>& sent,
+    enum class Holds { whole_grids, own_planes, own_particles };
+    /// Where planes are cut among the ranks of the run, what each of them holds, what of a step each does alone (nothing said: all is
+    /// shared), and at the end what each has sent and holds; it is told of several ranks only.
+    void set_ranks(int count, const Cut& cut, Holds holds, const std::string& by_all, const std::vector<Traffic>& sent,
                    const std::vector<RankMemory>& memory);
     /// Takes over the steps up to `last` of an earlier run's file, where it can be read.
     void resume(std::int64_t last);

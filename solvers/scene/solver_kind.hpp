@@ -39,6 +39,9 @@ struct SolverKind {
     std::function<bool(const Scene&)> holds_own_part{};
     /// What a rank sends in such a step, by formula. None: not known.
     std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> sends{};
+    /// Where the planes of a scene are cut among so many ranks; nowhere (an empty cut): every rank does all of it. None: as equal as
+    /// cut_of makes them.
+    std::function<Cut(const Scene&, int ranks)> cut{};
 };
 
 /// What each may be told.

@@ -41,6 +41,10 @@ const scene::SolverKind& kind_named(std::string_view name, const std::vector<sce
     throw std::logic_error("no solver is registered as \"" + std::string(name) + "\"");
 }
 
+namespace {
+int planes_of(const scene::Scene& scene) { return static_cast<int>(scene.root().numbers("grid.cells").back()); }
+}  // namespace
+
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
     if (ranks == 1) return;
     const auto& kind = kind_named(scene.solver(), kinds);
@@ -52,12 +56,21 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
                      "over ranks: " + able);
     }
     kind.over_ranks(scene);
-    const int planes = static_cast<int>(scene.root().numbers("grid.cells").back());
-    if (kind.shared == scene::Shared::by_planes && planes < ranks)
+    const int planes = planes_of(scene);
+    if (kind.shared == scene::Shared::by_planes && planes < ranks && !(kind.cut && kind.cut(scene, ranks).empty()))
         scene.refuse("grid.cells",
                      std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") + " cannot be shared by " +
                          std::to_string(ranks) + " ranks",
                      "at most " + std::to_string(planes));
+}
+
+Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
+    const auto& kind = kind_named(scene.solver(), kinds);
+    Shares shares{.shared = kind.shared, .by_all = kind.by_all};
+    if (shares.shared == scene::Shared::by_particles) return shares;
+    shares.cut = kind.cut ? kind.cut(scene, ranks) : cut_of(planes_of(scene), ranks);
+    if (ranks > 1 && shares.cut.empty()) shares.by_all = "all of it";
+    return shares;
 }
 
 }  // namespace weir::sim

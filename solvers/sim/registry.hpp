@@ -1,7 +1,9 @@
 // Every solver of the program, by name: one line each in registry.cpp. Reader, messages, describe, run and validate find it here.
 #pragma once
+#include "core/halo.hpp"
 #include "scene/solver_kind.hpp"
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,5 +17,14 @@ const scene::SolverKind& kind_named(std::string_view name, const std::vector<sce
 
 /// Refuses, by its key, what cannot run over so many ranks; see SolverKind::over_ranks.
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
+
+/// What each of so many ranks has of a scene, in words and as solvers are asked for it.
+struct Shares {
+    scene::Shared shared = scene::Shared::by_planes;
+    Cut cut{};             // of planes; none where particles are shared, and where every rank does all
+    std::string by_all{};  // what of a step every rank does alone
+    bool nothing_shared() const { return shared == scene::Shared::by_planes && cut.empty(); }
+};
+Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
 
 }  // namespace weir::sim

@@ -94,7 +94,8 @@ void Basin::fill(const Box& box, Sheet& sheet) {
 
 void Basin::fill_water(const Box& box, real level, std::array<Values, 3>& velocity) {
     const auto nx = static_cast<std::size_t>(box.nx());
-    for (int j = 0; j < box.ny(); ++j) {
+    const PlaneRange layers = own_layers(box);
+    for (int j = layers.begin; j < layers.end; ++j) {
         std::array<real*, 3> out{};
         for (std::size_t a = 0; a < 3; ++a)
             if (!velocity[a].empty()) out[a] = velocity[a].data() + nx * static_cast<std::size_t>(j);

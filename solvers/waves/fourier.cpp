@@ -46,7 +46,8 @@ struct Synthesis::Plans {
     }
 };
 
-Synthesis::Synthesis(const HalfPlane& plane) : plane_(plane), plans_(std::make_unique<Plans>(plane)) {}
+Synthesis::Synthesis(const HalfPlane& plane)
+    : plane_(plane), by_column_(cut_of_columns(plane, slabs().ranks())), plans_(std::make_unique<Plans>(plane)) {}
 Synthesis::~Synthesis() = default;
 
 Complex* Synthesis::column_at(int m) const { return plans_->columns.get() + static_cast<std::size_t>(m) * plans_->column_length; }
@@ -55,11 +56,50 @@ void Synthesis::transform_column(int m) {
     if (plans_->column) fftw_execute_dft(plans_->column, as_fftw(column_at(m)), as_fftw(column_at(m)));
 }
 
+/// To each rank goes the part of its rows in this rank's columns, a column after the other.
+void Synthesis::transpose() {
+    const Cut& by_row = *detail::own_share.cut;
+    const int rank = slabs().rank(), ranks = by_row.ranks();
+    const auto rows_of = [&](int r) { return PlaneRange{by_row.begin(r), by_row.end(r, plane_.nz)}; };
+    const PlaneRange columns = columns_of(rank), rows = rows_of(rank);
+    const auto count = [](const PlaneRange& a, const PlaneRange& b) {
+        return static_cast<std::size_t>(a.end - a.begin) * static_cast<std::size_t>(b.end - b.begin);
+    };
+    // f(m, place of its first value) for a block that begins at `first`
+    const auto for_block = [](const PlaneRange& of_columns, const PlaneRange& of_rows, std::size_t first, const auto& f) {
+        const auto each = static_cast<std::size_t>(of_rows.end - of_rows.begin);
+        parallel_for(of_columns.begin, of_columns.end,
+                     [&](int m) { f(m, first + each * static_cast<std::size_t>(m - of_columns.begin), each); });
+    };
+    sent_.resize(count(columns, {0, plane_.nz}));
+    given_.resize(count({0, plane_.columns()}, rows));
+    std::vector<Parcel> parcels;
+    std::size_t out = 0, in = 0;
+    for (int peer = 0; peer < ranks; ++peer) {
+        if (peer == rank) continue;
+        const PlaneRange theirs = rows_of(peer);
+        for_block(columns, theirs, out,
+                  [&](int m, std::size_t at, std::size_t each) { std::copy_n(column_at(m) + theirs.begin, each, sent_.data() + at); });
+        const std::size_t sends = count(columns, theirs), gets = count(columns_of(peer), rows);
+        parcels.push_back({peer, sent_.data() + out, sends * sizeof(Complex), given_.data() + in, gets * sizeof(Complex)});
+        out += sends, in += gets;
+    }
+    slabs().trade(parcels);
+    in = 0;
+    for (const Parcel& parcel : parcels) {
+        for_block(columns_of(parcel.peer), rows, in,
+                  [&](int m, std::size_t at, std::size_t each) { std::copy_n(given_.data() + at, each, column_at(m) + rows.begin); });
+        in += parcel.received_bytes / sizeof(Complex);
+    }
+}
+
 void Synthesis::rows(real* out, std::size_t stride) {
-    const int blocks = (plane_.nz + block - 1) / block, columns = plane_.columns();
+    const PlaneRange own =
+        transposes() ? PlaneRange{detail::own_share.lower(0), detail::own_share.upper(plane_.nz)} : PlaneRange{0, plane_.nz};
+    const int blocks = (own.end - own.begin + block - 1) / block, columns = plane_.columns();
     const auto nx = static_cast<std::size_t>(plane_.nx);
     parallel_for(0, blocks, [&](int b) {
-        const int first = b * block, last = std::min(plane_.nz, first + block);
+        const int first = own.begin + b * block, last = std::min(own.end, first + block);
         const auto row_at = [&](int n) { return plans_->rows.get() + static_cast<std::size_t>(n) * plans_->row_length; };
         for (int m = 0; m < columns; ++m) {
             const Complex* from = column_at(m);
@@ -75,7 +115,8 @@ void Synthesis::rows(real* out, std::size_t stride) {
 
 std::size_t Synthesis::bytes() const {
     return (plans_->column_length * static_cast<std::size_t>(plane_.columns()) + plans_->row_length * static_cast<std::size_t>(plane_.nz)) *
-           sizeof(Complex);
+               sizeof(Complex) +
+           (sent_.capacity() + given_.capacity()) * sizeof(Complex);
 }
 
 }  // namespace weir::waves

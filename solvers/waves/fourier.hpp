@@ -4,10 +4,12 @@
 //     out(i, k) = sum over m, n of c(m, n) exp(2 pi i (m i / nx + n k / nz)),   c(-m, -n) = conj c(m, n)
 #pragma once
 #include "core/parallel.hpp"
+#include "core/slabs.hpp"
 #include "core/types.hpp"
 
 #include <complex>
 #include <memory>
+#include <vector>
 
 namespace weir::waves {
 
@@ -25,8 +27,12 @@ struct HalfPlane {
     bool ambiguous(int m, int n) const { return 2 * m == nx || 2 * n == nz; }
 };
 
+/// Over ranks that share the field's rows (OwnPlanes over nz rows) each transforms its share of the columns, the ranks transpose, and each
+/// transforms its rows: only these are written. A sheet of one row is everybody's.
 class Synthesis {
 public:
+    /// Of how many of the half plane's columns each of so many ranks takes care.
+    static Cut cut_of_columns(const HalfPlane& plane, int ranks) { return cut_of(plane.columns(), ranks); }
     explicit Synthesis(const HalfPlane& plane);
     ~Synthesis();
     Synthesis(const Synthesis&) = delete;
@@ -36,24 +42,33 @@ public:
     template <class F>
     void operator()(const F& column, real* out, std::size_t stride) {
         for_columns([&](int m, Complex* at) { column(m, at); });
+        if (transposes()) transpose();
         rows(out, stride);
     }
+    /// The columns for which this rank is asked.
+    PlaneRange own_columns() const { return transposes() ? columns_of(slabs().rank()) : PlaneRange{0, plane_.columns()}; }
     std::size_t bytes() const;
 
 private:
     struct Plans;
+    bool transposes() const { return over_ranks() && plane_.nz > 1; }
+    PlaneRange columns_of(int rank) const { return {by_column_.begin(rank), by_column_.end(rank, plane_.columns())}; }
     template <class F>
     void for_columns(const F& write) {
-        parallel_for(0, plane_.columns(), [&](int m) {
+        const PlaneRange own = own_columns();
+        parallel_for(own.begin, own.end, [&](int m) {
             write(m, column_at(m));
             transform_column(m);
         });
     }
+    void transpose();
     Complex* column_at(int m) const;
     void transform_column(int m);
     void rows(real* out, std::size_t stride);
 
     HalfPlane plane_;
+    Cut by_column_;                      // over ranks: whose columns
+    std::vector<Complex> sent_, given_;  // of a transposition, a block for each rank
     std::unique_ptr<Plans> plans_;
 };
 

@@ -1,5 +1,7 @@
 // What a scene may say to the solver "waves".
+#include "core/traffic.hpp"
 #include "scene/gravity.hpp"
+#include "waves/fourier.hpp"
 #include "waves/solver.hpp"
 
 namespace weir::waves {
@@ -186,6 +188,34 @@ std::vector<Variant> effects() {
              {"below"}}};
 }
 
+/// Everything is cut.
+void over_ranks(const scene::Scene&) {}
+
+/// Of a step over ranks: each sum of a sea's waves in 3D is transposed once, and while the surface is not folded all look for its least
+/// Jacobian.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape&) {
+    const Box box(scene);
+    Tally tally(of.cut, of.rank);
+    tally_run(tally);
+    if (scene.has("probes") && !scene.root().tables("probes").empty()) tally.sent().besides.emplace_back("probes");
+    if (of.cut.empty() || box.dim == 2) return tally.sent();
+    const scene::Table& waves = scene.root().table("waves");
+    const bool sea = waves.text("model") == "spectrum";
+    const bool sideways = sea ? waves.number("choppiness") > 0 : waves.text("model") == "gerstner";
+    if (sideways && !scene.effect("foam")) tally.gather({sizeof(real), box.nz()});
+    if (!sea) return tally.sent();
+    // heights; where points stand and how their neighbours were moved; velocities of the surface and, below it, of every layer
+    const int sums = 1 + (sideways ? 5 : 0) + (waves.flag("velocity") ? 3 * (box.ny() > 1 ? 1 + box.ny() : 1) : 0);
+    const HalfPlane plane{box.nx(), box.nz()};
+    const Cut columns = Synthesis::cut_of_columns(plane, of.ranks);
+    const auto own = static_cast<std::size_t>(columns.end(of.rank, plane.columns()) - columns.begin(of.rank));
+    for (int peer = 0; peer < of.ranks; ++peer)
+        if (peer != of.rank)
+            tally.parcel(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * sizeof(Complex), sums);
+    tally.sent().rounds += sums;
+    return tally.sent();
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -202,7 +232,13 @@ scene::SolverKind kind() {
             [](const scene::Scene& scene) { return std::make_unique<Waves>(scene); },
             {{"level_set", "velocity", "position", "jacobian"},
              {"surface", "water"},
-             "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"}};
+             "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
+            over_ranks,
+            scene::Shared::by_planes,
+            "the transforms of a basin, in 2D the surface's one row, and the waves' amplitudes and frequencies at the start",
+            {},
+            traffic_of_step,
+            [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }};
 }
 
 }  // namespace weir::waves

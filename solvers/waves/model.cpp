@@ -4,7 +4,7 @@ namespace weir::waves {
 
 void Model::fill(const Box& box, Sheet& sheet) {
     const auto nx = static_cast<std::size_t>(box.nx());
-    parallel_for(0, box.nz(), [&](int k) {
+    for_own_rows(box, [&](int k) {
         for (int i = 0; i < box.nx(); ++i) {
             const std::size_t at = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(k);
             const Motion m = motion(box.x(i), box.z(k));
@@ -19,8 +19,10 @@ void Model::fill(const Box& box, Sheet& sheet) {
 
 void Model::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
     const auto nx = static_cast<std::size_t>(box.nx()), row = nx * static_cast<std::size_t>(box.ny());
-    parallel_for(0, box.ny() * box.nz(), [&](int line) {
-        const int j = line % box.ny(), k = line / box.ny();
+    const PlaneRange rows = own_rows(box), layers = own_layers(box);
+    const int deep = layers.end - layers.begin;
+    parallel_for(0, deep * (rows.end - rows.begin), [&](int line) {
+        const int j = layers.begin + line % deep, k = rows.begin + line / deep;
         for (int i = 0; i < box.nx(); ++i) {
             const Vec<3> u = velocity({{box.x(i), box.y(j) - level, box.z(k)}});
             const std::size_t at = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(j) + row * static_cast<std::size_t>(k);

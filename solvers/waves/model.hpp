@@ -20,9 +20,9 @@ public:
     virtual bool particle(const Vec<3>& /*rest*/, Motion& /*of*/) const { return false; }
     /// Velocity of the water at a place; its y counts from the mean level.
     virtual Vec<3> velocity(const Vec<3>& at) const = 0;
-    /// The whole sheet, point by point unless a model knows better.
+    /// The sheet, point by point unless a model knows better; over ranks this rank's rows at least.
     virtual void fill(const Box& box, Sheet& sheet);
-    /// Velocities at the grid's cells, cell by cell unless a model knows better.
+    /// Velocities at the grid's cells, cell by cell unless a model knows better; over ranks at least those of its rows and layers.
     virtual void fill_water(const Box& box, real level, std::array<Values, 3>& velocity);
     virtual std::size_t bytes() const { return 0; }
     /// What part of the variance that the scene asks for is in the waves.

@@ -126,14 +126,29 @@ void Ocean::set_amplitudes() {
 }
 
 void Ocean::set_time(real t) {
-    parallel_for(0, plane_.columns(), [&](int m) {
-        for (std::size_t at = plane_.at(m, 0), end = plane_.at(m + 1, 0); at < end; ++at) {
+    t_ = t;
+    turned_ = synthesis_.own_columns();
+    turn(turned_.begin, turned_.end);
+}
+
+void Ocean::turn(int begin, int end) const {
+    const real t = t_;
+    parallel_for(begin, end, [&](int m) {
+        for (std::size_t at = plane_.at(m, 0), last = plane_.at(m + 1, 0); at < last; ++at) {
             const Complex turn{std::cos(omega_[at] * t), -std::sin(omega_[at] * t)};
             const Complex f = forth_[at] * turn, b = back_[at] * std::conj(turn);
             height_[at] = f + b;
             moving_[at] = f - b;
         }
     });
+}
+
+/// Of a point every wave is wanted: each rank that is asked turns the others' waves too.
+void Ocean::turn_all() const {
+    if (turned_ == PlaneRange{0, plane_.columns()}) return;
+    turn(0, turned_.begin);
+    turn(turned_.end, plane_.columns());
+    turned_ = {0, plane_.columns()};
 }
 
 template <class F>
@@ -162,7 +177,7 @@ void Ocean::fill(const Box& box, Sheet& sheet) {
     sum([&](const Wave& w, std::size_t at) { return -c * coth(at) * w.kz * w.kz / w.k; }, height_, zz_);
     sum([&](const Wave& w, std::size_t at) { return -c * coth(at) * w.kx * w.kz / w.k; }, height_, xz_);
     if (!sheet.jacobian.empty())
-        parallel_for(0, box.nz(), [&](int k) {
+        for_own_rows(box, [&](int k) {
             for (std::size_t at = static_cast<std::size_t>(k) * stride, end = at + stride; at < end; ++at) {
                 const Motion one{.xx = xx_[at], .zz = zz_.empty() ? 0 : zz_[at], .xz = xz_.empty() ? 0 : xz_[at]};
                 sheet.jacobian[at] = one.jacobian();
@@ -176,7 +191,8 @@ void Ocean::fill(const Box& box, Sheet& sheet) {
 void Ocean::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
     const real d = sea_.spectrum.depth;
     const auto nx = static_cast<std::size_t>(box.nx()), stride = nx * static_cast<std::size_t>(box.ny());
-    for (int j = 0; j < box.ny(); ++j) {
+    const PlaneRange layers = own_layers(box);
+    for (int j = layers.begin; j < layers.end; ++j) {
         const real y = box.y(j) - level;
         const std::size_t from = nx * static_cast<std::size_t>(j);
         sum_of([&](const Wave& w, std::size_t at) { return omega_[at] * reach(w.k, y, d).along * w.kx / w.k; }, moving_,
@@ -192,6 +208,7 @@ void Ocean::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
 /// f(wave, place, e^(i k . x) doubled where the half plane holds only one of k and -k): the real part of the sum is the field at (x, z).
 template <class F>
 void Ocean::each_wave(real x, real z, const F& f) const {
+    turn_all();
     std::vector<Complex> along_z(static_cast<std::size_t>(plane_.nz));
     for (int n = 0; n < plane_.nz; ++n) along_z[static_cast<std::size_t>(n)] = std::exp(i * (plane_.signed_n(n) * dkz_ * (z - first_z_)));
     for (int m = 0; m < plane_.columns(); ++m) {

@@ -41,6 +41,8 @@ private:
     Wave wave(int m, int n) const;
     real variance_of(int m, int n) const;  // of the wave with these signed numbers
     void set_amplitudes();
+    void turn(int begin, int end) const;  // columns of waves, to the present
+    void turn_all() const;
     real coth(std::size_t at) const { return along_.empty() ? 1 : along_[at]; }
     template <class F>
     void sum_of(const F& factor, const std::vector<Complex>& waves, real* out, std::size_t stride);
@@ -50,10 +52,12 @@ private:
     Sea sea_;
     HalfPlane plane_;
     real dkx_, dkz_, first_x_, first_z_, carried_ = 1;
-    std::vector<Complex> forth_, back_;     // of the waves k and -k at t = 0
-    std::vector<Complex> height_, moving_;  // now: their sum, and their difference, from which velocities are made
-    Values omega_, along_;                  // along_: coth(k d), where the sea has a bed
-    Values xx_, zz_, xz_;                   // of the sideways displacement; scratch
+    std::vector<Complex> forth_, back_;             // of the waves k and -k at t = 0
+    mutable std::vector<Complex> height_, moving_;  // now: their sum, and their difference, from which velocities are made
+    real t_ = 0;
+    mutable PlaneRange turned_{0, 0};  // the columns of which that is known: over ranks this rank's, until somebody asks for a point
+    Values omega_, along_;             // along_: coth(k d), where the sea has a bed
+    Values xx_, zz_, xz_;              // of the sideways displacement; scratch
     Synthesis synthesis_;
 };
 

@@ -13,6 +13,21 @@ Box::Box(const scene::Scene& scene) : dim(scene.dim()) {
     }
 }
 
+Cut cut_of_box(const Box& box, int ranks) {
+    const int planes = box.dim == 3 ? box.nz() : box.ny();
+    return planes >= ranks ? cut_of(planes, ranks) : Cut{};
+}
+
+PlaneRange own_rows(const Box& box) {
+    if (box.dim == 2) return {0, 1};
+    return {detail::own_share.lower(0), detail::own_share.upper(box.nz())};
+}
+
+PlaneRange own_layers(const Box& box) {
+    if (box.dim == 3) return {0, box.ny()};
+    return {detail::own_share.lower(0), detail::own_share.upper(box.ny())};
+}
+
 Sheet::Sheet(const Box& box, const Wanted& wanted) : height(box.points(), 0) {
     if (wanted.sideways) {
         moved_x.assign(box.points(), 0);

@@ -36,6 +36,20 @@ struct Box {
     real z(int k) const { return dim == 3 ? origin[2] + (k + 0.5) * spacing[2] : 0; }
 };
 
+/// Over ranks: where the sheet's rows are cut (z), in 2D the layers of cells in the water (y); nowhere where these are fewer than ranks.
+Cut cut_of_box(const Box& box, int ranks);
+
+/// What of it is this rank's: the sheet's rows, its one row in 2D being everybody's, and the layers of cells, in 3D all.
+PlaneRange own_rows(const Box& box);
+PlaneRange own_layers(const Box& box);
+
+/// f(k) for those rows.
+template <class F>
+void for_own_rows(const Box& box, F&& f) {
+    const PlaneRange rows = own_rows(box);
+    parallel_for(rows.begin, rows.end, f);
+}
+
 using Values = std::vector<real>;
 
 /// What of the surface is wanted; what is not has no values.

@@ -19,7 +19,8 @@ Waves::Waves(const scene::Scene& scene)
       with_velocity_(scene.flag("waves.velocity")),
       gravity_(scene.effect("gravity") != nullptr),
       tension_(scene.effect("surface_tension") != nullptr),
-      sheet_(box_, {.velocity = with_velocity_, .sideways = model_->sideways()}) {
+      sheet_(box_, {.velocity = with_velocity_, .sideways = model_->sideways()}),
+      cut_(cut_of_box(box_, slabs().ranks())) {
     for (int a = 0; a < box_.dim; ++a) position_[static_cast<std::size_t>(a)].assign(box_.points(), 0);
     if (const scene::Table* foam = scene.effect("foam")) {
         if (!model_->sideways())
@@ -34,7 +35,7 @@ Waves::Waves(const scene::Scene& scene)
         if (with_velocity_)
             for (int a = 0; a < box_.dim; ++a) water_[static_cast<std::size_t>(a)].assign(cells, 0);
     }
-    set_time(0);
+    compute();
     passes_.reset();
 }
 
@@ -44,10 +45,17 @@ StepReport Waves::step(real dt) {
 }
 
 void Waves::set_time(real t) {
+    const OwnPlanes mine(cut_);
+    whole_ = cut_.empty();
     time_ = t;
+    compute();
+}
+
+/// Everything that is shown, at the present time.
+void Waves::compute() {
     {
         const auto timed = passes_.time("surface");
-        model_->set_time(t);
+        model_->set_time(time_);
         model_->fill(box_, sheet_);
         place_surface();
     }
@@ -55,9 +63,33 @@ void Waves::set_time(real t) {
     if (foam_below_) make_foam();
 }
 
+/// f(values, of a plane so many) of every field of which over ranks each has its planes: in 2D the sheet is everybody's.
+template <class F>
+void Waves::for_each_shared(const F& f) {
+    const auto nx = static_cast<std::size_t>(box_.nx());
+    if (box_.dim == 3) {
+        for (Values* of_sheet : {&sheet_.height, &sheet_.moved_x, &sheet_.moved_z, &sheet_.jacobian, &foam_}) f(*of_sheet, nx);
+        for (auto* vectors : {&position_, &sheet_.velocity})
+            for (Values& v : *vectors) f(v, nx);
+    }
+    const std::size_t plane = box_.dim == 3 ? nx * static_cast<std::size_t>(box_.ny()) : nx;
+    f(level_set_, plane);
+    for (Values& v : water_) f(v, plane);
+}
+
+/// Brings what other ranks own to whoever looks; all ranks look at the same time.
+void Waves::make_whole() const {
+    if (whole_) return;
+    auto& own = const_cast<Waves&>(*this);  // what is written is what was not here: the state stays the same
+    own.for_each_shared([&](Values& values, std::size_t plane) {
+        if (!values.empty()) slabs().gather(cut_, {values.data(), sizeof(real) * plane, cut_.planes()});
+    });
+    whole_ = true;
+}
+
 void Waves::place_surface() {
     const auto nx = static_cast<std::size_t>(box_.nx());
-    parallel_for(0, box_.nz(), [&](int k) {
+    for_own_rows(box_, [&](int k) {
         for (int i = 0; i < box_.nx(); ++i) {
             const std::size_t at = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(k);
             position_[0][at] = box_.x(i) + (sheet_.moved_x.empty() ? 0 : sheet_.moved_x[at]);
@@ -72,7 +104,8 @@ void Waves::place_surface() {
 void Waves::fill_water() {
     const auto timed = passes_.time("water");
     const auto nx = static_cast<std::size_t>(box_.nx()), ny = static_cast<std::size_t>(box_.ny()), row = nx * ny;
-    parallel_for(0, box_.nz(), [&](int k) {
+    const PlaneRange layers = own_layers(box_);
+    for_own_rows(box_, [&](int k) {
         for (int i = 0; i < box_.nx(); ++i) {
             const std::size_t at = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(k);
             real height = sheet_.height[at];
@@ -80,7 +113,7 @@ void Waves::fill_water() {
                 const Vec<2> rest = rest_of(*model_, box_.x(i), box_.z(k));
                 height = model_->motion(rest[0], rest[1]).moved[1];
             }
-            for (int j = 0; j < box_.ny(); ++j)
+            for (int j = layers.begin; j < layers.end; ++j)
                 level_set_[static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(j) + row * static_cast<std::size_t>(k)] =
                     box_.y(j) - level_ - height;
         }
@@ -94,12 +127,13 @@ real Waves::foam_of(real jacobian) const { return *foam_below_ > 0 ? std::clamp(
 void Waves::make_foam() {
     const auto timed = passes_.time(effect_pass("foam"));
     const auto nx = static_cast<std::size_t>(box_.nx());
-    parallel_for(0, box_.nz(), [&](int k) {
+    for_own_rows(box_, [&](int k) {
         for (std::size_t at = static_cast<std::size_t>(k) * nx, end = at + nx; at < end; ++at) foam_[at] = foam_of(sheet_.jacobian[at]);
     });
 }
 
 FieldSet Waves::fields() const {
+    make_whole();
     FieldSet set;
     GridView& grid = set.grid;
     grid.dim = box_.dim;
@@ -152,10 +186,13 @@ bool Waves::answer(std::string_view field, const Vec<3>& at, std::span<real> val
 
 real Waves::least_jacobian() const {
     if (sheet_.jacobian.empty()) return 1;
-    return -ordered_max(box_.nz(), [&](int k) {
+    const auto least_of_row = [&](int k) {
         const auto row = sheet_.jacobian.begin() + static_cast<std::ptrdiff_t>(k) * box_.nx();
         return -*std::min_element(row, row + box_.nx());
-    });
+    };
+    if (box_.dim == 2) return -least_of_row(0);
+    const OwnPlanes mine(cut_);
+    return -plane_max(box_.nz(), least_of_row);
 }
 
 /// The part of the sheet's patches that have any.
@@ -180,6 +217,7 @@ std::string Waves::concern() const {
 
 /// Means over the area above which the surface stands: a point counts as much as its patch has been stretched.
 std::vector<Integral> Waves::integrals() const {
+    make_whole();
     const auto nx = static_cast<std::size_t>(box_.nx());
     const auto mean = [&](const auto& f) {
         return ordered_sum(box_.nz(), [&](int k) {

@@ -36,6 +36,10 @@ public:
 
 private:
     void set_time(real t);
+    void compute();
+    void make_whole() const;
+    template <class F>
+    void for_each_shared(const F& f);
     void place_surface();
     void fill_water();
     void make_foam();
@@ -55,6 +59,8 @@ private:
     Values foam_;
     Values level_set_;             // of the water, where the grid shows it
     std::array<Values, 3> water_;  // its velocity
+    Cut cut_;                      // over ranks (cut_of_box)
+    mutable bool whole_ = true;    // whether what others own is here too
     Passes passes_;
 };
 

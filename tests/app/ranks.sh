@@ -49,6 +49,7 @@ compare() {
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
+sea=$scenes/ranks_waves.toml trains=$scenes/ranks_trains.toml below=$scenes/ranks_waves_below.toml line=$scenes/ranks_line.toml
 # without what everybody finds of whole grids, friction and a gauge; and with cells that a periodic axis can halve
 frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
     --set 'probes=[{name="sums",kind="integral",field="volume"},{name="wall",kind="point",field="pressure",at=[0.2,0.3]}]')
@@ -114,6 +115,48 @@ heightfield)
         ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
         ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.4
         ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.4
+        diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    done
+    ;;
+heightfield_2d) # one row of columns: everybody moves it, objects on it too
+    for model in shallow_water columns; do
+        compare $model "$every" "$line" --set scheme.model=$model
+        grep -q '"cut":\[\]' $model-3-2/run.json || fail "run.json tells of a cut"
+        grep -q '"every_rank_does":"all of it"' $model-3-2/run.json || fail "run.json does not tell that every rank does all of it"
+    done
+    compare floats "2 1,3 2" "$line" --set scheme.model=columns --set 'floats=[{size=[0.5,0.2],at=[5.0,0.35]}]'
+    rm -rf parts whole
+    ends 0 over 3 "$weir" run "$line" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
+    ends 0 "$weir" run "$line" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.4
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.4
+    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    ;;
+waves)
+    compare sea "$every" "$sea"
+    grep -q '"cut":\[0,16,44\]' sea-2-1/run.json || fail "run.json does not tell the ranks"
+    grep -q '"storage":"every rank holds whole grids"' sea-2-1/run.json || fail "run.json does not tell that grids are whole"
+    grep -q '"every_rank_does":"the transforms of a basin' sea-2-1/run.json || fail "run.json does not tell what is not shared"
+    compare trains "$every" "$trains"
+    grep -q '"cut":\[0,8,22\]' trains-2-1/run.json || fail "run.json does not tell the ranks of layers"
+    compare below "2 1,3 2,4 1" "$below"
+    compare stokes "2 2,3 1" "$below" --set 'waves={model="stokes",height=1.0,wavelength=40.0,heading=0.5}'
+    compare sines "3 1" "$below" --set 'waves={model="sines",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
+    compare gerstner "2 1,3 2" "$below" --set 'waves={model="gerstner",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
+    compare basin "2 1,3 2" "$below" --set 'waves={model="basin"}' \
+        --set 'liquid=[{shape="box",min=[0.0,-10.0,0.0],max=[80.0,0.0,40.0]},{shape="box",min=[0.0,-10.0,0.0],max=[50.0,-0.5,88.0]}]'
+    # in 2D a sea's row and the water below it; and fewer layers than ranks, where every rank does all of it
+    sed -e 's/dim = 3/dim = 2/' -e 's/\[20, 7, 22\], size = \[80.0, 14.0, 88.0\], origin = \[0.0, -10.0, 0.0\]/[40, 9], size = [160.0, 18.0], origin = [0.0, -14.0]/' \
+        -e 's/-9.81, 0.0/-9.81/; s/-3.0, 60.0/-3.0/; s/heading = 0.4, //' "$below" >row.toml
+    compare row "2 2,3 1,4 1" row.toml
+    compare row_basin "3 1" row.toml --set 'waves={model="basin"}' --set 'liquid=[{shape="wave",level=0.0,amplitude=0.5,wavelength=160.0}]'
+    compare surface "3 2" row.toml --set grid.cells=[40,1] --set probes=[]
+    grep -q '"every_rank_does":"all of it"' surface-3-2/run.json || fail "run.json does not tell that every rank does all of it"
+    # saved on three, continued on two
+    for scene in "$sea" "$trains"; do
+        rm -rf parts whole
+        ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
+        ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.6
+        ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.6
         diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
     done
     ;;
@@ -296,9 +339,9 @@ ends)
     refused "scheme.backend: this backend runs in one process only" "$drops" --set scheme.backend=reference
     refused 'solids\[0\].motion' "$scenes/smoke.toml"
     refused scheme.poisson.method "$flat" --set scheme.poisson.method=petsc_gamg
-    refused "dim: one row of columns, which is never cut, runs in one process only" "$scenes/../../../cases/dam_break_ritter/scene.toml"
     refused "floats: objects float in one process only" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
     refused "effects.hand: the hand pushes in one process only" "$shallow" --set effects.hand={}
+    refused "effects.hand: the hand pushes in one process only" "$line" --set effects.hand={}
     refused "at most 2" "$flat" --set grid.cells=[16,2]
     refused "planes of cells" "$flat" --set grid.cells=[16,2]
     refused "unknown key" "$flat" --set grid.cell=2

@@ -54,8 +54,7 @@ private:
 /// What the formula says of the steps from `first` on, each with its iterations.
 Traffic told(const scene::Scene& scene, int ranks, int rank, const Run& run, std::size_t first, double beside) {
     const auto& kind = sim::kind_named(scene.solver());
-    RankOf of{.rank = rank, .ranks = ranks};
-    if (kind.shared == scene::Shared::by_planes) of.cut = cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), ranks);
+    const RankOf of{.cut = sim::shares_of(scene, ranks).cut, .rank = rank, .ranks = ranks};
     Traffic sum;
     for (std::size_t step = first; step < run.steps(); ++step) {
         const double cfl = run.log["steps"][step].value("cfl", 0.0);
@@ -186,6 +185,33 @@ TEST("heightfield: both models send what the formula says, with open and periodi
     expect_as_told(field + ring + down, {2, 3}, {1e-3, 5, 15});
     expect_as_told(field + open + down + "scheme.model = \"columns\"\n", {2, 3}, {1e-3, 5, 40});
     expect_as_told(field + ring + down + "scheme.model = \"columns\"\n", {2, 3}, {1e-3, 5, 40});
+}
+
+// Two messages a step are the loop's. Of a row nobody has a part of his own.
+TEST("heightfield in 2D, which every rank moves, sends what the loop of a run sends") {
+    const std::string row =
+        "solver = \"heightfield\"\ndim = 2\ngrid = { cells = [30, 1], size = [3.0, 1.0] }\ntime = { end = 0.3, max_dt = 1e-3 }\n"
+        "initial = { surface = \"0.4 + 0.05*sin(2*x)\" }\noutput = { every = 10.0 }\neffects.gravity = { g = [0.1, -9.81] }\n";
+    expect_as_told(row, {2, 3}, {1e-3, 5, 15});
+}
+
+// A sum of waves is one transposition: of the surface's height, of what moves it sideways and its derivatives, of velocities.
+TEST("waves: seas with and without water below them send what the formula says, and other models what the loop sends") {
+    const std::string field = "solver = \"waves\"\ndim = 3\ntime = { end = 0.3, dt = 1e-3 }\noutput = { every = 10.0 }\n";
+    const std::string down = "effects = { gravity = { g = [0.0, -9.81, 0.0] } }\n",
+                      foam = "effects = { gravity = { g = [0.0, -9.81, 0.0] }, foam = { below = 0.5 } }\n";
+    const std::string sheet = "grid = { cells = [30, 1, 44], size = [90.0, 4.0, 132.0], origin = [0.0, -2.0, 0.0] }\n",
+                      water = "grid = { cells = [20, 3, 24], size = [60.0, 9.0, 72.0], origin = [0.0, -6.0, 0.0] }\n";
+    const auto sea = [](const std::string& more) {
+        return "waves = { model = \"spectrum\", spectrum = { kind = \"phillips\", wind = 6.0 }" + more + " }\n";
+    };
+    expect_as_told(field + down + sheet + sea(""), {2, 3}, {1e-3, 5, 15});
+    expect_as_told(field + down + sheet + sea(", choppiness = 0.2"), {2, 3}, {1e-3, 5, 15});  // and it does not fold
+    expect_as_told(field + foam + sheet + sea(", choppiness = 1.0, velocity = false"), {3}, {1e-3, 5, 15});
+    expect_as_told(field + down + water + sea(""), {2, 3}, {1e-3, 5, 15});
+    const std::string trochoid = "waves = { model = \"gerstner\", trains = [ { amplitude = 0.5, wavelength = 30.0 } ] }\n";
+    expect_as_told(field + down + sheet + trochoid, {2, 3}, {1e-3, 5, 15});
+    expect_as_told(field + foam + sheet + trochoid, {2}, {1e-3, 5, 15});
 }
 
 namespace {

@@ -62,10 +62,8 @@ public:
 
 int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.root().numbers("grid.cells").back()); }
 
-RankOf rank_of(const scene::Scene& scene, const scene::SolverKind& kind, int rank, int ranks) {
-    RankOf of{.rank = rank, .ranks = ranks};
-    if (kind.shared == scene::Shared::by_planes) of.cut = cut_of(planes_of_scene(scene), ranks);
-    return of;
+RankOf rank_of(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, int rank, int ranks) {
+    return {.cut = sim::shares_of(scene, ranks, kinds).cut, .rank = rank, .ranks = ranks};
 }
 
 /// As many as everybody has, and those that are read of neighbours: so far beyond a cut as a kernel reaches, of all planes.
@@ -85,8 +83,10 @@ scene::Scene with_planes(const scene::Scene& scene, int planes, const std::vecto
     return scene::parse(scene.source(), scene.file(), schemas, overrides);
 }
 
-std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const scene::SolverKind& kind, const OverRanks& o, double particles,
-                                    const std::vector<scene::SolverSchema>& schemas) {
+std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, const OverRanks& o,
+                                    double particles) {
+    const auto& kind = sim::kind_named(scene.solver(), kinds);
+    const std::vector<scene::SolverSchema> schemas = scene::schemas_of(kinds);
     const double each = particles > 0 ? particles / o.ranks : static_cast<double>(planes_of_scene(scene)) / o.ranks;
     double cells = 1;
     for (const double n : scene.root().numbers("grid.cells")) cells *= n;
@@ -96,7 +96,7 @@ std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const scene::Solv
             const scene::Scene other = particles > 0 ? scene : with_planes(scene, static_cast<int>(std::lround(each * ranks)), schemas);
             StepShape shape = o.shape;
             shape.particles = each * ranks;
-            const StepTraffic sent = kind.sends(other, rank_of(other, kind, ranks / 2, ranks), shape);  // one that has two neighbours
+            const StepTraffic sent = kind.sends(other, rank_of(other, kinds, ranks / 2, ranks), shape);  // one that has two neighbours
             list.push_back(model_step(units * o.seconds_each, sent, ranks, o.link));
         } catch (const BadInput&) {  // in a shorter domain there may be no place for an emitter
         }
@@ -140,7 +140,12 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
                               const std::vector<scene::SolverKind>& kinds) {
     sim::require_ranks(scene, ranks, kinds);
     const auto& kind = sim::kind_named(scene.solver(), kinds);
-    OverRanks o{.ranks = ranks, .by_all = kind.by_all, .link = link ? *link : measure_link(), .seconds_each = 1e-3 * f.ms / f.count};
+    const sim::Shares shares = sim::shares_of(scene, ranks, kinds);
+    OverRanks o{.ranks = ranks,
+                .nothing_shared = ranks > 1 && shares.nothing_shared(),
+                .by_all = shares.by_all,
+                .link = link ? *link : measure_link(),
+                .seconds_each = 1e-3 * f.ms / f.count};
     o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
                .cells_crossed = std::max(1, static_cast<int>(std::ceil(f.most_cfl))),
                .particles = f.particles ? f.count : 0};
@@ -149,14 +154,14 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
         o.own_part = ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene)));
     }
     for (int rank = 0; rank < ranks; ++rank) {
-        const RankOf of = rank_of(scene, kind, rank, ranks);
+        const RankOf of = rank_of(scene, kinds, rank, ranks);
         o.cut = of.cut;
         o.bytes.push_back(!o.own_part       ? f.held.bytes
                           : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank)
                                             : f.held.bytes * part_of_particles(scene, rank, ranks));
         if (ranks > 1 && kind.sends) o.sent.push_back(kind.sends(scene, of, o.shape));
     }
-    if (!o.sent.empty()) o.weak = weak_scaling(scene, kind, o, o.shape.particles, scene::schemas_of(kinds));
+    if (!o.sent.empty() && !o.nothing_shared) o.weak = weak_scaling(scene, kinds, o, o.shape.particles);
     return o;
 }
 
@@ -184,8 +189,9 @@ std::string weak_text(const OverRanks& o, const Forecast& f) {
 std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::Scene& scene) {
     if (o.ranks == 1) return "over 1 rank: nothing is cut, nothing is sent\n";
     const bool planes = !o.cut.empty();
-    std::string s = fmt::format("over {} ranks, cut along {}, {}\n", o.ranks, scene.dim() == 2 ? "y" : "z",
-                                planes ? "each with its planes" : "as many particles to each");
+    std::string s = o.nothing_shared ? fmt::format("over {} ranks, each with everything: there is nothing to cut\n", o.ranks)
+                                     : fmt::format("over {} ranks, cut along {}, {}\n", o.ranks, scene.dim() == 2 ? "y" : "z",
+                                                   planes ? "each with its planes" : "as many particles to each");
     s += fmt::format("  each holds {}{}{}\n",
                      !o.own_part ? "the whole grids"
                      : planes    ? "its own planes and those near its cuts"
@@ -205,7 +211,7 @@ std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::
                      o.shape.cells_crossed);
     if (const auto& besides = o.sent[0].besides; !besides.empty())
         s += fmt::format("  not counted: what these send: {}\n", fmt::join(besides, ", "));
-    return s + weak_text(o, f);
+    return o.nothing_shared ? s : s + weak_text(o, f);
 }
 
 }  // namespace weir::validation

@@ -31,6 +31,7 @@ struct OverRanks {
     int ranks = 1;
     Cut cut{};                    // empty where particles are shared
     bool own_part = false;        // each holds its own planes alone
+    bool nothing_shared = false;  // every rank does all of it
     std::string by_all{};         // what every rank does alone
     std::vector<double> bytes{};  // that each holds
     StepShape shape{};
