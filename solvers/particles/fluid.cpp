@@ -275,10 +275,7 @@ void Fluid<D>::save(Checkpoint& to) const {
 template <int D>
 void Fluid<D>::restore(const Checkpoint& from) {
     Checkpoint::Held held = from.held<real>("particles.id");
-    if (shared && !held.part) {
-        const auto part = part_of(held.all);
-        held.begin = part[0], held.end = part[1];
-    }
+    if (shared && !held.part) held = held.share(slabs().rank(), slabs().ranks());
     const auto get = [&](const std::string& name, std::vector<real>& f) {
         if (!shared) return from.get("particles." + name, f);
         f.resize(held.end - held.begin);
