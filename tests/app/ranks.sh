@@ -137,6 +137,13 @@ particles_schemes)
     compare summed "3 1" "$drops" $sph --set scheme.density=summation --set scheme.tension=true --set effects.surface_tension.sigma=0.07
     compare viscous "4 1" "$drops_deep" $sph --set fluid.viscosity=1e-3 --set effects.viscosity={} --set effects.density_diffusion={}
     compare few "4 1" "$scenes/particles.toml"
+    # around the ends of every axis: images of images, in cells that a rank has not beside its own
+    ring='x_min={kind="periodic"},x_max={kind="periodic"},y_min={kind="periodic"},y_max={kind="periodic"}'
+    ring_deep="$ring,z_min={kind=\"periodic\"},z_max={kind=\"periodic\"}"
+    compare ring "2 1,3 2" "$drops" --set "sides={$ring}"
+    compare ring_sph "4 1" "$drops" $sph --set "sides={$ring}"
+    compare ring_deep "3 1" "$drops_deep" --set "sides={$ring_deep}"
+    compare ring_deep_sph "4 1" "$drops_deep" $sph --set "sides={$ring_deep}"
     # saved on three, continued on two
     ends 0 over 3 "$weir" run "$drops" --checkpoint-every 1000 --quiet --out parts --set time.end=0.04
     ends 0 "$weir" run "$drops" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.08

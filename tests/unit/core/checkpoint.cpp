@@ -1,6 +1,7 @@
 #include "core/checkpoint.hpp"
 
 #include "core/error.hpp"
+#include "support/count_allocations.hpp"
 #include "support/forked_ranks.hpp"
 #include "support/test.hpp"
 
@@ -101,6 +102,23 @@ TEST(
             // worth
             const auto r = static_cast<std::size_t>(ranks);
             EXPECT_LE(in.bytes_read(), whole.size() / r + 1 + count / r * sizeof(double) + sizeof(double) + 128);
+        });
+}
+
+TEST("while a rank reads, it holds its part and a piece of the file") {
+    constexpr std::size_t count = std::size_t{1} << 22;  // 32 MiB
+    write_over_ranks(scratch("large"), count);
+    for (const int ranks : {1, 2, 4})
+        test::over_ranks(ranks, [&] {
+            const long before = test::held;
+            test::most_held = before;
+            const Checkpoint in = Checkpoint::read(scratch("large"));
+            const auto share = in.held<double>("field").share(slabs().rank(), slabs().ranks());
+            std::vector<double> own(share.end - share.begin);
+            in.get_part("field", std::span<double>(own), share.begin, share.all);
+            // a piece is 1 MiB; names, lists of ranks, pages at the ends of both: less than 64 KiB
+            EXPECT_LE(test::most_held - before,
+                      static_cast<long>(count * sizeof(double) / static_cast<std::size_t>(ranks) + (1 << 20) + (1 << 16)));
         });
 }
 
