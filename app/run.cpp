@@ -111,15 +111,17 @@ double memory_for_all(const scene::Scene& scene) {
 /// Writes everything that a run leaves behind, and shows how it goes. Over ranks the first writes; what is looked at all look at.
 class Recorder final : public sim::Watcher {
 public:
-    Recorder(const Simulation& simulation, const std::filesystem::path& folder, bool restarted, bool quiet)
-        : probes_(folder / "probes"),
+    /// checkpoint: what was read of the one that is continued [bytes]; 0: none.
+    Recorder(const Simulation& simulation, const std::filesystem::path& folder, std::size_t checkpoint, bool quiet)
+        : checkpoint_(checkpoint),
+          probes_(folder / "probes"),
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
-        by_first_rank([&] { frames_ = open_frames(simulation, folder, restarted); });
+        by_first_rank([&] { frames_ = open_frames(simulation, folder, checkpoint > 0); });
         tell_ranks(simulation, {}, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
-        if (restarted) log_.resume(simulation.steps());
+        if (checkpoint > 0) log_.resume(simulation.steps());
         by_first_rank([&] { write_log("running"); });  // where the disk fills later, there is a file that can still say so
     }
     /// What is to be measured of the run: told in run.json at its end.
@@ -144,7 +146,7 @@ public:
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
         const auto sent = of_ranks(slabs().traffic());  // before what this takes
-        tell_ranks(simulation, sent, of_ranks(output::RunLog::RankMemory{simulation.solver().bytes(), resident_bytes()}));
+        tell_ranks(simulation, sent, of_ranks(output::RunLog::RankMemory{simulation.solver().bytes(), resident_bytes(), checkpoint_}));
         if (measured_) log_.set_measured(measured_->values());
         by_first_rank([&] {
             probes_.update(simulation.probes());
@@ -194,6 +196,7 @@ private:
         written_ = clock::now();
         write_time_ = written_ - start;
     }
+    std::size_t checkpoint_;
     std::optional<output::Frames> frames_;
     sim::ProbeFiles probes_;
     output::RunLog log_;
@@ -278,7 +281,9 @@ int simulate(const RunArguments& arguments) {
         if (arguments.planned_ranks > 0) std::fputs(explain_planned_ranks(simulation.scene(), arguments.planned_ranks).c_str(), stdout);
         return exit_success;
     }
-    if (checkpoint && simulation.finished()) return tell_finished(simulation);
+    const std::size_t restarted = checkpoint ? checkpoint->bytes_read() : 0;
+    if (restarted > 0 && simulation.finished()) return tell_finished(simulation);
+    checkpoint.reset();  // the next one takes its place, and it its room on the disk
     output::check(frame_options(simulation.scene()), simulation.fields());
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     by_first_rank([&] { output::require_writable(folder); });
@@ -286,13 +291,13 @@ int simulate(const RunArguments& arguments) {
     if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
-    Recorder recorder(simulation, folder, checkpoint.has_value(), arguments.quiet);
+    Recorder recorder(simulation, folder, restarted, arguments.quiet);
     if (measured) recorder.measure(*measured);
     catch_interrupts(slabs().several());
     sim::LoopOptions options;
     options.folder = folder;
     options.checkpoint_every = arguments.checkpoint_every;
-    options.restarted = checkpoint.has_value();
+    options.restarted = restarted > 0;
     options.stop_requests = [] { return slabs().largest(interruptions()); };
     sim::Ending ending;
     try {

@@ -3,20 +3,27 @@
 #include "core/error.hpp"
 #include "core/slabs.hpp"
 
-#include <cstdint>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace weir {
 
 namespace {
 
 constexpr char magic[8] = {'w', 'e', 'i', 'r', 'c', 'p', '0', '1'};
+constexpr std::size_t piece = std::size_t{1} << 20;  // bytes of a file that are in memory at once
 
 /// FNV-1a over 64 bits: finds truncation and altered bytes; no defence against an adversary.
 constexpr std::uint64_t checksum_of_nothing = 0xcbf29ce484222325ull;
-std::uint64_t checksum(const std::byte* data, std::size_t count, std::uint64_t hash = checksum_of_nothing) {
+std::uint64_t checksum(const std::byte* data, std::size_t count, std::uint64_t hash) {
     for (std::size_t i = 0; i < count; ++i) hash = (hash ^ std::to_integer<std::uint64_t>(data[i])) * 0x100000001b3ull;
     return hash;
 }
@@ -42,30 +49,118 @@ private:
     std::uint64_t hash_ = checksum_of_nothing;
 };
 
-/// Reads from a byte image; throws BadInput past its end.
-class Cursor {
+}  // namespace
+
+/// A file that is read in places. It stays what it was while another takes its name.
+class Checkpoint::File {
 public:
-    Cursor(const std::vector<std::byte>& image, std::size_t end, const std::filesystem::path& path)
-        : image_(image), end_(end), path_(path) {}
-    void take(void* to, std::size_t count) {
-        if (count > end_ - at_) throw BadInput(path_.string() + ": truncated checkpoint");
-        if (count > 0) std::memcpy(to, image_.data() + at_, count);
-        at_ += count;
+    enum Fault : int { none, missing, foreign, altered };  // the worst last
+
+    explicit File(const std::filesystem::path& path) : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+        struct stat status {};
+        if (descriptor_ >= 0 && fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode))
+            size_ = static_cast<std::uint64_t>(status.st_size);
+        else
+            is_file_ = false;
     }
-    std::uint64_t number() {
+    ~File() {
+        if (descriptor_ >= 0) close(descriptor_);
+    }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+
+    /// Where the blocks end and the checksum begins.
+    std::uint64_t end() const { return size_ - sizeof(std::uint64_t); }
+    std::size_t bytes_read() const { return bytes_read_; }
+
+    /// Throws BadInput past the end.
+    void read(std::uint64_t at, void* to, std::size_t count) {
+        for (std::size_t done = 0; done < count;) {
+            const ssize_t got = pread(descriptor_, static_cast<char*>(to) + done, count - done, static_cast<off_t>(at + done));
+            if (got < 0 && errno == EINTR) continue;
+            if (got <= 0) refuse(altered);
+            done += static_cast<std::size_t>(got);
+            bytes_read_ += static_cast<std::size_t>(got);
+        }
+    }
+    std::uint64_t number(std::uint64_t& at) {
         std::uint64_t n = 0;
-        take(&n, sizeof n);
+        read(at, &n, sizeof n);
+        at += sizeof n;
         return n;
     }
-    std::size_t left() const { return end_ - at_; }
+
+    /// What is wrong with it as a whole, the same on all ranks. The checksum goes from rank to rank, each goes through a part.
+    Fault examine() {
+        char found[sizeof magic] = {};
+        Fault fault = is_file_ ? none : missing;
+        if (fault == none && size_ < sizeof magic + 16) fault = foreign;
+        if (fault == none) {
+            read(0, found, sizeof found);
+            if (std::memcmp(found, magic, sizeof magic) != 0) fault = foreign;
+        }
+        if ((fault = static_cast<Fault>(slabs().largest(fault))) != none) return fault;
+        const std::vector<std::uint64_t> sizes = of_ranks(size_);
+        if (std::any_of(sizes.begin(), sizes.end(), [&](std::uint64_t size) { return size != sizes[0]; })) return altered;
+        return static_cast<Fault>(slabs().largest(sum_is_right() ? none : altered));
+    }
+
+    [[noreturn]] void refuse(Fault fault) const {
+        throw BadInput(path_.string() + (fault == missing   ? ": cannot read checkpoint"
+                                         : fault == foreign ? ": not a checkpoint of this version"
+                                                            : ": checkpoint is truncated or altered (checksum differs)"));
+    }
 
 private:
-    const std::vector<std::byte>& image_;
-    std::size_t end_, at_ = 0;
-    const std::filesystem::path& path_;
+    /// As far as this rank can tell: only the last sees the end of the sum.
+    bool sum_is_right() {
+        const auto rank = static_cast<std::uint64_t>(slabs().rank()), ranks = static_cast<std::uint64_t>(slabs().ranks());
+        const std::uint64_t last = end() * (rank + 1) / ranks;
+        std::uint64_t hash = checksum_of_nothing;
+        const int peer = slabs().rank();
+        const Parcel from_before{peer - 1, nullptr, 0, &hash, sizeof hash}, to_next{peer + 1, &hash, sizeof hash, nullptr, 0};
+        if (rank > 0) slabs().trade({&from_before, 1});
+        std::vector<std::byte> room(piece);
+        bool whole = true;
+        try {
+            for (std::uint64_t at = end() * rank / ranks; at < last; at += piece) {
+                const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(piece, last - at));
+                read(at, room.data(), count);
+                hash = checksum(room.data(), count, hash);
+            }
+        } catch (const BadInput&) {  // the next waits for its part of the sum
+            whole = false;
+        }
+        if (rank + 1 < ranks) slabs().trade({&to_next, 1});
+        if (!whole || rank + 1 < ranks) return whole;
+        std::uint64_t at = end();
+        return number(at) == hash;
+    }
+
+    std::filesystem::path path_;
+    int descriptor_;
+    bool is_file_ = true;
+    std::uint64_t size_ = 0;
+    std::size_t bytes_read_ = 0;
 };
 
-}  // namespace
+const Checkpoint::Block& Checkpoint::find(const std::string& name) const {
+    const auto at = blocks_.find(name);
+    if (at == blocks_.end()) throw std::runtime_error("checkpoint has no block \"" + name + "\"");
+    return at->second;
+}
+
+void Checkpoint::refuse_size(const std::string& name) { throw std::runtime_error("checkpoint block \"" + name + "\" has another size"); }
+
+void Checkpoint::copy(const std::string& name, std::size_t begin, void* to, std::size_t count) const {
+    const Block& block = find(name);
+    if (begin < block.begin || begin - block.begin > block.size() || count > block.size() - (begin - block.begin)) refuse_size(name);
+    if (count == 0) return;
+    if (block.in_file())
+        file_->read(block.at + begin, to, count);
+    else
+        std::memcpy(to, block.bytes.data() + (begin - block.begin), count);
+}
 
 void Checkpoint::write(const std::filesystem::path& path) const {
     auto temporary = path;
@@ -79,14 +174,15 @@ void Checkpoint::write(const std::filesystem::path& path) const {
     put(magic, sizeof magic);
     put_number(blocks_.size());
     for (const auto& [name, block] : blocks_) {
-        const auto part = parts_.find(name);
         put_number(name.size());
         put(name.data(), name.size());
-        put_number(part == parts_.end() ? block.size() : part->second.all);
-        if (part == parts_.end())
-            put(block.data(), block.size());
+        put_number(block.all);
+        std::vector<std::byte> read(block.in_file() && file ? block.all : 0);
+        if (!read.empty()) copy(name, 0, read.data(), read.size());
+        if (block.part)
+            slabs().stream_to_first(block.bytes.data(), block.bytes.size(), put);
         else
-            slabs().stream_to_first(block.data(), block.size(), put);
+            put(read.empty() ? block.bytes.data() : read.data(), block.size());
     }
     by_first_rank([&] {
         const bool whole = file->close();
@@ -103,36 +199,32 @@ void Checkpoint::write(const std::filesystem::path& path) const {
 }
 
 Checkpoint Checkpoint::read(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw BadInput(path.string() + ": cannot read checkpoint");
-    const std::vector<char> text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    std::vector<std::byte> image(text.size());
-    if (!text.empty()) std::memcpy(image.data(), text.data(), text.size());
-    if (image.size() < sizeof magic + 16 || std::memcmp(image.data(), magic, sizeof magic) != 0)
-        throw BadInput(path.string() + ": not a checkpoint of this version");
-    const std::size_t end = image.size() - sizeof(std::uint64_t);
-    std::uint64_t stored = 0;
-    std::memcpy(&stored, image.data() + end, sizeof stored);
-    if (stored != checksum(image.data(), end)) throw BadInput(path.string() + ": checkpoint is truncated or altered (checksum differs)");
-
-    Cursor cursor(image, end, path);
-    char found[sizeof magic];
-    cursor.take(found, sizeof found);
     Checkpoint result;
-    const std::uint64_t count = cursor.number();
-    for (std::uint64_t b = 0; b < count; ++b) {
-        const auto size_within = [&] {
-            const std::uint64_t n = cursor.number();
-            if (n > cursor.left()) throw BadInput(path.string() + ": truncated checkpoint");
-            return static_cast<std::size_t>(n);
-        };
-        std::string name(size_within(), '\0');
-        cursor.take(name.data(), name.size());
-        std::vector<std::byte> block(size_within());
-        cursor.take(block.data(), block.size());
-        result.blocks_[name] = std::move(block);
-    }
+    result.file_ = std::make_shared<File>(path);
+    if (const File::Fault fault = result.file_->examine(); fault != File::none) result.file_->refuse(fault);
+    result.list_blocks();
     return result;
 }
+
+/// Where each block of the file is.
+void Checkpoint::list_blocks() {
+    std::uint64_t at = sizeof magic;
+    const auto size_within = [&] {
+        const std::uint64_t n = file_->number(at);
+        if (at > file_->end() || n > file_->end() - at) file_->refuse(File::altered);
+        return static_cast<std::size_t>(n);
+    };
+    const std::uint64_t count = file_->number(at);
+    for (std::uint64_t b = 0; b < count; ++b) {
+        std::string name(size_within(), '\0');
+        file_->read(at, name.data(), name.size());
+        at += name.size();
+        const std::size_t size = size_within();
+        blocks_[name] = {.all = size, .at = at};
+        at += size;
+    }
+}
+
+std::size_t Checkpoint::bytes_read() const { return file_ ? file_->bytes_read() : 0; }
 
 }  // namespace weir

@@ -1,12 +1,13 @@
 // A checkpoint is a list of named byte blocks. It is written to a temporary name and renamed, carries a checksum, and is refused
-// as a whole when truncated or altered.
+// as a whole when truncated or altered. Of one that is read, blocks stay in the file until somebody asks for them or for a part of them:
+// over ranks each reads what it owns.
 #pragma once
 #include <cstddef>
-#include <cstring>
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -19,8 +20,7 @@ public:
     void put(const std::string& name, std::span<const T> values) {
         static_assert(std::is_trivially_copyable_v<T>);
         const auto bytes = std::as_bytes(values);
-        blocks_[name].assign(bytes.begin(), bytes.end());
-        parts_.erase(name);
+        blocks_[name] = {.bytes = {bytes.begin(), bytes.end()}, .all = bytes.size()};
     }
     template <class T>
     requires std::is_trivially_copyable_v<T>
@@ -33,40 +33,39 @@ public:
     template <class T>
     void put_part(const std::string& name, std::span<const T> own, std::size_t begin, std::size_t all) {
         put(name, own);
-        parts_[name] = {begin * sizeof(T), all * sizeof(T)};
+        Block& block = blocks_[name];
+        block.part = true, block.begin = begin * sizeof(T), block.all = all * sizeof(T);
     }
     /// The same entries of a block that is whole, or of the part that was put.
     template <class T>
     void get_part(const std::string& name, std::span<T> own, std::size_t begin, std::size_t all) const {
-        const auto& block = find(name);
-        const auto part = parts_.find(name);
-        const std::size_t before = part == parts_.end() ? 0 : part->second.begin,
-                          whole = part == parts_.end() ? block.size() : part->second.all;
-        if (whole != all * sizeof(T) || begin * sizeof(T) < before || begin * sizeof(T) - before + own.size_bytes() > block.size())
-            throw std::runtime_error("checkpoint block \"" + name + "\" has another size");
-        if (!own.empty()) std::memcpy(own.data(), block.data() + (begin * sizeof(T) - before), own.size_bytes());
+        if (find(name).all != all * sizeof(T)) refuse_size(name);
+        copy(name, begin * sizeof(T), own.data(), own.size_bytes());
     }
 
-    /// The entries of a block that are here: all, or the part that was put.
+    /// The entries of a block that are here or in the file: all, or the part that was put.
     struct Held {
         std::size_t begin, end, all;
         bool part;
+        /// As many of all as any other rank.
+        Held share(int rank, int ranks) const {
+            const auto r = static_cast<std::size_t>(rank), n = static_cast<std::size_t>(ranks);
+            return {all * r / n, all * (r + 1) / n, all, true};
+        }
     };
     template <class T>
     Held held(const std::string& name) const {
-        const std::size_t here = find(name).size() / sizeof(T);
-        const auto part = parts_.find(name);
-        if (part == parts_.end()) return {0, here, here, false};
-        return {part->second.begin / sizeof(T), part->second.begin / sizeof(T) + here, part->second.all / sizeof(T), true};
+        const Block& block = find(name);
+        return {block.begin / sizeof(T), (block.begin + block.size()) / sizeof(T), block.all / sizeof(T), block.part};
     }
 
     bool has(const std::string& name) const { return blocks_.count(name) != 0; }
     /// Copies the block into `to`, which must have its exact size; throws std::runtime_error naming the block otherwise.
     template <class T>
     void get(const std::string& name, std::span<T> to) const {
-        const auto& block = find(name);
-        if (block.size() != to.size_bytes()) throw std::runtime_error("checkpoint block \"" + name + "\" has another size");
-        if (!block.empty()) std::memcpy(to.data(), block.data(), block.size());
+        const Block& block = find(name);
+        if (block.size() != to.size_bytes()) refuse_size(name);
+        copy(name, block.begin, to.data(), to.size_bytes());
     }
     /// Resizes `to` to the block.
     template <class T>
@@ -85,20 +84,31 @@ public:
 
     /// Writes beside `path` and renames; throws OutputError. Over ranks by the first, and all call it together.
     void write(const std::filesystem::path& path) const;
-    /// Throws BadInput when the file is missing, truncated, altered or of another version.
+    /// Throws BadInput when the file is missing, truncated, altered or of another version. Over ranks all call it together, each goes
+    /// through a part of the file for the checksum, and all are of one mind.
     static Checkpoint read(const std::filesystem::path& path);
+    /// What this process has read of the file so far.
+    std::size_t bytes_read() const;
 
 private:
-    const std::vector<std::byte>& find(const std::string& name) const {
-        const auto at = blocks_.find(name);
-        if (at == blocks_.end()) throw std::runtime_error("checkpoint has no block \"" + name + "\"");
-        return at->second;
-    }
-    struct Part {
-        std::size_t begin, all;  // [bytes]
+    class File;
+    /// Bytes [begin, begin + size()) of a block of `all`: put here, or, all of them, in the file from `at` on.
+    struct Block {
+        std::vector<std::byte> bytes{};
+        bool part = false;
+        std::size_t begin = 0, all = 0;
+        std::uint64_t at = 0;
+        bool in_file() const { return at > 0; }
+        std::size_t size() const { return in_file() ? all : bytes.size(); }
     };
-    std::map<std::string, std::vector<std::byte>> blocks_;
-    std::map<std::string, Part> parts_;  // of the blocks that are this rank's alone
+    const Block& find(const std::string& name) const;
+    /// Bytes of a block from `begin` on.
+    void copy(const std::string& name, std::size_t begin, void* to, std::size_t count) const;
+    [[noreturn]] static void refuse_size(const std::string& name);
+    void list_blocks();
+
+    std::map<std::string, Block> blocks_;
+    std::shared_ptr<File> file_;  // what was read
 };
 
 }  // namespace weir

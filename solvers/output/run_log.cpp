@@ -92,6 +92,7 @@ void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string
     for (const RankMemory& rank : memory) {
         ranks["solver_bytes"].push_back(rank.solver);
         ranks["resident_bytes"].push_back(rank.resident);
+        if (rank.checkpoint > 0) ranks["checkpoint_bytes"].push_back(rank.checkpoint);
     }
     ranks_ = ranks.dump();
 }

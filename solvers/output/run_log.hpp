@@ -28,9 +28,10 @@ public:
     void set_solver_bytes(std::size_t bytes) { solver_bytes_ = bytes; }
     /// What was measured of the finished run, by name. Numbers that are not finite are left out.
     void set_measured(std::map<std::string, double> values) { measured_ = std::move(values); }
-    /// Of a rank: what its solver holds, and what of the process stands in memory that no file backs [bytes].
+    /// Of a rank: what its solver holds, what of the process stands in memory that no file backs, and what it has read of the checkpoint
+    /// that it continues [bytes].
     struct RankMemory {
-        std::size_t solver = 0, resident = 0;
+        std::size_t solver = 0, resident = 0, checkpoint = 0;
     };
     enum class Holds { whole_grids, own_planes, own_particles };
     /// Where planes are cut among the ranks of the run, what each of them holds, what of a step each does alone (nothing said: all is

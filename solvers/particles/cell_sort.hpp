@@ -4,6 +4,7 @@
 #pragma once
 #include "particles/chunks.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -42,7 +43,8 @@ public:
     /// Into cells at least `cell_size` wide over their box.
     void sort(const Coordinates& x, int count, real cell_size) { sort(x, count, cover_box(box(x, count), count, cell_size)); }
 
-    /// The sort again within each cell: before(i, j) of points, where they stood in another order.
+    /// The sort again within each cell: before(i, j) of points, where they stood in another order. Those behind the cells of interest come
+    /// in the order of their cells too.
     template <class Before>
     void order_cells(Before&& before);
 
@@ -90,6 +92,10 @@ void CellSort::order_cells(Before&& before) {
             order[to] = i;
         }
     });
+    const auto cell = [&](int i) { return unsorted_[static_cast<std::size_t>(i)]; };
+    std::sort(order_.begin() + start_.back(), order_.end(),
+              [&](int i, int j) { return cell(i) != cell(j) ? cell(i) < cell(j) : before(i, j); });
+    for (auto k = static_cast<std::size_t>(start_.back()); k < order_.size(); ++k) cell_[k] = cell(order_[k]);
 }
 
 }  // namespace weir::particles

@@ -119,7 +119,7 @@ void Fluid<D>::gather(Fluid& all, bool to_first) const {
     all.domain = domain, all.gravity = gravity, all.rho0 = rho0, all.mass = mass;
     all.time = time, all.steps = steps, all.next_id = next_id, all.clamps = clamps;
     const std::vector<real> places = gathered(place);
-    std::vector<int> at(static_cast<std::size_t>(next_place), -1), order;  // who stands there
+    std::vector<int> at(places.empty() ? 0 : static_cast<std::size_t>(next_place), -1), order;  // who stands there
     for (std::size_t i = 0; i < places.size(); ++i) at[static_cast<std::size_t>(places[i])] = static_cast<int>(i);
     std::copy_if(at.begin(), at.end(), std::back_inserter(order), [](int i) { return i >= 0; });
     const auto fill = [&](std::vector<real>& to, const std::vector<real>& own) {
@@ -275,10 +275,7 @@ void Fluid<D>::save(Checkpoint& to) const {
 template <int D>
 void Fluid<D>::restore(const Checkpoint& from) {
     Checkpoint::Held held = from.held<real>("particles.id");
-    if (shared && !held.part) {
-        const auto part = part_of(held.all);
-        held.begin = part[0], held.end = part[1];
-    }
+    if (shared && !held.part) held = held.share(slabs().rank(), slabs().ranks());
     const auto get = [&](const std::string& name, std::vector<real>& f) {
         if (!shared) return from.get("particles." + name, f);
         f.resize(held.end - held.begin);

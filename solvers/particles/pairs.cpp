@@ -94,7 +94,8 @@ void Pairs::find(const Coordinates& x, int count, real radius, const Held& held)
         for (std::size_t a = 0; a < 3; ++a)
             if (x[a]) all[a] = with_images_[a].data();
     }
-    cells_.sort(all, count + static_cast<int>(image_owner_.size()), frame_.cover(held.box, held.total, radius));
+    const auto [first, last] = held.cut->read(slabs().rank());
+    cells_.sort(all, count + static_cast<int>(image_owner_.size()), frame_.cover(held.box, held.total, radius), first, last);
     cells_.order_cells([&](int i, int j) { return i < count && j < count ? held.place[i] < held.place[j] : i < j; });
     shares_.set(*held.cut, cells_);
     finish(all, radius);

@@ -14,7 +14,7 @@ void Shares::set(const CellCut& cut, const CellSort& cells) {
     read_ = {before(cut.read(self)[0]), before(cut.read(self)[1])};
 }
 
-/// Appends what `to` gets from `from`, one of which is this rank, in the order of the sort.
+/// Appends what `to` gets from `from`, one of which is this rank, in the order of cells: of `from`, which owns them, that of its sort.
 void Shares::list_halo(const CellSort& cells, int particles, std::span<const Link> links, int from, int to, std::vector<int>& list) const {
     const auto cell = [&](int k) { return cells.cell_of()[static_cast<std::size_t>(k)]; };
     const auto before = static_cast<std::ptrdiff_t>(list.size());
@@ -26,7 +26,7 @@ void Shares::list_halo(const CellSort& cells, int particles, std::span<const Lin
     for (const Link& link : links)
         if (cut_.reads(to, cell(link.image)) && cut_.owner(cell(link.particle)) == from && !cut_.reads(to, cell(link.particle)))
             list.push_back(link.particle);
-    std::sort(list.begin() + before, list.end());
+    std::sort(list.begin() + before, list.end(), [&](int k, int l) { return cell(k) != cell(l) ? cell(k) < cell(l) : k < l; });
     list.erase(std::unique(list.begin() + before, list.end()), list.end());
 }
 

@@ -218,10 +218,10 @@ std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, st
     return left;
 }
 
+/// Of markers [first, last). Answers how many have left the domain.
 template <int D>
-std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut& cut, bool leave) {
+std::int64_t Markers<D>::hand_on(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave) {
     const auto ranks = static_cast<std::size_t>(slabs().ranks()), self = static_cast<std::size_t>(slabs().rank());
-    const auto [first, last] = own(frame);
     going_.resize(ranks), sent_.resize(ranks), received_.resize(ranks);
     find_holders(frame, cut);
     const std::int64_t left = find_going(frame, first, last, leave);
@@ -249,7 +249,7 @@ std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut
     }
     slabs().trade(parcels_);
     std::size_t number = 0;
-    for_each_array([&, begin = first, end = last](std::vector<real>& array) {
+    for_each_array([&](std::vector<real>& array) {
         resize_scratch(scratch_, total);
         real* to = scratch_.data();
         for (std::size_t r = 0; r < ranks; ++r) {
@@ -257,17 +257,31 @@ std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut
                 to = std::copy_n(received_[r].data() + number * coming(r), coming(r), to);
                 continue;
             }
-            std::size_t from = begin;
+            std::size_t from = first;
             for (const int p : gone_) {
                 to = std::copy(array.data() + from, array.data() + p, to);
                 from = static_cast<std::size_t>(p) + 1;
             }
-            to = std::copy(array.data() + from, array.data() + end, to);
+            to = std::copy(array.data() + from, array.data() + last, to);
         }
         array.swap(scratch_);
         ++number;
     });
-    return {static_cast<std::int64_t>(last - first), left};
+    return left;
+}
+
+template <int D>
+std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut& cut, bool leave) {
+    const auto [first, last] = own(frame);
+    return {static_cast<std::int64_t>(last - first), hand_on(frame, cut, first, last, leave)};
+}
+
+template <int D>
+void Markers<D>::deal(const Frame<D>& frame, const Cut& cut) {
+    hand_on(frame, cut, 0, count(), false);
+    sent_.clear(), received_.clear();  // in a step few go
+    trim();
+    sort(frame);
 }
 
 template <int D>

@@ -56,6 +56,8 @@ public:
     /// order of the ranks, so that the stable sort finds them as in one process. Those that are beyond the domain go, where `leave`;
     /// answers how many were this rank's own, before and of those that left.
     std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Cut& cut, bool leave);
+    /// The same of all that is here, which is any part of all markers, in the order of the ranks: a part of a file. Sorts.
+    void deal(const Frame<D>& frame, const Cut& cut);
     /// All markers of all ranks, to `all`, as they are sorted in one process; or to that of the first rank alone.
     void gather(const Frame<D>& frame, Markers& all) const;
     void gather_to_first(const Frame<D>& frame, Markers& all) const;
@@ -100,6 +102,7 @@ private:
     void find_rows(const Frame<D>& frame);
     void find_holders(const Frame<D>& frame, const Cut& cut);
     std::int64_t find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
+    std::int64_t hand_on(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, from_;

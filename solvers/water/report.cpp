@@ -79,26 +79,39 @@ void Water<D>::save(Checkpoint& to) const {
     if (heat_) heat_->save(to);
 }
 
+/// Over ranks each reads as many as any other, and deals them to those that hold them.
+template <int D>
+void Water<D>::restore_markers(const Checkpoint& from) {
+    int at = 0;
+    markers_.for_each_array([&](std::vector<real>& array) {
+        const std::string name = "water.markers." + std::to_string(at++);
+        Checkpoint::Held held = from.held<real>(name);
+        if (!held.part) held = held.share(slabs().rank(), slabs().ranks());
+        array.resize(held.end - held.begin);
+        from.get_part(name, std::span<real>(array), held.begin, held.all);
+    });
+    if (cut_.empty())
+        markers_.sort(frame_);
+    else
+        markers_.deal(frame_, cut_);
+}
+
 template <int D>
 void Water<D>::restore(const Checkpoint& from) {
     const Cut whole;
     const OwnPlanes mine(kept_ > 0 ? cut_ : whole, 1, kept_, frame_.periodic(D - 1));
-    state_.restore(from);
+    state_.time = from.get_value<real>("time");
+    if (bodies_ || solids_.moving() || state_.time == 0) state_.restore(from);  // where solids are placed anew
     if (bodies_) bodies_->restore(from, solids_);
     place_solids(state_.time);
     state_.restore(from);  // what is liquid, after the solids have said what is not
     surface_.restore(from);
-    int at = 0;
-    markers_.for_each_array([&](std::vector<real>& array) { from.get("water.markers." + std::to_string(at++), array); });
+    restore_markers(from);
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
     if (hand_ && from.has("hand")) hand_->restore(from);
-    if (cut_.empty())
-        markers_.sort(frame_);
-    else
-        markers_.keep_held(frame_, cut_);
     whole_ = kept_ == 0, markers_whole_ = false;
     make_whole();
     pressure_.set_surface(surface_, closed_, state_);

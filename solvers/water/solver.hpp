@@ -133,6 +133,7 @@ private:
     void bring_beside() const;
     void gather_markers() const;
     void know_solids();
+    void restore_markers(const Checkpoint& from);
     OwnPlanes own_planes() const { return OwnPlanes(cut_, 1, kept_, frame_.periodic(D - 1)); }
     std::vector<Grid<real, D>*> shown(const std::string& field) const;
     const Markers<D>& all_markers() const { return cut_.empty() ? markers_ : all_markers_; }

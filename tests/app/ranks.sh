@@ -55,6 +55,21 @@ frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.0
     --set 'probes=[{name="sums",kind="integral",field="volume"},{name="wall",kind="point",field="pressure",at=[0.2,0.3]}]')
 even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
 water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
+# what rank number 0, 1, .. of a run tells of itself, and a bound for it
+told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
+at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
+# continues RANKS FOLDER BESIDE [--set ...]: over so many, each of which reads its part of the checkpoint twice (it goes through it for the
+# checksum, and gets what it owns), `beside` bytes more of its own where not all own as much, and less than 8 KiB that all read: names,
+# sizes, the scene, clocks
+continues() {
+    local ranks=$1 folder=$2 beside=$3 rank size
+    shift 3
+    size=$(stat -c %s "$folder/checkpoint.weir")
+    ends 0 over "$ranks" "$weir" run --restart "$folder" --checkpoint-every 1000 --quiet --threads 1 "$@"
+    for rank in $(seq 0 $((ranks - 1))); do
+        at_most "$(told "$folder" checkpoint_bytes "$rank")" $((2 * size / ranks + beside + 8192)) "read of $folder, rank $rank of $ranks"
+    done
+}
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
@@ -165,6 +180,13 @@ particles_schemes)
     compare summed "3 1" "$drops" $sph --set scheme.density=summation --set scheme.tension=true --set effects.surface_tension.sigma=0.07
     compare viscous "4 1" "$drops_deep" $sph --set fluid.viscosity=1e-3 --set effects.viscosity={} --set effects.density_diffusion={}
     compare few "4 1" "$scenes/particles.toml"
+    # around the ends of every axis: images of images, in cells that a rank has not beside its own
+    ring='x_min={kind="periodic"},x_max={kind="periodic"},y_min={kind="periodic"},y_max={kind="periodic"}'
+    ring_deep="$ring,z_min={kind=\"periodic\"},z_max={kind=\"periodic\"}"
+    compare ring "2 1,3 2" "$drops" --set "sides={$ring}"
+    compare ring_sph "4 1" "$drops" $sph --set "sides={$ring}"
+    compare ring_deep "3 1" "$drops_deep" --set "sides={$ring_deep}"
+    compare ring_deep_sph "4 1" "$drops_deep" $sph --set "sides={$ring_deep}"
     # saved on three, continued on two
     ends 0 over 3 "$weir" run "$drops" --checkpoint-every 1000 --quiet --out parts --set time.end=0.04
     ends 0 "$weir" run "$drops" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.08
@@ -193,8 +215,6 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
 	emitters = [ { shape = "sphere", centre = [0.25, 0.15, 1.24], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]
 	output = { every = 1.0, fields = ["smoke"] }
 	END
-    told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
-    at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
     ends 0 "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
     cells=$((48 * 48)) # of a plane
@@ -227,20 +247,36 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
 	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.08, 0.08, 5.12] } ]
 	output = { every = 1.0 }
 	END
-    ends 0 "$weir" run column.toml --quiet --threads 1 --out column
-    whole=$(grep -o '"solver_bytes": [0-9]*' column/run.json | cut -d' ' -f2) layers=$((512 * 64)) beside=$((2 * (3 * 64 + 3 * 3 * 8 + 3 * 9)))
-    for ranks in 2 4; do
-        ends 0 over $ranks "$weir" run column.toml --quiet --threads 1 --out column-$ranks
-        for rank in $(seq 0 $((ranks - 1))); do
-            # Arrays have a sixteenth of room; messages hold 8 numbers of each that is shown, sent and got; and two words a cell of all.
-            at_most "$(told column-$ranks solver_bytes $rank)" \
-                $((whole * (layers / ranks + beside) / layers * 17 / 16 + 2 * 8 * 8 * beside + 8 * 4 * 4 * 256)) "column, rank $rank of $ranks"
+    for solver in sph pbf; do
+        column=(column.toml --checkpoint-every 1000 --quiet --threads 1 --set solver=$solver)
+        [ $solver = pbf ] && column+=(--set scheme={} --set time.dt=2e-3)
+        ends 0 "$weir" run "${column[@]}" --out $solver
+        whole=$(grep -o '"solver_bytes": [0-9]*' $solver/run.json | cut -d' ' -f2) layers=$((512 * 64))
+        # a cell is as wide as the support: two spacings, or what pbf has without being told
+        deep=$([ $solver = sph ] && echo 3 || echo 5) beside=$((2 * (deep * 64 + deep * deep * 8 + deep * deep * deep)))
+        for ranks in 2 4; do
+            ends 0 over $ranks "$weir" run "${column[@]}" --out $solver-$ranks
+            alike $solver $solver-$ranks
+            for rank in $(seq 0 $((ranks - 1))); do
+                # Arrays have a sixteenth of room; messages hold 8 numbers of each that is shown, sent and got; and of the cells beside its own,
+                # less than 4 planes of 16, where each begins and how many are in it, with half as much room.
+                at_most "$(told $solver-$ranks solver_bytes $rank)" \
+                    $((whole * (layers / ranks + beside) / layers * 17 / 16 + 2 * 8 * 8 * beside + 12 * 4 * 16)) "$solver, rank $rank of $ranks"
+            done
         done
+        continues 4 $solver-2 0 --set time.end=0.008
+        continues 2 $solver-4 0 --set time.end=0.008
+        ends 0 "$weir" run --restart $solver --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.008
+        alike $solver $solver-2
+        alike $solver $solver-4
     done
     # continued by others, and where somebody looks at all of it
-    ends 0 over 4 "$weir" run --restart parts-2 --checkpoint-every 1000 --quiet --set time.end=0.004
+    # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more)
+    continues 4 parts-2 $((8 * cells)) --set time.end=0.004
+    continues 2 parts-4 $((8 * cells)) --set time.end=0.004
     ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
     alike one parts-2
+    alike one parts-4
     ends 0 over 2 "$weir" run "$flat" --quiet --threads 1 --out watched --set time.stop_when_steady=1e-9 --set time.end=0.04
     grep -q '"storage":"every rank holds whole grids"' watched/run.json || fail "run.json does not tell that grids are whole"
     ;;
@@ -256,8 +292,6 @@ storage_water) # the same of liquid with markers, as much of it in every plane
 	effects = { surface_tension = { sigma = 0.07 }, volume_control = {} }
 	output = { every = 1.0, fields = ["pressure"] }
 	END
-    told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
-    at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
     cells=$((32 * 32)) # of a plane
@@ -280,9 +314,12 @@ storage_water) # the same of liquid with markers, as much of it in every plane
         done
     done
     # continued by others
-    ends 0 over 4 "$weir" run --restart parts-2 --checkpoint-every 1000 --quiet --set time.end=0.004
+    # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more)
+    continues 4 parts-2 $((8 * cells)) --set time.end=0.004
+    continues 2 parts-4 $((8 * cells)) --set time.end=0.004
     ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
     alike one parts-2
+    alike one parts-4
     ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
     ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one
@@ -323,6 +360,31 @@ ends)
     ends 0 over 3 "$weir" run "$flat" --checkpoint-every 1000 --quiet --out parts --set time.end=0.08
     ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.12
     diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    # a checkpoint that is none, or of another scene: the words of one process, once, and its exit code
+    refuses_to_continue() { # WORDS SCENE.. of a restart of broken/
+        local words=$1
+        shift
+        ends 2 "$weir" run "$@" --restart broken --quiet --out continued
+        says "$words" && grep -v "^ *$" log >alone.log
+        ends 2 over 3 "$weir" run "$@" --restart broken --quiet --out continued
+        [ "$(grep -c -- "$words" log)" -eq 1 ] && grep -qxF "$(grep -- "$words" alone.log)" log || fail "other words than one process has: $words"
+        [ ! -e continued ] || fail "a refused run has written"
+    }
+    mkdir broken
+    size=$(stat -c %s parts/checkpoint.weir)
+    for cut in 100 $((size / 2)) $((size - 1)); do
+        head -c $cut parts/checkpoint.weir >broken/checkpoint.weir
+        refuses_to_continue "truncated or altered (checksum differs)"
+    done
+    for at in 20 $((size / 2)) $((size - 20)); do # in the part of another rank each time
+        cp parts/checkpoint.weir broken/checkpoint.weir
+        printf '\377\376' | dd of=broken/checkpoint.weir bs=1 seek=$at conv=notrunc status=none
+        refuses_to_continue "truncated or altered (checksum differs)"
+    done
+    head -c 10 parts/checkpoint.weir >broken/checkpoint.weir
+    refuses_to_continue "not a checkpoint of this version"
+    cp parts/checkpoint.weir broken/checkpoint.weir
+    refuses_to_continue "the checkpoint does not fit the scene" "$flat" --set grid.cells=[48,96]
     # refused by name, before anything is written, by all ranks
     refused() { # KEY SCENE [--set ...]
         local key=$1

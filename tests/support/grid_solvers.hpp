@@ -4,6 +4,7 @@
 #include "studies/kinds.hpp"
 #include "studies/transport.hpp"
 
+#include <cstring>
 #include <string>
 #include <vector>
 

@@ -162,6 +162,28 @@ TEST("over ranks where nothing was placed stands NaN") {
     EXPECT_GT(unplaced, 0);
 }
 
+TEST("over ranks the sort has cells of this rank and those that it reads, and no others, where axes repeat or not") {
+    const int threads_before = set_threads(2);
+    for (const int dim : {2, 3})
+        for (const bool repeats : {false, true}) {
+            Cloud column = cloud(4000, dim, false);
+            const auto last = static_cast<std::size_t>(dim) - 1;
+            for (real& here : column.x[last]) here *= 50;  // cells are many and mostly empty
+            if (repeats) column.frame.period = {1, dim == 3 ? 1.0 : 50.0, dim == 3 ? 50.0 : 0};
+            const Shared shared(column, 4);
+            for (int r = 0; r < 4; ++r) {
+                const CellSort& cells = shared.ranks[static_cast<std::size_t>(r)].pairs->cells();
+                const auto [first, end] = shared.cut.read(r);
+                const auto window = static_cast<std::size_t>(end - first), held = static_cast<std::size_t>(cells.count());
+                EXPECT_EQ(cells.start().size(), window + 1);
+                // cell starts and a count a thread, of these cells and one bin for all others, with half as much room; 3 numbers a particle
+                EXPECT_LE(cells.bytes(), (3 * (window + 1 + (window + 1) / 2 + 1) + 3 * held) * sizeof(int));
+                EXPECT_LT(4 * window, shared.all.cells().start().size() * 3 / 2);  // a quarter and what lies beside it
+            }
+        }
+    set_threads(threads_before);
+}
+
 TEST("more ranks than cells with particles: some have none, and all are somebody's") {
     const Shared shared(cloud(5, 2, false), 8);
     int owned = 0;
