@@ -92,15 +92,15 @@ scene::SolverKind kind() {
     schema.effects.push_back(surface::volume_control());
     schema.effects.push_back(geometry::hand_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
-    scene::SolverKind tall{
-        schema,
-        staggered::make<TallCells>,
-        {{"velocity", "pressure", "level_set", "cell_height"},
-         {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
-         "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-        over_ranks,
-        scene::Shared::by_planes,
-        "the columns' knots, the pressure, the level set's continuation into solids; in 2D, and where columns stand along z, all of it"};
+    scene::SolverKind tall{schema,
+                           staggered::make<TallCells>,
+                           {{"velocity", "pressure", "level_set", "cell_height"},
+                            {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
+                            "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+                           over_ranks,
+                           scene::Shared::by_planes,
+                           "the knots of the columns, the pressure, the level set's continuation into solids; in 2D, and where columns "
+                           "stand along z, all of it"};
     tall.sends = traffic_of_step;
     return tall;
 }
