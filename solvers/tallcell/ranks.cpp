@@ -34,9 +34,37 @@ void TallCells<D>::make_whole() const {
     whole_ = true;
 }
 
+/// Here, not beside the other passes: what the compiler makes of these depends on how much stands with them.
+///
+/// f(first, count) for the faces of u along a from `from` upwards, in pieces that lie together in memory; over ranks of this one's planes
+/// and `beside` more beyond its cuts.
+template <int D, class F>
+static void for_each_kept(const Grid<real, D>& u, int up, int from, int beside, bool ring, F&& f) {
+    Index<D> lo{}, hi = u.extent();
+    lo[up] = from;
+    const int x = lo[0], count = hi[0] - x;
+    hi[0] = x + 1;
+    const std::vector<char> near = planes_near(u.extent()[D - 1], beside, ring);
+    const int last = hi[D - 1] - 1;  // around a periodic axis faces there are those of plane 0
+    const AllPlanes all;
+    for_each_in(lo, hi, [&](const Index<D>& I) {
+        if (near.empty() || near[static_cast<std::size_t>(I[D - 1])] || (ring && I[D - 1] == last && near[0]))
+            f(u.linear(I), static_cast<std::size_t>(count));
+    });
+}
+
+template <int D>
+void Transport<D>::keep(const MacVelocity<D>& u, int beside) {
+    for (int a = 0; a < D; ++a)
+        for_each_kept(u[a], up_, kept_from_, beside, frame_.periodic(D - 1), [&](std::size_t first, std::size_t count) {
+            std::copy(u[a].data() + first, u[a].data() + first + count, before_[a].data() + first);
+        });
+}
+
 #define WEIR_INSTANTIATE(D)                           \
     template void TallCells<D>::bring_faces(real dt); \
-    template void TallCells<D>::make_whole() const;
+    template void TallCells<D>::make_whole() const;   \
+    template void Transport<D>::keep(const MacVelocity<D>&, int);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
 #undef WEIR_INSTANTIATE

@@ -25,11 +25,7 @@ void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& 
                               MacVelocity<D>& u, int beside) {
     up_ = mesh.layout().up, open_above_ = sides.open(up_, 1);
     source_ = &u;
-    for (int a = 0; a < D; ++a) {
-        resize_scratch(changes_[static_cast<std::size_t>(a)], mesh.run_count(a));
-        move_runs(mesh, a, mesh.layout().own(), dt);
-        if (a == mesh.layout().axes[D - 2]) move_runs(mesh, a, mesh.layout().above(), dt);
-    }
+    move_runs(mesh, dt);
     // A point travels no farther than this, by a midpoint that may be faster than where it starts, and then looks at two samples.
     kept_from_ = std::max(0, mesh.floor_of_singles() - static_cast<int>(std::min(1e6, 1.5 * fastest * dt)) - 3);
     keep(u, beside);
@@ -39,31 +35,6 @@ void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& 
     pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_);
     refresh_faces(predicted_, frame_, beside);
     pass<true>(mesh, phi, sides, dt, 2 * h, u);
-}
-
-/// f(first, count) for the faces of u along a from `from` upwards, in pieces that lie together in memory; over ranks of this one's planes
-/// and `beside` more beyond its cuts.
-template <int D, class F>
-static void for_each_kept(const Grid<real, D>& u, int up, int from, int beside, bool ring, F&& f) {
-    Index<D> lo{}, hi = u.extent();
-    lo[up] = from;
-    const int x = lo[0], count = hi[0] - x;
-    hi[0] = x + 1;
-    const std::vector<char> near = planes_near(u.extent()[D - 1], beside, ring);
-    const int last = hi[D - 1] - 1;  // around a periodic axis faces there are those of plane 0
-    const AllPlanes all;
-    for_each_in(lo, hi, [&](const Index<D>& I) {
-        if (near.empty() || near[static_cast<std::size_t>(I[D - 1])] || (ring && I[D - 1] == last && near[0]))
-            f(u.linear(I), static_cast<std::size_t>(count));
-    });
-}
-
-template <int D>
-void Transport<D>::keep(const MacVelocity<D>& u, int beside) {
-    for (int a = 0; a < D; ++a)
-        for_each_kept(u[a], up_, kept_from_, beside, frame_.periodic(D - 1), [&](std::size_t first, std::size_t count) {
-            std::copy(u[a].data() + first, u[a].data() + first + count, before_[a].data() + first);
-        });
 }
 
 namespace {
@@ -191,52 +162,57 @@ Vec<D> face_place(int a, const Index<D>& I) {
 
 }  // namespace
 
-/// f(first, count) for columns eight by eight; those of one line together, whatever lines there are.
-template <class F>
-static void for_each_eight(const ColumnRange& columns, F&& f) {
-    parallel_for(columns.begin / row_lanes, (columns.end + row_lanes - 1) / row_lanes, [&](int block) {
-        const int first = std::max(block * row_lanes, columns.begin);
-        f(first, std::min((block + 1) * row_lanes, columns.end) - first);
-    });
-}
+/// Where the last block of eight columns ends, counted from column 0.
+static int blocks_of(const ColumnRange& columns) { return (columns.end + row_lanes - 1) / row_lanes; }
 
-/// What the runs of tall cells change by at their Gauss points. Eight columns beside one another along x are looked at together.
+/// What all runs of tall cells change by at their Gauss points. Eight columns beside one another along x are looked at together.
 template <int D>
-void Transport<D>::move_runs(const TallPressure<D>& mesh, int a, const ColumnRange& columns, real dt) {
+void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
     const Layout<D>& layout = mesh.layout();
-    auto& changes = changes_[static_cast<std::size_t>(a)];
-    for_each_eight(columns, [&](int c0, int count) {
-        std::array<typename TallPressure<D>::RunsUp, row_lanes> runs;
-        std::array<Index<D>, row_lanes> foot;
-        for (int i = 0; i < count; ++i) {
-            const auto l = static_cast<std::size_t>(i);
-            runs[l] = mesh.runs_up(a, c0 + i), foot[l] = layout.foot(c0 + i);
-        }
-        const auto one = [&](std::size_t i) { changes[runs[i].index()] = move_run(a, foot[i], runs[i].run(), dt); };
-        bool together = layout.axes[0] == 0 && count == row_lanes && foot[0][0] + row_lanes <= frame_.cells[0];
-        while (together) {
-            bool alike = true;
-            const auto ahead = [&](std::size_t i) { return runs[i].ahead() && runs[i].any_faces(); };
-            std::size_t last = row_lanes - 1;  // one that is no wall tells which run it is
-            if (!ahead(last)) break;
-            const Run run = runs[last].run();
-            for (std::size_t i = 0; i < row_lanes; ++i)
-                alike = alike && (!runs[i].any_faces() || (ahead(i) && runs[i].run().row == run.row && runs[i].run().count == run.count));
-            if (!alike) break;
-            std::array<Eight, 2> change;
-            const bool moved = move_run_of_eight(a, foot[0], run, dt, change);
-            for (std::size_t i = 0; i < row_lanes; ++i) {
-                if (!runs[i].any_faces()) continue;
-                if (moved && inner(foot[i], 0))
-                    changes[runs[i].index()] = {change[0][static_cast<int>(i)], change[1][static_cast<int>(i)]};
-                else
-                    one(i);
-                runs[i].reaches(run.row + run.count);
+    for (int a = 0; a < D; ++a) {
+        auto& changes = changes_[static_cast<std::size_t>(a)];
+        resize_scratch(changes, mesh.run_count(a));
+        // Columns that are done here; of runs along the last axis the line beyond them too.
+        const ColumnRange own = layout.own(), above = a == layout.axes[D - 2] ? layout.above() : ColumnRange{};
+        const int own_begin = own.begin / row_lanes, own_blocks = blocks_of(own) - own_begin, above_begin = above.begin / row_lanes;
+        parallel_for(0, own_blocks + blocks_of(above) - above_begin, [&](int i_block) {
+            const bool is_own = i_block < own_blocks;
+            const ColumnRange& range = is_own ? own : above;
+            const int block = is_own ? own_begin + i_block : above_begin + i_block - own_blocks;
+            const int c0 = std::max(block * row_lanes, range.begin), count = std::min((block + 1) * row_lanes, range.end) - c0;
+            std::array<typename TallPressure<D>::RunsUp, row_lanes> runs;
+            std::array<Index<D>, row_lanes> foot;
+            for (int i = 0; i < count; ++i) {
+                const auto l = static_cast<std::size_t>(i);
+                runs[l] = mesh.runs_up(a, c0 + i), foot[l] = layout.foot(c0 + i);
             }
-        }
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-            for (; runs[i].any_faces() && runs[i].ahead(); runs[i].reaches(runs[i].run().row + runs[i].run().count)) one(i);
-    });
+            const auto one = [&](std::size_t i) { changes[runs[i].index()] = move_run(a, foot[i], runs[i].run(), dt); };
+            bool together = layout.axes[0] == 0 && count == row_lanes && foot[0][0] + row_lanes <= frame_.cells[0];
+            while (together) {
+                bool alike = true;
+                const auto ahead = [&](std::size_t i) { return runs[i].ahead() && runs[i].any_faces(); };
+                std::size_t last = row_lanes - 1;  // one that is no wall tells which run it is
+                if (!ahead(last)) break;
+                const Run run = runs[last].run();
+                for (std::size_t i = 0; i < row_lanes; ++i)
+                    alike =
+                        alike && (!runs[i].any_faces() || (ahead(i) && runs[i].run().row == run.row && runs[i].run().count == run.count));
+                if (!alike) break;
+                std::array<Eight, 2> change;
+                const bool moved = move_run_of_eight(a, foot[0], run, dt, change);
+                for (std::size_t i = 0; i < row_lanes; ++i) {
+                    if (!runs[i].any_faces()) continue;
+                    if (moved && inner(foot[i], 0))
+                        changes[runs[i].index()] = {change[0][static_cast<int>(i)], change[1][static_cast<int>(i)]};
+                    else
+                        one(i);
+                    runs[i].reaches(run.row + run.count);
+                }
+            }
+            for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+                for (; runs[i].any_faces() && runs[i].ahead(); runs[i].reaches(runs[i].run().row + runs[i].run().count)) one(i);
+        });
+    }
 }
 
 /// Euler's trace from both Gauss points: deep below the surface paths are straight for as long as a step takes.
@@ -350,11 +326,13 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
     const Layout<D>& layout = mesh.layout();
     const bool all_faces = &to == &predicted_;  // else those that stay have their values
     const int up = layout.up;
+    const ColumnRange own = layout.own();
     constexpr int never = std::numeric_limits<int>::max();
     for (int a = 0; a < D; ++a) {
         const int first = std::max(a == up ? 1 : 0, kept_from_), last = a == up && sides.open(up, 1) ? layout.rows + 1 : layout.rows;
         const auto face_stride = static_cast<std::size_t>(to[a].stride(up)), cell_stride = static_cast<std::size_t>(phi.stride(up));
-        for_each_eight(layout.own(), [&](int c0, int count) {
+        parallel_for(own.begin / row_lanes, blocks_of(own), [&](int block) {
+            const int c0 = std::max(block * row_lanes, own.begin), count = std::min((block + 1) * row_lanes, own.end) - c0;
             std::array<ColumnUp<D>, row_lanes> columns;
             for (int i = 0; i < count; ++i) {
                 ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];

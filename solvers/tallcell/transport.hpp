@@ -23,7 +23,7 @@ public:
     std::size_t bytes() const;
 
 private:
-    void move_runs(const TallPressure<D>& mesh, int a, const ColumnRange& columns, real dt);
+    void move_runs(const TallPressure<D>& mesh, real dt);
     Pair move_run(int a, Index<D> I, const Run& run, real dt) const;
     bool move_run_of_eight(int a, Index<D> I, const Run& run, real dt, std::array<Eight, 2>& change) const;
     void keep(const MacVelocity<D>& u, int beside);
