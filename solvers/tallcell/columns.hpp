@@ -11,6 +11,11 @@
 
 namespace weir::tallcell {
 
+/// Columns [begin, end), whole lines of them.
+struct ColumnRange {
+    int begin = 0, end = 0;
+};
+
 /// Which axis is up, and how columns are numbered: along the other axes, the first of them fastest.
 template <int D>
 struct Layout {
@@ -24,6 +29,10 @@ struct Layout {
     Layout(const Index<D>& cells, int up, const std::array<bool, D>& periodic);
 
     int columns() const { return n[0] * n[1]; }
+    /// Those that are done here: over ranks the lines in this one's planes, else all.
+    ColumnRange own() const;
+    /// The line beyond the last of these, whose faces on the lower side are theirs too; none at a wall, nor where all are done here.
+    ColumnRange above() const;
     /// The lowest cell of a column.
     Index<D> foot(int column) const {
         Index<D> I{};

@@ -1,5 +1,6 @@
 #include "tallcell/kind.hpp"
 
+#include "core/traffic.hpp"
 #include "geometry/hand.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
@@ -64,6 +65,17 @@ Key scheme_keys() {
                    {.name = "fixed", .type = Type::flag, .doc = "Run exactly max_iterations and take what comes.", .fallback = false}}}});
 }
 
+/// What of a scene is not shared by ranks.
+void over_ranks(const scene::Scene& scene) {
+    const auto refuse = [&](const std::string& key, const std::string& what) {
+        scene.refuse(key, key + ": " + what + " in one process only");
+    };
+    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
+    for (std::size_t i = 0; scene.has("solids") && i < scene.root().tables("solids").size(); ++i)
+        if (const auto& solid = scene.root().tables("solids")[i]; solid.has("motion") && solid.text("motion.kind") != "rest")
+            refuse("solids[" + std::to_string(i) + "].motion", "solids move");
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -80,11 +92,17 @@ scene::SolverKind kind() {
     schema.effects.push_back(surface::volume_control());
     schema.effects.push_back(geometry::hand_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
-    return {schema,
-            staggered::make<TallCells>,
-            {{"velocity", "pressure", "level_set", "cell_height"},
-             {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""}};
+    scene::SolverKind tall{schema,
+                           staggered::make<TallCells>,
+                           {{"velocity", "pressure", "level_set", "cell_height"},
+                            {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
+                            "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+                           over_ranks,
+                           scene::Shared::by_planes,
+                           "the knots of the columns, the pressure, the level set's continuation into solids; in 2D, and where columns "
+                           "stand along z, all of it"};
+    tall.sends = traffic_of_step;
+    return tall;
 }
 
 }  // namespace weir::tallcell

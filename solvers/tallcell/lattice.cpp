@@ -6,15 +6,22 @@
 
 namespace weir::tallcell {
 
-/// max f(block) over all columns; those of a block are beside one another along x, if that is no vertical axis.
+/// max f(block) over columns; those of a block are beside one another along x, if that is no vertical axis.
 template <int D>
 template <class F>
-real TallPressure<D>::largest_of_blocks(F&& f) const {
+real TallPressure<D>::largest_of_blocks(const ColumnRange& columns, F&& f) const {
     const int n = layout_.n[0], size = layout_.axes[0] == 0 ? block_columns : 1, a_line = (n + size - 1) / size;
-    return ordered_max(a_line * layout_.n[1], [&](int i) {
+    return ordered_max(a_line * ((columns.end - columns.begin) / n), [&](int i) {
         const int x = i % a_line * size;
-        return f(Block{i / a_line * n + x, std::min(size, n - x)});
+        return f(Block{columns.begin + i / a_line * n + x, std::min(size, n - x)});
     });
+}
+
+/// The largest that any rank gives; NaN if any is NaN.
+static real largest_of_ranks(real own) {
+    if (!over_ranks()) return own;
+    const std::vector<real> all = of_ranks(own);
+    return detail::largest_of(all, static_cast<int>(all.size()));
 }
 
 /// Upwards through the runs along horizontal axis h of a block's columns: together(first, run, places) as long as all of its columns from
@@ -66,35 +73,42 @@ void TallPressure<D>::for_each_element(const Block& block, Together&& together, 
 }
 
 template <int D>
+void TallPressure<D>::restrict_runs(const MacState<D>& state, int h, const Block& block) {
+    const auto& u = state.u[layout_.axes[at(h)]];
+    const auto together = [&](int first, const Run& run, const auto& place) {
+        const Line face = line(u, block.column);
+        std::array<real, at(block_columns)> sum{}, lever{};
+        const real c = 0.5 * (run.count - 1), spread = run.count > 1 ? run.spread() : 1;
+        for (int j = 0; j < run.count; ++j) {
+            const real* values = u.data() + face(run.row + j);
+#pragma omp simd
+            for (int i = first; i < block.count; ++i) {
+                sum[at(i)] += values[i];
+                lever[at(i)] += (j - c) * values[i];
+            }
+        }
+        for (int i = first; i < block.count; ++i) {
+            const real mean = sum[at(i)] / run.count, slope = lever[at(i)] / (run.count * spread);
+            w_[at(h)][at(place[at(i)])] = {mean - slope, mean + slope};
+        }
+    };
+    for_each_run(h, block, together, [&](int column, int i) {
+        const Line face = line(u, column);
+        const Run& run = runs_[at(h)][at(i)];
+        w_[at(h)][at(i)] = moments(run.row, run.count, [&](int row) { return u[face(row)]; });
+    });
+}
+
+template <int D>
 void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
     using Sums = std::array<real, at(block_columns)>;
     std::fill(mean_.begin(), mean_.end(), 0.0);
+    largest_of_blocks(layout_.above(), [&](const Block& block) {
+        restrict_runs(state, D - 2, block);
+        return 0.0;
+    });
     largest_of_blocks([&](const Block& block) {
-        for (int h = 0; h < D - 1; ++h) {
-            const auto& u = state.u[layout_.axes[at(h)]];
-            const auto together = [&](int first, const Run& run, const auto& place) {
-                const Line face = line(u, block.column);
-                Sums sum{}, lever{};
-                const real c = 0.5 * (run.count - 1), spread = run.count > 1 ? run.spread() : 1;
-                for (int j = 0; j < run.count; ++j) {
-                    const real* values = u.data() + face(run.row + j);
-#pragma omp simd
-                    for (int i = first; i < block.count; ++i) {
-                        sum[at(i)] += values[i];
-                        lever[at(i)] += (j - c) * values[i];
-                    }
-                }
-                for (int i = first; i < block.count; ++i) {
-                    const real mean = sum[at(i)] / run.count, slope = lever[at(i)] / (run.count * spread);
-                    w_[at(h)][at(place[at(i)])] = {mean - slope, mean + slope};
-                }
-            };
-            for_each_run(h, block, together, [&](int column, int i) {
-                const Line face = line(u, column);
-                const Run& run = runs_[at(h)][at(i)];
-                w_[at(h)][at(i)] = moments(run.row, run.count, [&](int row) { return u[face(row)]; });
-            });
-        }
+        for (int h = 0; h < D - 1; ++h) restrict_runs(state, h, block);
         const auto& v = state.u[layout_.up];
         const auto together = [&](int row, int length, const auto& knot) {
             const Line face = line(v, block.column);
@@ -117,13 +131,21 @@ void TallPressure<D>::restrict_velocity(const MacState<D>& state) {
 }
 
 template <int D>
+void TallPressure<D>::change_runs(const RunChanges<D>& by, int h, const ColumnRange& columns) {
+    parallel_for(columns.begin, columns.end, [&](int c) {
+        for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
+            const Pair& change = by[at(layout_.axes[at(h)])][at(i)];
+            w_[at(h)][at(i)].minus += change.minus, w_[at(h)][at(i)].plus += change.plus;
+        }
+    });
+}
+
+template <int D>
 void TallPressure<D>::change_runs(const RunChanges<D>& by) {
-    parallel_for(0, layout_.columns(), [&](int c) {
-        for (int h = 0; h < D - 1; ++h)
-            for (int i = run_start_[at(h)][at(c)]; i < run_start_[at(h)][at(c) + 1]; ++i) {
-                const Pair& change = by[at(layout_.axes[at(h)])][at(i)];
-                w_[at(h)][at(i)].minus += change.minus, w_[at(h)][at(i)].plus += change.plus;
-            }
+    const ColumnRange own = layout_.own();
+    for (int h = 0; h < D - 1; ++h) change_runs(by, h, own);
+    change_runs(by, D - 2, layout_.above());
+    parallel_for(own.begin, own.end, [&](int c) {
         for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) {
             const Pair& change = by[at(layout_.up)][at(i)];
             if (knots_.length[at(i)] > 1) mean_[at(i)] += 0.5 * (change.minus + change.plus);
@@ -239,10 +261,13 @@ void TallPressure<D>::weak_divergence(const MacState<D>& state, int c, int end, 
 template <int D>
 void TallPressure<D>::spread(MacState<D>& state, real dt) {
     fastest_run_ = 0;
-    for (int h = 0; h < D - 1; ++h)
-        fastest_run_ = std::max(fastest_run_, largest_of_blocks([&](const Block& block) { return spread_runs(state, h, block); }));
+    const auto spread_along = [&](int h, const ColumnRange& columns) {
+        return largest_of_blocks(columns, [&](const Block& block) { return spread_runs(state, h, block); });
+    };
+    for (int h = 0; h < D - 1; ++h) fastest_run_ = std::max(fastest_run_, spread_along(h, layout_.own()));
+    fastest_run_ = std::max(fastest_run_, spread_along(D - 2, layout_.above()));
     const real vertical = largest_of_blocks([&](const Block& block) { return rebuild(state, block); });
-    fastest_run_ = std::isnan(vertical) ? vertical : std::max(fastest_run_, vertical);
+    fastest_run_ = largest_of_ranks(std::isnan(vertical) ? vertical : std::max(fastest_run_, vertical));
     fastest_run_below_ = floor_;
     const real scale = state.rho / dt;
     largest_of_blocks([&](const Block& block) {
@@ -380,7 +405,7 @@ void TallPressure<D>::spread_pressure(MacState<D>& state, const Block& block, re
 
 template <int D>
 real TallPressure<D>::max_divergence(const MacState<D>& state) const {
-    return largest_of_blocks([&](const Block& block) {
+    const real own = largest_of_blocks([&](const Block& block) {
         const Sides sides = sides_of(state, block);
         real largest = 0;
         const auto see = [&](real divergence) {
@@ -391,6 +416,7 @@ real TallPressure<D>::max_divergence(const MacState<D>& state) const {
         if (sides.side_by_side) inflow_above_elements(state, block, sides, [&](int, real inflow) { see(inflow); });
         return largest;
     });
+    return largest_of_ranks(own);
 }
 
 /// Of the cells of a column that are knots, below row `end`.

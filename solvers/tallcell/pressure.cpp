@@ -106,48 +106,59 @@ const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacSta
     if (knots_.count() == 0) return nothing_to_do_;
     weak_divergence(state, b_);
     const real scale = dt / state.rho;
-    parallel_for(0, layout_.columns(), [&](int c) {  // the last pressure is the first guess
+    const ColumnRange own = layout_.own();
+    parallel_for(own.begin, own.end, [&](int c) {  // the last pressure is the first guess
         const Line cell = line(state.p, c);
         for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(knots_.row[at(i)])];
     });
+    bring_right_side();
     const poisson::Report& report = solver_.solve(A_, knots_, b_, q_);
-    project_faces(phi, state);
+    for (int h = 0; h < D - 1; ++h) project_faces(phi, state, h, own);
+    project_faces(phi, state, D - 2, layout_.above());
     project_vertical(phi, state);
     return report;
 }
 
-/// u −= ∇q on the faces between columns.
+/// Over ranks everybody solves: what all columns have diverged by, and the first guess.
 template <int D>
-void TallPressure<D>::project_faces(const Grid<real, D>& phi, MacState<D>& state) {
-    for (int h = 0; h < D - 1; ++h) {
-        const int axis = layout_.axes[at(h)];
-        const real inv_h = frame_.inv_h[axis];
-        auto& u = state.u[axis];
-        parallel_for(0, layout_.columns(), [&](int c) {
-            const int lower = layout_.lower(c, h);
-            if (lower < 0) return;
-            const Line below = line(state.cells, lower), above = line(state.cells, c);
-            int next = run_start_[at(h)][at(c)];
-            visit(
-                state, h, c,
-                [&](std::size_t face, int row, const Row& l, const Row& r) {
-                    if (open(state, axis, face) == 0) return;
-                    real steep = 1;
-                    if (!l.wet || !r.wet) {
-                        const std::size_t here = (l.wet ? below : above)(row), there = (l.wet ? above : below)(row);
-                        if (state.cells[there] != Cell::air) return;
-                        steep = cut(phi, here, there);
-                    }
-                    u[face] -= inv_h * steep * (pressure_at(r) - pressure_at(l));
-                },
-                [&](const Run& run) {
-                    Pair& w = w_[at(h)][at(next++)];
-                    const auto gradient = [&](real y) { return inv_h * (pressure_at(run.upper, y) - pressure_at(run.lower, y)); };
-                    w.minus -= gradient(run.middle() - run.spread());
-                    w.plus -= gradient(run.middle() + run.spread());
-                });
-        });
-    }
+void TallPressure<D>::bring_right_side() {
+    if (!over_ranks()) return;
+    const Cut& cut = *detail::own_share.cut;
+    std::vector<std::size_t> begins;
+    for (const int z : cut.at) begins.push_back(at(knots_.start[at(z * layout_.n[0])]));
+    for (auto* list : {&b_, &q_}) slabs().gather_parts(list->data(), sizeof(real), begins);
+}
+
+/// u −= ∇q on the faces along horizontal axis h, on the lower side of columns.
+template <int D>
+void TallPressure<D>::project_faces(const Grid<real, D>& phi, MacState<D>& state, int h, const ColumnRange& columns) {
+    const int axis = layout_.axes[at(h)];
+    const real inv_h = frame_.inv_h[axis];
+    auto& u = state.u[axis];
+    parallel_for(columns.begin, columns.end, [&](int c) {
+        const int lower = layout_.lower(c, h);
+        if (lower < 0) return;
+        const Line below = line(state.cells, lower), above = line(state.cells, c);
+        int next = run_start_[at(h)][at(c)];
+        visit(
+            state, h, c,
+            [&](std::size_t face, int row, const Row& l, const Row& r) {
+                if (open(state, axis, face) == 0) return;
+                real steep = 1;
+                if (!l.wet || !r.wet) {
+                    const std::size_t here = (l.wet ? below : above)(row), there = (l.wet ? above : below)(row);
+                    if (state.cells[there] != Cell::air) return;
+                    steep = cut(phi, here, there);
+                }
+                u[face] -= inv_h * steep * (pressure_at(r) - pressure_at(l));
+            },
+            [&](const Run& run) {
+                Pair& w = w_[at(h)][at(next++)];
+                const auto gradient = [&](real y) { return inv_h * (pressure_at(run.upper, y) - pressure_at(run.lower, y)); };
+                w.minus -= gradient(run.middle() - run.spread());
+                w.plus -= gradient(run.middle() + run.spread());
+            });
+    });
 }
 
 template <int D>
@@ -155,7 +166,8 @@ void TallPressure<D>::project_vertical(const Grid<real, D>& phi, MacState<D>& st
     const Knots& knots = knots_;
     const int up = layout_.up;
     auto& v = state.u[up];
-    parallel_for(0, layout_.columns(), [&](int c) {
+    const ColumnRange own = layout_.own();
+    parallel_for(own.begin, own.end, [&](int c) {
         const Line cell = line(state.cells, c), face = line(v, c);
         for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
             const int row = knots.row[at(i)], length = knots.length[at(i)];

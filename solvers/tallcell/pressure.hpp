@@ -2,6 +2,8 @@
 // Pᵀ A_f P, symmetric and positive, and the projection is orthogonal: idempotent, never adds energy, exact for the pressure of water at
 // rest. The surface enters by ghost fluid (Gibou et al. 2002) and solids by open fractions (Batty et al. 2007), as on the uniform grid.
 // After a projection the vertical velocity inside elements is rebuilt from the bottom up, which makes it free of divergence cell by cell.
+// Over ranks each has all knots and solves for all of the pressure; what lies between these and the lattice it does of its own columns, and
+// of the faces that these share with the line of columns beyond.
 #pragma once
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
@@ -121,7 +123,8 @@ private:
         return std::min(1 - phi[air] / phi[liquid], largest_cut_);  // 1/θ between a liquid cell and one of air
     }
     static constexpr int faces() { return 2 * (D - 1); }
-    void project_faces(const Grid<real, D>& phi, MacState<D>& state);
+    void bring_right_side();
+    void project_faces(const Grid<real, D>& phi, MacState<D>& state, int h, const ColumnRange& columns);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
     /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
     struct Line {
@@ -134,7 +137,11 @@ private:
     };
     static constexpr int block_columns = 16;
     template <class F>
-    real largest_of_blocks(F&& f) const;
+    real largest_of_blocks(const ColumnRange& columns, F&& f) const;
+    template <class F>
+    real largest_of_blocks(F&& f) const {
+        return largest_of_blocks(layout_.own(), f);
+    }
     template <class Together, class One>
     void for_each_run(int h, const Block& block, Together&& together, One&& one) const;
     template <class Together, class One>
@@ -154,6 +161,8 @@ private:
     void inflow_above_elements(const MacState<D>& state, const Block& block, const Sides& sides, F&& f) const;
     void weak_divergence(const MacState<D>& state, int column, int end, std::vector<real>& b) const;
     real largest_divergence(const MacState<D>& state, int column, int end) const;
+    void restrict_runs(const MacState<D>& state, int h, const Block& block);
+    void change_runs(const RunChanges<D>& by, int h, const ColumnRange& columns);
     real spread_runs(MacState<D>& state, int h, const Block& block) const;
     real rebuild(MacState<D>& state, const Block& block) const;
     void spread_pressure(MacState<D>& state, const Block& block, real scale) const;

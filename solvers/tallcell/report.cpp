@@ -8,6 +8,7 @@ namespace weir::tallcell {
 
 template <int D>
 FieldSet TallCells<D>::fields() const {
+    make_whole();
     pressure_.show_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
@@ -22,6 +23,8 @@ FieldSet TallCells<D>::fields() const {
 
 template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
+    make_whole();
+    const OwnPlanes mine(cut_);
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.knots().count())});
     if (hand_) geometry::sum_up(*hand_, D, list);
@@ -31,6 +34,8 @@ std::vector<Integral> TallCells<D>::integrals() const {
 
 template <int D>
 void TallCells<D>::save(Checkpoint& to) const {
+    make_whole();
+    const OwnPlanes mine(cut_);
     state_.save(to);
     surface_.save(to);
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
@@ -51,6 +56,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     if (hand_ && from.has("hand")) hand_->restore(from);
     remesh();
     mark_liquid_faces();
+    whole_ = true;
 }
 
 template <int D>

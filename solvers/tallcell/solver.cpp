@@ -9,6 +9,8 @@ namespace weir::tallcell {
 /// velocity that is known throughout the band of the level set and free of divergence in the liquid, to the tolerance of the pressure.
 template <int D>
 StepReport TallCells<D>::step(real dt) {
+    const OwnPlanes mine(cut_);
+    bring_faces(dt);  // over ranks, as far as anything moves
     place_solids(state_.time + dt);
     move_surface(dt);                             // Dφ/Dt = 0, and φ is a distance again
     control_volume();                             // only if the scene names it
@@ -42,7 +44,7 @@ void TallCells<D>::place_solids(real t) {
 template <int D>
 void TallCells<D>::move_surface(real dt) {
     const auto timed = passes_.time("level set");
-    surface_.advect(state_.u, dt);
+    surface_.advect(state_.u, dt, reach_);
     surface_.redistance();
     if (hand_) pour_and_drain_by_hand();
 }
@@ -88,13 +90,16 @@ void TallCells<D>::control_volume() {
 template <int D>
 void TallCells<D>::remesh() {
     const auto timed = passes_.time("remesh");
+    surface_.make_whole();
+    surface_.make_layers_whole();
+    const AllPlanes all;  // every rank has all columns
     pressure_.set_surface(surface_, closed_, options_.shape, state_);
 }
 
 template <int D>
 void TallCells<D>::advect(real dt) {
     const auto timed = passes_.time("advect");
-    transport_(pressure_, surface_.phi, state_.sides, dt, rate_, state_.u);
+    transport_(pressure_, surface_.phi, state_.sides, dt, rate_, state_.u, reach_);
 }
 
 template <int D>
@@ -107,6 +112,7 @@ void TallCells<D>::forces(real dt) {
 template <int D>
 poisson::Report TallCells<D>::project(real dt) {
     const auto timed = passes_.time("project");
+    refresh(state_.u[D - 1], frame_.periodic(D - 1));
     pressure_.restrict_velocity(state_);
     pressure_.change_runs(transport_.changes());
     const poisson::Report report = pressure_.project(surface_.phi, state_, dt);
@@ -164,11 +170,12 @@ real TallCells<D>::max_speed_rate() const {
         lo[up_] = pressure_.fastest_run_below();
         const std::size_t x = static_cast<std::size_t>(lo[0]), count = static_cast<std::size_t>(hi[0]) - x;
         const int lines = hi[D - 1], rows = D == 3 ? hi[1] - lo[1] : 1, first_line = lo[D - 1];
-        const real largest = ordered_max(lines - first_line, [&](int k) {
+        const real largest = plane_max(lines, [&](int k) {
+            if (k < first_line) return 0.0;
             real most = 0, poison = 0;  // x − x is 0, or NaN where x is not finite
             for (int j = 0; j < rows; ++j) {
                 Index<D> I = lo;
-                I[1] = lo[1] + j, I[D - 1] = first_line + k;
+                I[1] = lo[1] + j, I[D - 1] = k;
                 const std::size_t first = u.linear(I);
                 const real* v = u.data() + first;
                 const std::uint8_t* mark = known.data() + first;

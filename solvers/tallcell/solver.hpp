@@ -17,6 +17,11 @@ namespace weir::tallcell {
 /// The registered solver "tallcell".
 scene::SolverKind kind();
 
+/// Over ranks, where the planes of a scene are cut: nowhere where columns go through all of them, along the slowest axis.
+Cut cut_of_columns(const scene::Scene& scene, int ranks);
+/// What a rank sends in a step of a scene that is cut so.
+StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
+
 struct TallOptions {
     Shape shape;
     bool maccormack = true;
@@ -69,11 +74,16 @@ private:
     poisson::Report project(real dt);
     void extend_velocity();
 
+    // Over ranks (ranks.cpp)
+    void bring_faces(real dt);
+    void make_whole() const;
+
     void set_fixed_faces();
     void mark_liquid_faces();
     real max_speed_rate() const;
 
     TallOptions options_;
+    Cut cut_;  // none in one process, nor where every rank does all
     MacState<D> state_;
     Frame<D> frame_;
     SolidPlacement<D> solids_;
@@ -93,6 +103,8 @@ private:
     std::int64_t steps_ = 0;
     std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
+    int reach_ = 0;              // planes beyond the cuts that motion reads in this step
+    mutable bool whole_ = true;  // all planes stand here
 };
 
 }  // namespace weir::tallcell

@@ -12,6 +12,7 @@ namespace weir::tallcell {
 template <int D>
 TallCells<D>::TallCells(const scene::Scene& scene)
     : options_(scene),
+      cut_(cut_of_columns(scene, slabs().ranks())),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),

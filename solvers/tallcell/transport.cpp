@@ -22,36 +22,19 @@ std::size_t Transport<D>::bytes() const {
 
 template <int D>
 void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real fastest,
-                              MacVelocity<D>& u) {
+                              MacVelocity<D>& u, int beside) {
     up_ = mesh.layout().up, open_above_ = sides.open(up_, 1);
     source_ = &u;
     move_runs(mesh, dt);
     // A point travels no farther than this, by a midpoint that may be faster than where it starts, and then looks at two samples.
     kept_from_ = std::max(0, mesh.floor_of_singles() - static_cast<int>(std::min(1e6, 1.5 * fastest * dt)) - 3);
-    keep(u);
+    keep(u, beside);
     source_ = &before_;
     const real h = frame_.h_max();
     if (!maccormack_) return pass<false>(mesh, phi, sides, dt, 2 * h, u);
     pass<false>(mesh, phi, sides, dt, (reach_ + 2) * h, predicted_);
+    refresh_faces(predicted_, frame_, beside);
     pass<true>(mesh, phi, sides, dt, 2 * h, u);
-}
-
-/// f(first, count) for the faces of u along a from kept_from_ upwards, in pieces that lie together in memory.
-template <int D, class F>
-static void for_each_kept(const Grid<real, D>& u, int up, int from, F&& f) {
-    Index<D> lo{}, hi = u.extent();
-    lo[up] = from;
-    const int x = lo[0], count = hi[0] - x;
-    hi[0] = x + 1;
-    for_each_in(lo, hi, [&](const Index<D>& I) { f(u.linear(I), static_cast<std::size_t>(count)); });
-}
-
-template <int D>
-void Transport<D>::keep(const MacVelocity<D>& u) {
-    for (int a = 0; a < D; ++a)
-        for_each_kept(u[a], up_, kept_from_, [&](std::size_t first, std::size_t count) {
-            std::copy(u[a].data() + first, u[a].data() + first + count, before_[a].data() + first);
-        });
 }
 
 namespace {
@@ -179,16 +162,24 @@ Vec<D> face_place(int a, const Index<D>& I) {
 
 }  // namespace
 
+/// Where the last block of eight columns ends, counted from column 0.
+static int blocks_of(const ColumnRange& columns) { return (columns.end + row_lanes - 1) / row_lanes; }
+
 /// What all runs of tall cells change by at their Gauss points. Eight columns beside one another along x are looked at together.
 template <int D>
 void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
     const Layout<D>& layout = mesh.layout();
-    const int blocks = (layout.columns() + row_lanes - 1) / row_lanes;
     for (int a = 0; a < D; ++a) {
         auto& changes = changes_[static_cast<std::size_t>(a)];
         resize_scratch(changes, mesh.run_count(a));
-        parallel_for(0, blocks, [&](int block) {
-            const int c0 = block * row_lanes, count = std::min(layout.columns() - c0, row_lanes);
+        // Columns that are done here; of runs along the last axis the line beyond them too.
+        const ColumnRange own = layout.own(), above = a == layout.axes[D - 2] ? layout.above() : ColumnRange{};
+        const int own_begin = own.begin / row_lanes, own_blocks = blocks_of(own) - own_begin, above_begin = above.begin / row_lanes;
+        parallel_for(0, own_blocks + blocks_of(above) - above_begin, [&](int i_block) {
+            const bool is_own = i_block < own_blocks;
+            const ColumnRange& range = is_own ? own : above;
+            const int block = is_own ? own_begin + i_block : above_begin + i_block - own_blocks;
+            const int c0 = std::max(block * row_lanes, range.begin), count = std::min((block + 1) * row_lanes, range.end) - c0;
             std::array<typename TallPressure<D>::RunsUp, row_lanes> runs;
             std::array<Index<D>, row_lanes> foot;
             for (int i = 0; i < count; ++i) {
@@ -334,13 +325,14 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                         MacVelocity<D>& to) const {
     const Layout<D>& layout = mesh.layout();
     const bool all_faces = &to == &predicted_;  // else those that stay have their values
-    const int up = layout.up, blocks = (layout.columns() + row_lanes - 1) / row_lanes;
+    const int up = layout.up;
+    const ColumnRange own = layout.own();
     constexpr int never = std::numeric_limits<int>::max();
     for (int a = 0; a < D; ++a) {
         const int first = std::max(a == up ? 1 : 0, kept_from_), last = a == up && sides.open(up, 1) ? layout.rows + 1 : layout.rows;
         const auto face_stride = static_cast<std::size_t>(to[a].stride(up)), cell_stride = static_cast<std::size_t>(phi.stride(up));
-        parallel_for(0, blocks, [&](int block) {
-            const int c0 = block * row_lanes, count = std::min(layout.columns() - c0, row_lanes);
+        parallel_for(own.begin / row_lanes, blocks_of(own), [&](int block) {
+            const int c0 = std::max(block * row_lanes, own.begin), count = std::min((block + 1) * row_lanes, own.end) - c0;
             std::array<ColumnUp<D>, row_lanes> columns;
             for (int i = 0; i < count; ++i) {
                 ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];

@@ -14,9 +14,10 @@ public:
     Transport() = default;
     Transport(const Frame<D>& frame, const MacVelocity<D>& u, bool maccormack, int reach);
     /// u of all faces near the liquid, dt later, where nothing moves by more than `fastest` cells a second; but for those in runs of tall
-    /// cells: what these change by is changes(). u must be known throughout the level set's band.
+    /// cells: what these change by is changes(). u must be known throughout the level set's band. Over ranks, of each its own columns;
+    /// u must then be known `beside` planes beyond its cuts, as far as anything moves and two more.
     void operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real fastest,
-                    MacVelocity<D>& u);
+                    MacVelocity<D>& u, int beside = 0);
     /// By axis, in the order of the mesh's runs; of the vertical axis by knots.
     const RunChanges<D>& changes() const { return changes_; }
     std::size_t bytes() const;
@@ -25,7 +26,7 @@ private:
     void move_runs(const TallPressure<D>& mesh, real dt);
     Pair move_run(int a, Index<D> I, const Run& run, real dt) const;
     bool move_run_of_eight(int a, Index<D> I, const Run& run, real dt, std::array<Eight, 2>& change) const;
-    void keep(const MacVelocity<D>& u);
+    void keep(const MacVelocity<D>& u, int beside);
     template <bool Correct>
     void pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
               MacVelocity<D>& to) const;

@@ -1,6 +1,7 @@
 // What a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of what stands in surface/, pass by pass.
 #include "poisson/traffic.hpp"
 #include "geometry/wet_part.hpp"
+#include "surface/traffic.hpp"
 #include "water/solver.hpp"
 
 #include <cmath>
@@ -34,21 +35,20 @@ public:
           windowed_(could_hold_own_planes(scene, of.ranks)),
           shape_(shape),
           reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
-          layers_(static_cast<int>(std::ceil(scene.number("time.cfl"))) + 4),
-          cells_(plane(n_, sizeof(real))),
-          tally_(of.cut, of.rank, ring_) {
-        for (int a = 0; a < D; ++a) faces_[static_cast<std::size_t>(a)] = plane(n_ + e<D>(a), sizeof(real));
-    }
+          surface_(n_, lattice_.h, scene.number("time.cfl"), ring_),
+          cells_(surface_.cells),
+          faces_(surface_.faces),
+          tally_(of.cut, of.rank, ring_) {}
 
     StepTraffic sent() {
         move();
         find_surface();
         sync();  // what the markers brought, beside walls
-        continue_velocity(2);
+        surface_.continue_velocity(tally_, 2);
         if (transfer_ == "flip") sync();
         sync();  // what forces leave
         project();
-        continue_velocity(layers_ - 1);
+        surface_.continue_velocity(tally_, surface_.layers - 1);
         sync();
         for (int a = 0; a < D; ++a) largest(faces_[static_cast<std::size_t>(a)].count);  // the fastest flow
         if (transfer_ != "grid") tally_.refresh(faces_, 1);                              // the velocity, or FLIP's difference
@@ -59,10 +59,6 @@ public:
     }
 
 private:
-    static PlaneSize plane(const Index<D>& n, std::size_t each) {
-        for (int d = 0; d + 1 < D; ++d) each *= static_cast<std::size_t>(n[d]);
-        return {each, n[D - 1]};
-    }
     void sync() { tally_.refresh({faces_[D - 1]}, 1); }
     void largest(int planes) { tally_.gather({sizeof(real), planes}); }
 
@@ -90,34 +86,17 @@ private:
         if (rank + 1 < ranks || ring_) tally_.parcel(bytes_in(last));
         if (open) tally_.everywhere(sizeof(std::int64_t), 2, sizeof(std::int64_t) * static_cast<std::size_t>(ranks));
     }
-    /// Who is inside is known as far as the band is found beyond the cuts; values of a layer are found twice, each time from those beside
-    /// them. Then what is liquid, and how it is joined.
+    /// The distance; then what is liquid, and how it is joined.
     void find_surface() {
-        const int found = 2 * layers_;
-        tally_.refresh({plane(n_, sizeof(std::uint8_t))}, found + 1);
-        tally_.refresh({cells_}, 1, 1 + 2 * (layers_ - 1));
-        tally_.refresh({cells_}, layers_);
+        surface_.distance(tally_);
         if (scene_.effect("surface_tension")) tally_.refresh({cells_}, 1);  // curvature
         if (!windowed_) return tally_.gather(cells_);
         Index<D> lines = n_;
         lines[0] = 1;
         const auto ranks = static_cast<std::size_t>(tally_.cut().ranks());
         tally_.everywhere(sizeof(std::int64_t), 1, sizeof(std::int64_t) * ranks);  // is there liquid?
-        tally_.refresh({plane(n_, sizeof(poisson::Cell)), plane(lines, sizeof(Extent))}, 2);
+        tally_.refresh({plane_of<D>(n_, sizeof(poisson::Cell)), plane_of<D>(lines, sizeof(Extent))}, 2);
         sync();  // weights above the last cells
-    }
-    /// Which faces are known as far as a slope looks behind the last layer; a layer is found from three planes at the cuts, or four around
-    /// the axis, later ones from one.
-    void continue_velocity(int layers) {
-        const int behind = ring_ ? 4 : 3;
-        std::array<PlaneSize, D> marks;
-        for (int a = 0; a < D; ++a) marks[static_cast<std::size_t>(a)] = plane(n_ + e<D>(a), sizeof(std::uint8_t));
-        tally_.refresh(marks, layers + 4);
-        tally_.refresh(faces_, behind);
-        for (const PlaneSize& component : faces_) {
-            if (layers > 1) tally_.refresh({component}, behind);
-            if (layers > 2) tally_.refresh({component}, 1, layers - 2);
-        }
     }
     /// Wet rows of this rank, one run each, as the scene begins; and those of the plane below it.
     poisson::Runs runs() const {
@@ -154,9 +133,10 @@ private:
     std::string transfer_;
     bool ring_, windowed_;
     StepShape shape_;
-    int reach_, layers_;
+    int reach_;
+    SurfaceTally<D> surface_;
     PlaneSize cells_;
-    std::array<PlaneSize, D> faces_{};
+    std::array<PlaneSize, D> faces_;
     Tally tally_;
 };
 

@@ -48,6 +48,7 @@ compare() {
 }
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
+tall=$scenes/ranks_tall.toml tall_deep=$scenes/ranks_tall_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
 sea=$scenes/ranks_waves.toml trains=$scenes/ranks_trains.toml below=$scenes/ranks_waves_below.toml line=$scenes/ranks_line.toml
 # without what everybody finds of whole grids, friction and a gauge; and with cells that a periodic axis can halve
@@ -172,6 +173,32 @@ waves)
         ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
         ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.6
         ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.6
+        diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    done
+    ;;
+tallcell)
+    compare deep "1 2,2 1,2 2,3 1,4 2" "$tall_deep"
+    grep -q '"storage":"every rank holds whole grids"' deep-2-1/run.json || fail "run.json does not tell that grids are whole"
+    grep -q '"every_rank_does":"the knots of the columns, the pressure' deep-2-1/run.json || fail "run.json does not tell what is not shared"
+    compare flat "2 1,3 2,4 1" "$tall"
+    tall_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
+    clear='--set solids=[]' # columns are looked at together where no solid cuts them
+    # paths of two cells around the ends of the cut axis, in steps that advection allows
+    compare ring "2 1,3 2,4 1" "$tall_deep" $tall_ring $clear --set time.cfl=3 --set time.max_dt=0.05 \
+        --set 'initial.velocity={name="random",speed=2.0}' --set 'effects={gravity={g=[0.0,-9.81,0.0]}}'
+    compare single "3 1" "$tall_deep" $clear --set scheme.columns=single --set scheme.advection=semi_lagrangian
+    compare uniform "3 2" "$tall_deep" --set scheme.columns=uniform
+    compare lines "2 1,4 2" "$tall_deep" $clear --set grid.cells=[32,48,26] --set grid.size=[0.64,0.96,0.52]
+    compare lying "3 1" "$tall_deep" --set 'effects={gravity={g=[-9.81,0.0,0.0]}}'  # columns along x
+    compare across "3 1" "$tall_deep" --set 'effects={gravity={g=[0.0,0.0,-9.81]}}' # columns through all slabs: every rank does all
+    compare thin "4 1" "$tall_deep" --set grid.cells=[28,48,7] --set grid.size=[0.56,0.96,0.14]
+    compare flat_cells "3 1" "$tall_deep" --set grid.cells=[28,60,26]
+    # saved on three, continued on two
+    for scene in "$tall" "$tall_deep"; do
+        rm -rf parts whole
+        ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
+        ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.06
+        ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.06
         diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
     done
     ;;
@@ -347,6 +374,12 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field_poisoned
         alike field field_poisoned
     done
+    for case in "$tall_deep" "$tall_deep --set solids=[] $water_ring --set time.cfl=2" "$tall"; do
+        rm -rf tall tall_poisoned
+        ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out tall
+        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out tall_poisoned
+        alike tall tall_poisoned
+    done
     for case in "$drops" "$drops_deep" "$drops $sph" "$drops_deep $sph" "$drops $sph --set scheme.density=summation"; do
         rm -rf drops drops_poisoned
         ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops
@@ -393,7 +426,9 @@ ends)
         says "$key"
         [ ! -e refused ] || fail "a refused run has written"
     }
-    refused 'solver "tallcell" runs in one process' "$scenes/water.toml" --set solver=tallcell
+    refused 'solver "closed_vessel" runs in one process' "$scenes/../../../cases/closed_vessel/scene.toml"
+    refused "effects.hand: the hand pushes in one process only" "$tall" --set effects.hand={}
+    refused 'solids\[0\].motion' "$tall_deep" --set 'solids=[{shape="sphere",centre=[0.3,0.15,0.28],radius=0.1,motion={kind="rotation",rate=1.0,axis=[0.0,0.0,1.0]}}]'
     refused "effects.hand: the hand pushes in one process only" "$water" --set effects.hand={}
     refused 'solids\[0\].motion' "$water" --set 'solids=[{shape="sphere",centre=[0.5,0.3],radius=0.08,motion={kind="rotation",rate=1.0,axis=[0.0,0.0,1.0]}}]'
     refused scheme.poisson.method "$water" --set scheme.poisson.method=petsc_gamg

@@ -172,6 +172,22 @@ TEST("pbf: particles at rest send as many messages as the formula says, and as m
     expect_as_told(still + "solver = \"pbf\"\nscheme = { support = 2.0, iterations = 3 }\n", {2, 3}, {1e-4, 10, 30}, {36, 36, 36}, 0.45);
 }
 
+// At rest the surface is flat: all columns have the same knots, of which the formula knows how many there are.
+TEST("tallcell: deep water at rest sends what the formula says, around the cut axis too, and in 2D nothing but what the run does") {
+    const std::string deep = "solver = \"tallcell\"\ntime = { end = 0.01, max_dt = 1e-4 }\noutput = { every = 1.0 }\n";
+    const std::string box = deep +
+                            "dim = 3\ngrid = { cells = [18, 48, 26], size = [0.36, 0.96, 0.52] }\n"
+                            "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.36, 0.6, 0.52] } ]\n"
+                            "effects.gravity = { g = [0.0, -9.81, 0.0] }\n";
+    const std::string ring = "sides = { z_min = { kind = \"periodic\" }, z_max = { kind = \"periodic\" } }\n";
+    expect_as_told(box, {2, 3}, {1e-4, 3, 8});
+    expect_as_told(box + ring + "scheme = { columns = \"single\", advection = \"semi_lagrangian\" }\n", {2, 3}, {1e-4, 3, 8});
+    expect_as_told(deep +
+                       "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\n"
+                       "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.3] } ]\n",
+                   {2}, {1e-4, 3, 8});
+}
+
 // Rows beside a cut, and what stages say of all rows: 3 rows of 2 numbers a column, 4 numbers a row. Columns look at all of them once in 16
 // steps.
 TEST("heightfield: both models send what the formula says, with open and periodic sides") {
@@ -299,7 +315,7 @@ TEST("what cannot run over so many ranks is refused by a plan as by the run, wit
         };
         ask("41", {}, "40 planes of cells along y cannot be shared by 41 ranks");
         ask("41", {}, "at most 40");
-        ask("3", {"--set", "solver=tallcell"}, "solver \"tallcell\" runs in one process, and there are 3");
+        ask("3", {"--set", "solver=tallcell", "--set", "effects.hand={}"}, "effects.hand: the hand pushes in one process only");
         ask("3", {"--set", "effects.hand={}"}, "effects.hand: the hand pushes in one process only");
     }
     refused({"cost", "--ranks", "2"}, "--ranks tells what a scene takes over so many ranks: it needs --plan SCENE");

@@ -1,0 +1,72 @@
+// What several ranks that run one scene of tall cells have of one another. Each owns the planes between two cuts, and in them whole lines
+// of columns; what is linear within columns it finds of its own. Knots, the matrix and the pressure everybody has and finds whole.
+#include "tallcell/solver.hpp"
+
+namespace weir::tallcell {
+
+Cut cut_of_columns(const scene::Scene& scene, int ranks) {
+    if (scene.dim() == 2 || up_axis<3>(gravity_of<3>(scene)) == 2) return {};
+    return cut_of(scene.index<3>("grid.cells")[2], ranks);
+}
+
+/// The velocity as far beyond the cuts as anything moves in the step, and reads there: a point at the end of its path looks at two samples,
+/// and runs of the line of columns beyond move too.
+template <int D>
+void TallCells<D>::bring_faces(real dt) {
+    whole_ = cut_.empty();
+    if (!over_ranks()) return;
+    const auto timed = passes_.time("exchange");
+    const int planes = frame_.cells[D - 1];
+    const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];
+    reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
+    refresh_faces(state_.u, frame_, reach_);
+}
+
+/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time. What is liquid, and where
+/// its surface is, they have since the columns' knots were placed.
+template <int D>
+void TallCells<D>::make_whole() const {
+    if (whole_) return;
+    const OwnPlanes mine(cut_);
+    auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
+    for (int a = 0; a < D; ++a) gather(state.u[a]);
+    gather(state.p);
+    whole_ = true;
+}
+
+/// Here, not beside the other passes: what the compiler makes of these depends on how much stands with them.
+///
+/// f(first, count) for the faces of u along a from `from` upwards, in pieces that lie together in memory; over ranks of this one's planes
+/// and `beside` more beyond its cuts.
+template <int D, class F>
+static void for_each_kept(const Grid<real, D>& u, int up, int from, int beside, bool ring, F&& f) {
+    Index<D> lo{}, hi = u.extent();
+    lo[up] = from;
+    const int x = lo[0], count = hi[0] - x;
+    hi[0] = x + 1;
+    const std::vector<char> near = planes_near(u.extent()[D - 1], beside, ring);
+    const int last = hi[D - 1] - 1;  // around a periodic axis faces there are those of plane 0
+    const AllPlanes all;
+    for_each_in(lo, hi, [&](const Index<D>& I) {
+        if (near.empty() || near[static_cast<std::size_t>(I[D - 1])] || (ring && I[D - 1] == last && near[0]))
+            f(u.linear(I), static_cast<std::size_t>(count));
+    });
+}
+
+template <int D>
+void Transport<D>::keep(const MacVelocity<D>& u, int beside) {
+    for (int a = 0; a < D; ++a)
+        for_each_kept(u[a], up_, kept_from_, beside, frame_.periodic(D - 1), [&](std::size_t first, std::size_t count) {
+            std::copy(u[a].data() + first, u[a].data() + first + count, before_[a].data() + first);
+        });
+}
+
+#define WEIR_INSTANTIATE(D)                           \
+    template void TallCells<D>::bring_faces(real dt); \
+    template void TallCells<D>::make_whole() const;   \
+    template void Transport<D>::keep(const MacVelocity<D>&, int);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::tallcell
