@@ -68,16 +68,10 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
 }
 
-/// Empty where particles are shared, whose cut moves with them.
-Cut cut_of_run(const scene::Scene& scene) {
-    if (sim::kind_named(scene.solver()).shared == scene::Shared::by_particles) return {};
-    return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), slabs().ranks());
-}
-
 std::string explain_ranks(const Simulation& simulation) {
     const scene::Scene& scene = simulation.scene();
     if (!slabs().several()) return {};
-    const Cut cut = cut_of_run(scene);
+    const Cut& cut = simulation.cut();
     std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, cut along " + (scene.dim() == 2 ? "y" : "z");
     if (cut.empty()) return text + " into as many particles each; every rank holds and moves its own, and knows those near its cuts\n";
     text += " before planes";
@@ -107,7 +101,8 @@ std::size_t resident_bytes() {
 double memory_for_all(const scene::Scene& scene) {
     const double available = sim::available_memory(), ranks = slabs().ranks();
     const auto& kind = sim::kind_named(scene.solver());
-    if (!slabs().several() || !kind.holds_own_part || !kind.holds_own_part(scene)) return available / ranks;
+    if (!slabs().several() || !kind.holds_own_part || !kind.holds_own_part(scene, sim::cut_of_scene(scene, slabs().ranks())))
+        return available / ranks;
     return available / (1 + ranks * sim::planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
 
@@ -172,7 +167,7 @@ private:
     void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankMemory>& memory) {
         if (!slabs().several()) return;
         const scene::Scene& scene = simulation.scene();
-        log_.set_ranks(slabs().ranks(), cut_of_run(scene), simulation.solver().holds_own_planes(), sim::kind_named(scene.solver()).by_all,
+        log_.set_ranks(slabs().ranks(), simulation.cut(), simulation.solver().holds_own_planes(), sim::kind_named(scene.solver()).by_all,
                        sent, memory);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {

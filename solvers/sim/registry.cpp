@@ -1,5 +1,6 @@
 #include "sim/registry.hpp"
 
+#include "core/cut_by_work.hpp"
 #include "flow/solver.hpp"
 #include "heightfield/solver.hpp"
 #include "pbf/solver.hpp"
@@ -58,6 +59,16 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
                      std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") + " cannot be shared by " +
                          std::to_string(ranks) + " ranks",
                      "at most " + std::to_string(planes));
+}
+
+Cut cut_of_scene(const scene::Scene& scene, int ranks, const scene::SolverKind& kind) {
+    if (ranks == 1 || kind.shared == scene::Shared::by_particles) return {};
+    if (kind.work_of_planes) return cut_by_work(kind.work_of_planes(scene, nullptr), ranks);
+    return cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), ranks);
+}
+
+Cut cut_of_scene(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
+    return cut_of_scene(scene, ranks, kind_named(scene.solver(), kinds));
 }
 
 }  // namespace weir::sim

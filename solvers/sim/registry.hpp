@@ -1,5 +1,6 @@
 // Every solver of the program, by name: one line each in registry.cpp. Reader, messages, describe, run and validate find it here.
 #pragma once
+#include "core/halo.hpp"
 #include "scene/solver_kind.hpp"
 
 #include <string_view>
@@ -12,6 +13,10 @@ const std::vector<scene::SolverKind>& registry();
 const std::vector<scene::SolverSchema>& schemas();
 /// The solver of that name, which a checked scene always has; std::logic_error otherwise.
 const scene::SolverKind& kind_named(std::string_view name, const std::vector<scene::SolverKind>& kinds = registry());
+
+/// How a scene that begins is cut over so many ranks. Empty for one rank, and where particles are shared, whose cut moves with them.
+Cut cut_of_scene(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
+Cut cut_of_scene(const scene::Scene& scene, int ranks, const scene::SolverKind& kind);
 
 /// Refuses, by its key, what cannot run over so many ranks; see SolverKind::over_ranks.
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());

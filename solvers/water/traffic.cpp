@@ -31,7 +31,7 @@ public:
           n_(lattice_.cells),
           transfer_(scene.text("scheme.transfer")),
           ring_(sides_.periodic(D - 1)),
-          windowed_(could_hold_own_planes(scene, of.ranks)),
+          windowed_(could_hold_own_planes(scene, of.cut)),
           shape_(shape),
           reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
           layers_(static_cast<int>(std::ceil(scene.number("time.cfl"))) + 4),

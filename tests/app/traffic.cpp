@@ -54,8 +54,7 @@ private:
 /// What the formula says of the steps from `first` on, each with its iterations.
 Traffic told(const scene::Scene& scene, int ranks, int rank, const Run& run, std::size_t first, double beside) {
     const auto& kind = sim::kind_named(scene.solver());
-    RankOf of{.rank = rank, .ranks = ranks};
-    if (kind.shared == scene::Shared::by_planes) of.cut = cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), ranks);
+    const RankOf of{.cut = sim::cut_of_scene(scene, ranks), .rank = rank, .ranks = ranks};
     Traffic sum;
     for (std::size_t step = first; step < run.steps(); ++step) {
         const double cfl = run.log["steps"][step].value("cfl", 0.0);
@@ -241,7 +240,7 @@ TEST("cost --plan --ranks prints the formula's numbers, the constants with their
     EXPECT_EQ(code, 0) << text;
     const auto scene = scene::read(folder.path() / "pool.toml", sim::schemas());
     for (int rank = 0; rank < 2; ++rank) {
-        const Traffic sent = sim::kind_named("mac_water").sends(scene, {cut_of(40, 2), rank, 2}, {}).all();
+        const Traffic sent = sim::kind_named("mac_water").sends(scene, {sim::cut_of_scene(scene, 2), rank, 2}, {}).all();
         EXPECT_NE(text.find(fmt::format("{:6} messages {:>12} bytes a step", sent.messages, sent.bytes)), std::string::npos) << text;
     }
     for (const char* part : {"over 2 ranks, cut along y", "each holds the whole grids, and does alone: the levels of the pressure",
