@@ -49,10 +49,16 @@ public:
     bool in_solids(const Vec<D>& x) const {
         return std::any_of(solids_.begin(), solids_.end(), [&](const auto& shape) { return shape->contains(x); });
     }
-    real to_liquid(const Vec<D>& x) const {
-        real least = infinity;
-        for (const auto& shape : liquid_) least = std::min(least, shape->distance(x));
-        return least;
+    /// Does liquid begin or end within this distance of x, along an axis and inside the domain? Where it meets a wall it has no surface.
+    bool near_surface(const Vec<D>& x, real beside) const {
+        const bool wet = in_liquid(x);
+        for (int a = 0; a < D; ++a)
+            for (const real by : {-beside, beside}) {
+                Vec<D> y = x;
+                y[a] += by;
+                if (y[a] > origin_[a] && y[a] < origin_[a] + size_[a] && in_liquid(y) != wet) return true;
+            }
+        return false;
     }
 
 private:
@@ -81,10 +87,9 @@ std::vector<PlaneOfLiquid> liquid_in_planes(const scene::Scene& scene, real besi
     for (int plane = 0; plane < look.planes(); ++plane) {
         auto& [wet, near] = planes[static_cast<std::size_t>(plane)];
         look.for_each_of_plane(plane, [&](const Vec<D>& x) {
-            const real distance = look.to_liquid(x);
-            if (distance >= beside || look.in_solids(x)) return;
-            if (distance < 0) wet += look.each();
-            if (distance > -beside) near += look.each();
+            if (look.in_solids(x)) return;
+            if (look.in_liquid(x)) wet += look.each();
+            if (look.near_surface(x, beside)) near += look.each();
         });
     }
     return planes;

@@ -17,7 +17,8 @@ struct PlaneOfLiquid {
     real wet = 0, near = 0;
 };
 
-/// Of all planes, within `beside` [m] of the surface; found from at most 64 x 64 cells of a plane (4096 in 2D), evenly spread.
+/// Of all planes, within `beside` [m] of the surface, along an axis; found from at most 64 x 64 cells of a plane (4096 in 2D), evenly
+/// spread.
 template <int D>
 std::vector<PlaneOfLiquid> liquid_in_planes(const scene::Scene& scene, real beside);
 
