@@ -72,7 +72,7 @@ std::string explain_ranks(const Simulation& simulation) {
     const scene::Scene& scene = simulation.scene();
     if (!slabs().several()) return {};
     const sim::Shares shares = sim::shares_of(scene, slabs().ranks());
-    const Cut& cut = shares.cut;
+    const Cut& cut = simulation.cut();
     std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, ";
     if (shares.nothing_shared()) return text + "every rank does all of it: there is nothing to cut\n";
     text += std::string("cut along ") + (scene.dim() == 2 ? "y" : "z");
@@ -104,7 +104,8 @@ std::size_t resident_bytes() {
 double memory_for_all(const scene::Scene& scene) {
     const double available = sim::available_memory(), ranks = slabs().ranks();
     const auto& kind = sim::kind_named(scene.solver());
-    if (!slabs().several() || !kind.holds_own_part || !kind.holds_own_part(scene)) return available / ranks;
+    if (!slabs().several() || !kind.holds_own_part || !kind.holds_own_part(scene, sim::shares_of(scene, slabs().ranks()).cut))
+        return available / ranks;
     return available / (1 + ranks * sim::planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
 
@@ -175,7 +176,7 @@ private:
         const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
                             : simulation.solver().holds_own_planes()     ? Holds::own_planes
                                                                          : Holds::whole_grids;
-        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.by_all, sent, memory);
+        log_.set_ranks(slabs().ranks(), simulation.cut(), holds, shares.by_all, sent, memory);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);

@@ -4,9 +4,9 @@
 //
 // --csv: comma-separated values in place of the table. Times are the least of K runs; a peer that would take minutes or more memory than
 // there is says "skipped" and why. Started by mpirun it shares `multigrid` between the ranks; the others are then left out.
+#include "core/cut_by_work.hpp"
 #include "core/error.hpp"
 #include "core/slabs.hpp"
-#include "cut_by_work.hpp"
 #include "distributed/ranks.hpp"
 #include "pfmg.hpp"
 #include "problems.hpp"

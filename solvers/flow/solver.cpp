@@ -1,5 +1,6 @@
 #include "flow/solver.hpp"
 
+#include "core/cut_by_work.hpp"
 #include "core/error.hpp"
 #include "flow/emitters.hpp"
 #include "geometry/hand.hpp"
@@ -132,9 +133,9 @@ bool lists(const scene::Scene& scene, const std::string& field) {
 
 template <int D>
 FlowSolver<D>::FlowSolver(const scene::Scene& scene)
-    : cut_(cut_of(scene.index<D>("grid.cells")[D - 1], slabs().ranks())),
+    : cut_(cut_asked_for(scene.index<D>("grid.cells")[D - 1])),
       ring_(geometry::Sides<D>(scene).periodic(D - 1)),
-      kept_(staggered::holds_own_planes(scene) ? planes_beside : 0),
+      kept_(staggered::holds_own_planes(scene, cut_) ? planes_beside : 0),
       making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, ghost_layers, kept_, ring_) : nullptr),
       effects_(make_effects<D>(effect_kinds(), scene)),
       state_(scene, field_plan(effects_, scene)),

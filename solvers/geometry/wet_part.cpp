@@ -7,35 +7,99 @@
 
 namespace weir::geometry {
 
+namespace wet_part {
+
+/// Liquid and solids of a scene, looked at in the middle of cells.
+template <int D>
+class Look {
+public:
+    Look(const scene::Scene& scene, int most_along)
+        : origin_(scene.vec<D>("grid.origin")),
+          size_(scene.vec<D>("grid.size")),
+          n_(scene.index<D>("grid.cells")),
+          liquid_(shapes(scene, "liquid")),
+          solids_(shapes(scene, "solids")) {
+        for (int a = 0; a + 1 < D; ++a) looks_[a] = std::min(n_[a], most_along);
+    }
+
+    int planes() const { return n_[D - 1]; }
+    /// All cells of a plane for each that is looked at.
+    real each() const {
+        real each = 1;
+        for (int a = 0; a + 1 < D; ++a) each *= static_cast<real>(n_[a]) / looks_[a];
+        return each;
+    }
+    /// f(place) for at most so many cells along each axis of a plane, evenly spread.
+    template <class F>
+    void for_each_of_plane(int plane, F&& f) const {
+        for (int j = 0; j < (D == 2 ? 1 : looks_[1]); ++j)
+            for (int i = 0; i < looks_[0]; ++i) {
+                Index<D> I{};
+                I[0] = static_cast<int>(static_cast<std::int64_t>(i) * n_[0] / looks_[0]);
+                if constexpr (D == 3) I[1] = static_cast<int>(static_cast<std::int64_t>(j) * n_[1] / looks_[1]);
+                I[D - 1] = plane;
+                Vec<D> x;
+                for (int a = 0; a < D; ++a) x[a] = origin_[a] + size_[a] * (I[a] + 0.5) / n_[a];
+                f(x);
+            }
+    }
+    bool in_liquid(const Vec<D>& x) const {
+        return std::any_of(liquid_.begin(), liquid_.end(), [&](const auto& shape) { return shape->contains(x); });
+    }
+    bool in_solids(const Vec<D>& x) const {
+        return std::any_of(solids_.begin(), solids_.end(), [&](const auto& shape) { return shape->contains(x); });
+    }
+    /// Does liquid begin or end within this distance of x, along an axis and inside the domain? Where it meets a wall it has no surface.
+    bool near_surface(const Vec<D>& x, real beside) const {
+        const bool wet = in_liquid(x);
+        for (int a = 0; a < D; ++a)
+            for (const real by : {-beside, beside}) {
+                Vec<D> y = x;
+                y[a] += by;
+                if (y[a] > origin_[a] && y[a] < origin_[a] + size_[a] && in_liquid(y) != wet) return true;
+            }
+        return false;
+    }
+
+private:
+    static std::vector<ShapePtr<D>> shapes(const scene::Scene& scene, const char* list) {
+        return make_shapes<D>(scene.has(list) ? scene.root().tables(list) : std::vector<scene::Table>{});
+    }
+    Vec<D> origin_, size_;
+    Index<D> n_, looks_ = Index<D>::constant(1);
+    std::vector<ShapePtr<D>> liquid_, solids_;
+};
+
+}  // namespace wet_part
+
 template <int D>
 real wet_part_of_plane(const scene::Scene& scene, int plane) {
-    constexpr int most_along = D == 2 ? 65536 : 256;  // cells looked at along an axis
-    const auto shapes = [&](const char* list) {
-        return make_shapes<D>(scene.has(list) ? scene.root().tables(list) : std::vector<scene::Table>{});
-    };
-    const auto liquid = shapes("liquid"), solids = shapes("solids");
-    const Vec<D> origin = scene.vec<D>("grid.origin"), size = scene.vec<D>("grid.size");
-    const Index<D> n = scene.index<D>("grid.cells");
-    const auto inside = [](const auto& list, const Vec<D>& x) {
-        return std::any_of(list.begin(), list.end(), [&](const auto& shape) { return shape->contains(x); });
-    };
-    Index<D> looks = Index<D>::constant(1);
-    for (int a = 0; a + 1 < D; ++a) looks[a] = std::min(n[a], most_along);
+    const wet_part::Look<D> look(scene, D == 2 ? 65536 : 256);
     int wet = 0, all = 0;
-    for (int j = 0; j < (D == 2 ? 1 : looks[1]); ++j)
-        for (int i = 0; i < looks[0]; ++i, ++all) {
-            Index<D> I{};
-            I[0] = static_cast<int>(static_cast<std::int64_t>(i) * n[0] / looks[0]);
-            if constexpr (D == 3) I[1] = static_cast<int>(static_cast<std::int64_t>(j) * n[1] / looks[1]);
-            I[D - 1] = plane;
-            Vec<D> x;
-            for (int a = 0; a < D; ++a) x[a] = origin[a] + size[a] * (I[a] + 0.5) / n[a];
-            wet += inside(liquid, x) && !inside(solids, x) ? 1 : 0;
-        }
+    look.for_each_of_plane(plane, [&](const Vec<D>& x) { wet += look.in_liquid(x) && !look.in_solids(x) ? 1 : 0, ++all; });
     return static_cast<real>(wet) / all;
 }
 
-template real wet_part_of_plane<2>(const scene::Scene&, int);
-template real wet_part_of_plane<3>(const scene::Scene&, int);
+template <int D>
+std::vector<PlaneOfLiquid> liquid_in_planes(const scene::Scene& scene, real beside) {
+    const wet_part::Look<D> look(scene, D == 2 ? 4096 : 64);
+    std::vector<PlaneOfLiquid> planes(static_cast<std::size_t>(look.planes()));
+    for (int plane = 0; plane < look.planes(); ++plane) {
+        auto& [wet, near] = planes[static_cast<std::size_t>(plane)];
+        look.for_each_of_plane(plane, [&](const Vec<D>& x) {
+            if (look.in_solids(x)) return;
+            if (look.in_liquid(x)) wet += look.each();
+            if (look.near_surface(x, beside)) near += look.each();
+        });
+    }
+    return planes;
+}
+
+#define WEIR_INSTANTIATE(D)                                       \
+    template real wet_part_of_plane<D>(const scene::Scene&, int); \
+    template std::vector<PlaneOfLiquid> liquid_in_planes<D>(const scene::Scene&, real);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
 
 }  // namespace weir::geometry

@@ -1,11 +1,14 @@
 // How a solver joins the program: its schema and its maker, registered once in sim/registry.cpp. Everything else (messages, describe,
 // run, validate, studies) finds it there.
 #pragma once
+#include "core/halo.hpp"
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace weir {
 struct RankOf;
@@ -35,13 +38,16 @@ struct SolverKind {
     Shared shared = Shared::by_planes;
     /// What of a step every rank does alone, in a few words; nothing: all of it is shared.
     std::string by_all{};
-    /// Whether each of the ranks that there are would hold its own part of a scene alone. None: all hold everything.
-    std::function<bool(const Scene&)> holds_own_part{};
+    /// Whether each rank would hold its own part of a scene that is cut so alone. None: all hold everything.
+    std::function<bool(const Scene&, const Cut&)> holds_own_part{};
     /// What a rank sends in such a step, by formula. None: not known.
     std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> sends{};
     /// Where the planes of a scene are cut among so many ranks; nowhere (an empty cut): every rank does all of it. None: as equal as
     /// cut_of makes them.
     std::function<Cut(const Scene&, int ranks)> cut{};
+    /// What a step takes of each plane of the slowest axis, in any unit: as a scene begins, or of a state (over ranks all ask together).
+    /// None: as much of each.
+    std::function<std::vector<std::int64_t>(const Scene&, const Checkpoint*)> work_of_planes{};
 };
 
 /// What each may be told.

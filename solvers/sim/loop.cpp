@@ -1,6 +1,7 @@
 #include "sim/loop.hpp"
 
 #include "core/slabs.hpp"
+#include "sim/foretold.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -49,10 +50,24 @@ struct GoodState {
     throw located;
 }
 
-void save(const Simulation& simulation, const std::filesystem::path& folder) {
-    Checkpoint checkpoint;
-    simulation.save(checkpoint);
-    checkpoint.write(checkpoint_file(folder));
+/// Can each rank read the file, which it does as a whole, beside all others on this machine? As one of them says no, nobody does.
+bool all_can_read(const std::filesystem::path& file) {
+    std::error_code none;
+    const auto bytes = std::filesystem::file_size(file, none);
+    const bool can = !none && static_cast<double>(bytes) * slabs().ranks() < available_memory();
+    return slabs().largest(can ? 0 : 1) == 0;
+}
+
+/// And over ranks cuts anew what goes on, where the state asks for it.
+void save(Simulation& simulation, const std::filesystem::path& folder, bool goes_on) {
+    bool cut_anew = false;
+    {
+        Checkpoint checkpoint;
+        simulation.save(checkpoint);
+        checkpoint.write(checkpoint_file(folder));
+        cut_anew = goes_on && simulation.asks_for_other_cut(checkpoint);
+    }
+    if (cut_anew && all_can_read(checkpoint_file(folder))) simulation.cut_anew(Checkpoint::read(checkpoint_file(folder)));
 }
 
 }  // namespace
@@ -80,7 +95,7 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
                                                             simulation.finished());  // so that a later end can be asked for
         const int stops = options.stop_requests();
         const bool stop = !simulation.finished() && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
-        if (asked || stop) save(simulation, options.folder);
+        if (asked || stop) save(simulation, options.folder, !stop && !simulation.finished());
         if (stop) return Ending::interrupted;
     }
     return Ending::finished;

@@ -1,5 +1,6 @@
 #include "sim/registry.hpp"
 
+#include "core/cut_by_work.hpp"
 #include "flow/solver.hpp"
 #include "heightfield/solver.hpp"
 #include "pbf/solver.hpp"
@@ -64,13 +65,21 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
                      "at most " + std::to_string(planes));
 }
 
-Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
-    const auto& kind = kind_named(scene.solver(), kinds);
+Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& kind) {
     Shares shares{.shared = kind.shared, .by_all = kind.by_all};
-    if (shares.shared == scene::Shared::by_particles) return shares;
-    shares.cut = kind.cut ? kind.cut(scene, ranks) : cut_of(planes_of(scene), ranks);
-    if (ranks > 1 && shares.cut.empty()) shares.by_all = "all of it";
+    if (ranks == 1 || shares.shared == scene::Shared::by_particles) return shares;
+    if (kind.cut)
+        shares.cut = kind.cut(scene, ranks);
+    else if (kind.work_of_planes)
+        shares.cut = cut_by_work(kind.work_of_planes(scene, nullptr), ranks);
+    else
+        shares.cut = cut_of(planes_of(scene), ranks);
+    if (shares.cut.empty()) shares.by_all = "all of it";
     return shares;
+}
+
+Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
+    return shares_of(scene, ranks, kind_named(scene.solver(), kinds));
 }
 
 }  // namespace weir::sim

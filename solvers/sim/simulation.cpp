@@ -1,5 +1,6 @@
 #include "sim/simulation.hpp"
 
+#include "core/cut_by_work.hpp"
 #include "core/parallel.hpp"
 #include "geometry/mesh/mesh.hpp"
 #include "scene/given.hpp"
@@ -42,8 +43,9 @@ long cells_of(const scene::Scene& scene) {
     return cells;
 }
 
-std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind) {
+std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Cut& cut) {
     const ThreadsWorth worth(cells_of(scene));
+    const CutSo so(cut);
     return kind.make(scene);
 }
 
@@ -90,7 +92,8 @@ Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::r
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
     : scene_(unread(fitting(std::move(scene), kinds))),
       kind_(sim::kind_named(scene_.solver(), kinds)),
-      solver_(make_solver(scene_, kind_)),
+      cut_(sim::shares_of(scene_, slabs().ranks(), kind_).cut),
+      solver_(make_solver(scene_, kind_, cut_)),
       probes_(scene_, *solver_),
       every_(scene_.root().number_or("output.every", infinity)),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
@@ -120,16 +123,40 @@ void Simulation::steer(const scene::Override& change) {
     scene::Scene changed = unread(scene_.steered(change, {kind_.schema}));
     Checkpoint state;
     solver_->save(state);
-    std::unique_ptr<Solver> solver = make_solver(changed, kind_);
+    std::unique_ptr<Solver> solver = make_solver(changed, kind_, cut_);
     if (!change.key.starts_with("time.") && !changed.root().was_read(change.key))
         changed.refuse(change.key, change.key + " does nothing in this scene");
     solver->restore(state);
+    replace(std::move(solver));
+    scene_ = std::move(changed);
+    read_times();
+}
+
+/// By one that has the same state.
+void Simulation::replace(std::unique_ptr<Solver> solver) {
     if (const Hand* hand = solver_->hand()) solver->hand()->keys = hand->keys;
     solver->passes().reset();
     for (const Pass& pass : static_cast<const Solver&>(*solver_).passes().list()) solver->passes().add(pass.name, pass.seconds, pass.calls);
     solver_ = std::move(solver);
-    scene_ = std::move(changed);
-    read_times();
+}
+
+/// Empty where the present one will do.
+Cut Simulation::better_cut(const Checkpoint& state) const {
+    if (cut_.empty() || !kind_.work_of_planes) return {};
+    constexpr double worth = 0.9;  // a solver is made anew for it, which takes as long as some steps
+    const auto work = kind_.work_of_planes(scene_, &state);
+    Cut cut = cut_by_work(work, cut_.ranks());
+    const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
+    return most(cut) < worth * most(cut_) ? cut : Cut{};
+}
+
+void Simulation::cut_anew(const Checkpoint& state) {
+    Cut cut = better_cut(state);
+    if (cut.empty()) return;
+    std::unique_ptr<Solver> solver = make_solver(scene_, kind_, cut);
+    solver->restore(state);
+    replace(std::move(solver));
+    cut_ = std::move(cut);
 }
 
 real Simulation::end_time() const {
@@ -288,6 +315,10 @@ void Simulation::resume_changes(const Checkpoint& from) {
 void Simulation::restore(const Checkpoint& from) {
     try {
         resume_changes(from);
+        if (Cut cut = better_cut(from); !cut.empty()) {
+            solver_ = make_solver(scene_, kind_, cut);
+            cut_ = std::move(cut);
+        }
         solver_->restore(from);
         probes_.restore(from);
         steps_ = from.get_value<std::int64_t>("sim.steps");

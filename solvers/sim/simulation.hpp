@@ -106,6 +106,13 @@ public:
     Solver& solver() { return *solver_; }
     const Solver& solver() const { return *solver_; }
     const scene::Scene& scene() const { return scene_; }
+    /// Over ranks, how the planes are cut now; empty in one process, and where particles are shared.
+    const Cut& cut() const { return cut_; }
+    /// Whether a state, as save() has put it or as it was read, asks for another cut: whoever has most to do would have a tenth less. All
+    /// ranks ask together.
+    bool asks_for_other_cut(const Checkpoint& state) const { return !better_cut(state).empty(); }
+    /// Cuts the planes anew, as the state of now asks for, which all ranks have read as a whole. Changes no bit of what is computed.
+    void cut_anew(const Checkpoint& state);
     /// What the scene's probes have measured so far.
     const std::vector<ProbeSeries>& probes() const { return probes_.series(); }
     const ProbeSeries& probe_series(std::string_view name) const { return probes_.series(name); }
@@ -122,6 +129,8 @@ private:
     void read_times();
     void steer(const scene::Override& change);
     void meet_changes();
+    Cut better_cut(const Checkpoint& state) const;
+    void replace(std::unique_ptr<Solver> solver);
     void resume_changes(const Checkpoint& from);
     real wanted_dt(real target) const;
     StepLimit limit() const { return guard_ ? solver_->stable_dt() : StepLimit{}; }
@@ -133,6 +142,7 @@ private:
 
     scene::Scene scene_;
     scene::SolverKind kind_;
+    Cut cut_;
     std::unique_ptr<Solver> solver_;
     sim::Probes probes_;
     real end_ = 0, every_ = infinity, fixed_dt_ = 0, max_dt_ = infinity;  // fixed_dt_ 0: the solver advises

@@ -7,10 +7,10 @@
 
 namespace weir::staggered {
 
-bool holds_own_planes(const scene::Scene& scene) { return !slabs().holds_whole() && could_hold_own_planes(scene, slabs().ranks()); }
+bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs().holds_whole() && could_hold_own_planes(scene, cut); }
 
-bool could_hold_own_planes(const scene::Scene& scene, int ranks) {
-    if (ranks == 1 || scene.root().number_or("time.stop_when_steady", 0) > 0) return false;
+bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
+    if (cut.empty() || scene.root().number_or("time.stop_when_steady", 0) > 0) return false;
     for (const auto& probe : scene.root().tables("probes"))
         if (const auto& kind = probe.text("kind"); kind != "point" && kind != "line" && kind != "integral") return false;
     if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
@@ -23,7 +23,7 @@ bool could_hold_own_planes(const scene::Scene& scene, int ranks) {
             const real ratio = lattice.h[0] / lattice.h[a];
             weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
         }
-        return poisson::multigrid_shares<D>(lattice.cells, periodic, weight, cut_of(lattice.cells[D - 1], ranks));
+        return poisson::multigrid_shares<D>(lattice.cells, periodic, weight, cut);
     };
     return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
 }

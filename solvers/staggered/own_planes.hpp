@@ -1,12 +1,13 @@
 // Over ranks: may each hold its own planes of a scene on a staggered grid alone?
 #pragma once
+#include "core/halo.hpp"
 #include "scene/scene.hpp"
 
 namespace weir::staggered {
 
 /// Not where somebody looks at whole fields on all ranks, nor where each solves for the pressure itself.
-bool holds_own_planes(const scene::Scene& scene);
-/// Of so many ranks, where nobody but the scene asks for more.
-bool could_hold_own_planes(const scene::Scene& scene, int ranks);
+bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
+/// Where nobody but the scene asks for more.
+bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
 
 }  // namespace weir::staggered

@@ -99,9 +99,9 @@ scene::SolverKind kind() {
                             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
                            over_ranks,
                            scene::Shared::by_planes,
-                           "the knots of the columns, the pressure, the level set's continuation into solids; in 2D, and where columns "
-                           "stand along z, all of it"};
+                           "the knots of the columns, the pressure, the level set's continuation into solids"};
     tall.sends = traffic_of_step;
+    tall.cut = cut_of_columns;
     return tall;
 }
 

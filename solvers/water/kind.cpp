@@ -105,6 +105,7 @@ scene::SolverKind kind() {
                             scene::Shared::by_planes,
                             "the levels of the pressure of fewer than 20,000 cells, the level set's continuation into solids, viscosity"};
     water.holds_own_part = holds_own_planes;
+    water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
     return water;
 }

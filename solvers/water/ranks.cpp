@@ -6,10 +6,10 @@
 
 namespace weir::water {
 
-bool holds_own_planes(const scene::Scene& scene) { return !slabs().holds_whole() && could_hold_own_planes(scene, slabs().ranks()); }
+bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs().holds_whole() && could_hold_own_planes(scene, cut); }
 
-bool could_hold_own_planes(const scene::Scene& scene, int ranks) {
-    if (!staggered::could_hold_own_planes(scene, ranks) || scene.effect("viscosity")) return false;
+bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
+    if (!staggered::could_hold_own_planes(scene, cut) || scene.effect("viscosity")) return false;
     const auto cubic = [&]<int D>() {
         const Lattice<D> lattice(scene);
         return *std::max_element(lattice.h.begin(), lattice.h.end()) <= *std::min_element(lattice.h.begin(), lattice.h.end()) * (1 + 1e-9);

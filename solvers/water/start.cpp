@@ -1,4 +1,5 @@
 // What a scene of liquid is at t = 0: the level set of its shapes, its markers, its velocity.
+#include "core/cut_by_work.hpp"
 #include "geometry/hand.hpp"
 #include "scene/names.hpp"
 #include "staggered/initial.hpp"
@@ -21,8 +22,8 @@ bool all_stick(const geometry::Solids<D>& solids) {
 template <int D>
 Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
-      cut_(cut_of(scene.index<D>("grid.cells")[D - 1], slabs().ranks())),
-      kept_(water::holds_own_planes(scene) ? static_cast<int>(std::ceil(options_.cfl)) + 3 : 0),
+      cut_(cut_asked_for(scene.index<D>("grid.cells")[D - 1])),
+      kept_(water::holds_own_planes(scene, cut_) ? static_cast<int>(std::ceil(options_.cfl)) + 3 : 0),
       making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, 1, kept_, geometry::Sides<D>(scene).periodic(D - 1)) : nullptr),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),

@@ -32,7 +32,7 @@ public:
           n_(lattice_.cells),
           transfer_(scene.text("scheme.transfer")),
           ring_(sides_.periodic(D - 1)),
-          windowed_(could_hold_own_planes(scene, of.ranks)),
+          windowed_(could_hold_own_planes(scene, of.cut)),
           shape_(shape),
           reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
           surface_(n_, lattice_.h, scene.number("time.cfl"), ring_),

@@ -49,7 +49,7 @@ compare() {
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
 tall=$scenes/ranks_tall.toml tall_deep=$scenes/ranks_tall_3d.toml
-water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
+water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml one_end=$scenes/ranks_one_end.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
 sea=$scenes/ranks_waves.toml trains=$scenes/ranks_trains.toml below=$scenes/ranks_waves_below.toml line=$scenes/ranks_line.toml
 # without what everybody finds of whole grids, friction and a gauge; and with cells that a periodic axis can halve
 frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
@@ -115,6 +115,30 @@ water_schemes)
     ends 0 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.06
     ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.06
     diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    ;;
+water_cut) # planes are cut by what they hold: as the scene begins, as a restart finds it, and anew at checkpoints
+    told_cut() { grep -o '"cut":\[[0-9,]*\]' "$1/run.json" | cut -d: -f2; }
+    is_cut() { [ "$(told_cut "$1")" = "$2" ] || fail "$1 is cut $(told_cut "$1"), not $2"; }
+    compare begun "2 1,2 2,3 1,3 2,4 1,4 2" "$one_end"
+    is_cut begun-2-1 '[0,16,80]' # 20 planes of liquid
+    is_cut begun-4-2 '[0,8,16,24,80]'
+    grep -q '"storage":"every rank holds its own planes' begun-4-2/run.json || fail "a rank held more than its own planes"
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$one_end" --checkpoint-every 1000 --quiet --threads 1 --out poisoned
+    alike begun poisoned
+    # saved on three, continued on two, which are cut by what there is then
+    ends 0 over 3 "$weir" run "$one_end" --checkpoint-every 1000 --quiet --out parts --set time.end=0.06
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.09
+    diff -rq --exclude run.json --exclude checkpoint.weir begun parts >log || fail "a run in two parts is another"
+    [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
+    # anew at checkpoints; the last one changes nothing any more
+    ends 0 "$weir" run "$one_end" --checkpoint-every 3 --quiet --threads 1 --out anew
+    for ranks in 2 4; do
+        ends 0 over $ranks "$weir" run "$one_end" --checkpoint-every 3 --quiet --threads 2 --out anew-$ranks
+        alike anew anew-$ranks
+    done
+    [ "$(told_cut anew-2)" != '[0,16,80]' ] || fail "nothing was cut anew at a checkpoint"
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$one_end" --checkpoint-every 3 --quiet --threads 1 --out anew-3
+    alike anew anew-3
     ;;
 heightfield)
     compare shallow "$every" "$shallow"

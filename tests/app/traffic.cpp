@@ -283,7 +283,7 @@ TEST("cost --plan --ranks prints the formula's numbers, the constants with their
     EXPECT_EQ(code, 0) << text;
     const auto scene = scene::read(folder.path() / "pool.toml", sim::schemas());
     for (int rank = 0; rank < 2; ++rank) {
-        const Traffic sent = sim::kind_named("mac_water").sends(scene, {cut_of(40, 2), rank, 2}, {}).all();
+        const Traffic sent = sim::kind_named("mac_water").sends(scene, {sim::shares_of(scene, 2).cut, rank, 2}, {}).all();
         EXPECT_NE(text.find(fmt::format("{:6} messages {:>12} bytes a step", sent.messages, sent.bytes)), std::string::npos) << text;
     }
     for (const char* part : {"over 2 ranks, cut along y", "each holds the whole grids, and does alone: the levels of the pressure",

@@ -62,8 +62,11 @@ public:
 
 int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.root().numbers("grid.cells").back()); }
 
-RankOf rank_of(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, int rank, int ranks) {
-    return {.cut = sim::shares_of(scene, ranks, kinds).cut, .rank = rank, .ranks = ranks};
+/// One that has two neighbours and as many planes as any other: of a model in which all have as much to do.
+RankOf one_between(const scene::Scene& scene, const scene::SolverKind& kind, int ranks) {
+    RankOf of{.rank = ranks / 2, .ranks = ranks};
+    if (kind.shared == scene::Shared::by_planes) of.cut = kind.cut ? kind.cut(scene, ranks) : cut_of(planes_of_scene(scene), ranks);
+    return of;
 }
 
 /// As many as everybody has, and those that are read of neighbours: so far beyond a cut as a kernel reaches, of all planes.
@@ -96,7 +99,7 @@ std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector
             const scene::Scene other = particles > 0 ? scene : with_planes(scene, static_cast<int>(std::lround(each * ranks)), schemas);
             StepShape shape = o.shape;
             shape.particles = each * ranks;
-            const StepTraffic sent = kind.sends(other, rank_of(other, kinds, ranks / 2, ranks), shape);  // one that has two neighbours
+            const StepTraffic sent = kind.sends(other, one_between(other, kind, ranks), shape);
             list.push_back(model_step(units * o.seconds_each, sent, ranks, o.link));
         } catch (const BadInput&) {  // in a shorter domain there may be no place for an emitter
         }
@@ -140,7 +143,7 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
                               const std::vector<scene::SolverKind>& kinds) {
     sim::require_ranks(scene, ranks, kinds);
     const auto& kind = sim::kind_named(scene.solver(), kinds);
-    const sim::Shares shares = sim::shares_of(scene, ranks, kinds);
+    const sim::Shares shares = sim::shares_of(scene, ranks, kind);
     OverRanks o{.ranks = ranks,
                 .nothing_shared = ranks > 1 && shares.nothing_shared(),
                 .by_all = shares.by_all,
@@ -149,13 +152,14 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
     o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
                .cells_crossed = std::max(1, static_cast<int>(std::ceil(f.most_cfl))),
                .particles = f.particles ? f.count : 0};
+    o.cut = shares.cut;
     {
         const Pretended several(0, ranks);
-        o.own_part = ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene)));
+        o.own_part =
+            ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene, o.cut)));
     }
     for (int rank = 0; rank < ranks; ++rank) {
-        const RankOf of = rank_of(scene, kinds, rank, ranks);
-        o.cut = of.cut;
+        const RankOf of{.cut = o.cut, .rank = rank, .ranks = ranks};
         o.bytes.push_back(!o.own_part       ? f.held.bytes
                           : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank)
                                             : f.held.bytes * part_of_particles(scene, rank, ranks));

@@ -1,5 +1,5 @@
 // Who owns which planes and what travels: arithmetic that all ranks do alike, against its definition; and that one rank asks for nothing.
-#include "benchmarks/poisson/cut_by_work.hpp"
+#include "core/cut_by_work.hpp"
 #include "core/grid.hpp"
 #include "support/test.hpp"
 

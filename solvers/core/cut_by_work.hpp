@@ -1,11 +1,12 @@
 // Cuts that give every rank as much to do, where planes are not alike: water that fills the lower half of a tank, a valley between hills.
-// For the problems here; solvers cut their grids into as many planes each, and particles by their number.
 #pragma once
 #include "core/halo.hpp"
+#include "core/slabs.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace weir {
 
@@ -35,6 +36,39 @@ inline Cut cut_by_work(std::span<const std::int64_t> work, int ranks) {
         last = best;
     }
     return cut;
+}
+
+/// What the rank with the most has to do.
+inline std::int64_t largest_share(std::span<const std::int64_t> work, const Cut& cut) {
+    std::int64_t most = 0;
+    for (int r = 0; r < cut.ranks(); ++r) {
+        const auto own =
+            work.subspan(static_cast<std::size_t>(cut.begin(r)), static_cast<std::size_t>(cut.end(r, cut.planes()) - cut.begin(r)));
+        most = std::max(most, std::accumulate(own.begin(), own.end(), std::int64_t{0}));
+    }
+    return most;
+}
+
+namespace detail {
+inline const Cut* cut_so = nullptr;
+}
+
+/// While it lives, a solver that is made cuts its planes so: whoever knows what they take has said it, for all that must agree.
+class CutSo {
+public:
+    explicit CutSo(const Cut& cut) : before_(detail::cut_so) { detail::cut_so = &cut; }
+    ~CutSo() { detail::cut_so = before_; }
+    CutSo(const CutSo&) = delete;
+    CutSo& operator=(const CutSo&) = delete;
+
+private:
+    const Cut* before_;
+};
+
+/// As was asked for; else as many planes to each of the ranks there are.
+inline Cut cut_asked_for(int planes) {
+    if (detail::cut_so && !detail::cut_so->empty() && detail::cut_so->planes() == planes) return *detail::cut_so;
+    return cut_of(planes, slabs().ranks());
 }
 
 }  // namespace weir
