@@ -50,7 +50,7 @@ struct GoodState {
     throw located;
 }
 
-/// Can each rank read the file, which it does as a whole, beside all others on this machine? As one of them says no, nobody does.
+/// Can each rank read the file, at worst as a whole, beside all others on this machine? As one of them says no, nobody does.
 bool all_can_read(const std::filesystem::path& file) {
     std::error_code none;
     const auto bytes = std::filesystem::file_size(file, none);

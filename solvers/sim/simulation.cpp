@@ -145,6 +145,7 @@ Cut Simulation::better_cut(const Checkpoint& state) const {
     if (cut_.empty() || !kind_.work_of_planes) return {};
     constexpr double worth = 0.9;  // a solver is made anew for it, which takes as long as some steps
     const auto work = kind_.work_of_planes(scene_, &state);
+    if (static_cast<int>(work.size()) != cut_.planes()) return {};  // of another scene, which the solver refuses
     Cut cut = cut_by_work(work, cut_.ranks());
     const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
     return most(cut) < worth * most(cut_) ? cut : Cut{};

@@ -111,7 +111,7 @@ public:
     /// Whether a state, as save() has put it or as it was read, asks for another cut: whoever has most to do would have a tenth less. All
     /// ranks ask together.
     bool asks_for_other_cut(const Checkpoint& state) const { return !better_cut(state).empty(); }
-    /// Cuts the planes anew, as the state of now asks for, which all ranks have read as a whole. Changes no bit of what is computed.
+    /// Cuts the planes anew, as the state of now asks for, read from a file by all ranks together. Changes no bit of what is computed.
     void cut_anew(const Checkpoint& state);
     /// What the scene's probes have measured so far.
     const std::vector<ProbeSeries>& probes() const { return probes_.series(); }

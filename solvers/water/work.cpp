@@ -20,10 +20,11 @@ std::int64_t work(real cells, const geometry::PlaneOfLiquid& plane) {
     return std::llround(of_cell * cells + of_liquid * plane.wet + of_surface * plane.near);
 }
 
-/// The same of a level set: this rank's planes, where it has its own alone, and so put together.
+/// The same of a level set: each rank looks at the part that it holds, or at its share of a whole one, and they put together what they saw.
 std::vector<geometry::PlaneOfLiquid> planes_of(const Checkpoint& state, std::size_t planes, std::size_t cells_of_plane, real near) {
-    const auto here = state.held<real>("surface.phi");
-    if (here.all != planes * cells_of_plane) return {};
+    const auto held = state.held<real>("surface.phi");
+    if (held.all != planes * cells_of_plane) return {};
+    const auto here = held.part ? held : held.share(slabs().rank(), slabs().ranks());
     std::vector<real> phi(here.end - here.begin);
     state.get_part("surface.phi", std::span(phi), here.begin, here.all);
     std::vector<std::int64_t> counts(2 * planes, 0);  // wet, near
@@ -32,7 +33,7 @@ std::vector<geometry::PlaneOfLiquid> planes_of(const Checkpoint& state, std::siz
         counts[plane] += phi[i] < 0;
         counts[planes + plane] += std::abs(phi[i]) < near;
     }
-    const std::vector<std::int64_t> all = here.part ? of_all_ranks(counts) : counts;
+    const std::vector<std::int64_t> all = of_all_ranks(counts);
     std::vector<geometry::PlaneOfLiquid> list(planes);
     for (std::size_t i = 0; i < all.size(); ++i)
         (i / planes % 2 == 0 ? list[i % planes].wet : list[i % planes].near) += static_cast<real>(all[i]);
