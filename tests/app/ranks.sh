@@ -127,7 +127,7 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     alike begun poisoned
     # saved on three, continued on two, which are cut by what there is then
     ends 0 over 3 "$weir" run "$one_end" --checkpoint-every 1000 --quiet --out parts --set time.end=0.06
-    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.09
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.07
     diff -rq --exclude run.json --exclude checkpoint.weir begun parts >log || fail "a run in two parts is another"
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
     # anew at checkpoints; the last one changes nothing any more
