@@ -130,6 +130,8 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.07
     diff -rq --exclude run.json --exclude checkpoint.weir begun parts >log || fail "a run in two parts is another"
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
+    ends 2 over 2 "$weir" run --restart parts --quiet --set time.end=0.08 --set grid.cells=[24,20,72]
+    says "does not fit the scene"
     # anew at checkpoints; the last one changes nothing any more
     ends 0 "$weir" run "$one_end" --checkpoint-every 3 --quiet --threads 1 --out anew
     for ranks in 2 4; do
