@@ -367,9 +367,10 @@ storage_water) # the same of liquid with markers, as much of it in every plane
         done
     done
     # continued by others
-    # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more)
-    continues 4 parts-2 $((8 * cells)) --set time.end=0.004
-    continues 2 parts-4 $((8 * cells)) --set time.end=0.004
+    # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more; and before anything is made, each looks
+    # at its share of the level set, 8 bytes a cell, to find where planes are cut)
+    continues 4 parts-2 $((8 * cells + 8 * cells * 256 / 4)) --set time.end=0.004
+    continues 2 parts-4 $((8 * cells + 8 * cells * 256 / 2)) --set time.end=0.004
     ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
     alike one parts-2
     alike one parts-4

@@ -132,8 +132,9 @@ scheme = {{ transfer = "flip", poisson = {{ method = "multigrid", tolerance = 1e
 }  // namespace
 
 TEST("balls a thousandth as dense as the water add at most six iterations each to the pressure's") {
-    // Of the coupling of light bodies so much is asked. The pressure's matrix with them has one more eigenvalue for each of the three freedoms
-    // of a ball that pressure moves, far from the others', and conjugate gradients take one iteration for each and some for the contacts.
+    // Of the coupling of light bodies so much is asked. The pressure's matrix with them has one more eigenvalue for each of the three
+    // freedoms of a ball that pressure moves, far from the others', and conjugate gradients take one iteration for each and some for the
+    // contacts.
     const real none = mean_iterations(0);
     EXPECT_LE(mean_iterations(1), none + 6);
     EXPECT_LE(mean_iterations(3), none + 18);
