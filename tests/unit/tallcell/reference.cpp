@@ -55,9 +55,9 @@ struct Plain {
                 for (const std::size_t L : hats[j]) A[K][L] += P[i][K] * value * P[j][L];
         };
         Grid<real, D> inflow(frame.cells);
-        for_each_cell(frame.cells, [&](const Index<D>& I) {
-            if (cells(I) != poisson::Cell::fluid) return;
-            const std::size_t own = cells.linear(I);
+        for (std::size_t own = 0; own < cells.size(); ++own) {  // one after the other: cells of one column add to the same entries
+            const Index<D> I = index_of<D>(frame.cells, own);
+            if (cells(I) != poisson::Cell::fluid) continue;
             for (int a = 0; a < D; ++a) {
                 const real k = 1 / (frame.h[a] * frame.h[a]);
                 inflow(I) += (basin.state.u[a](I) - basin.state.u[a](I + e<D>(a))) / frame.h[a];
@@ -68,7 +68,7 @@ struct Plain {
                     if (cells(J) == poisson::Cell::air) add(own, own, k * std::min(1 - basin.phi(J) / basin.phi(I), 1 + 1 / thinnest));
                 }
             }
-        });
+        }
         b.assign(count, 0);
         for (std::size_t i = 0; i < P.size(); ++i)
             for (const std::size_t K : hats[i]) b[K] += P[i][K] * inflow[i];
