@@ -1,7 +1,6 @@
 // How a solver joins the program: its schema and its maker, registered once in sim/registry.cpp. Everything else (messages, describe,
 // run, validate, studies) finds it there.
 #pragma once
-#include "core/halo.hpp"
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
 
@@ -11,6 +10,7 @@
 #include <vector>
 
 namespace weir {
+struct Cut;  // core/halo.hpp
 struct RankOf;
 struct StepShape;
 struct StepTraffic;  // core/traffic.hpp

@@ -107,10 +107,10 @@ public:
     const Solver& solver() const { return *solver_; }
     const scene::Scene& scene() const { return scene_; }
     /// Over ranks, how the planes are cut now; empty in one process, and where particles are shared.
-    const Cut& cut() const { return cut_; }
+    const Cut& cut() const { return *cut_; }
     /// Whether a state, as save() has put it or as it was read, asks for another cut: whoever has most to do would have a tenth less. All
     /// ranks ask together.
-    bool asks_for_other_cut(const Checkpoint& state) const { return !better_cut(state).empty(); }
+    bool asks_for_other_cut(const Checkpoint& state) const;
     /// Cuts the planes anew, as the state of now asks for, read from a file by all ranks together. Changes no bit of what is computed.
     void cut_anew(const Checkpoint& state);
     /// What the scene's probes have measured so far.
@@ -142,7 +142,7 @@ private:
 
     scene::Scene scene_;
     scene::SolverKind kind_;
-    Cut cut_;
+    std::shared_ptr<const Cut> cut_;
     std::unique_ptr<Solver> solver_;
     sim::Probes probes_;
     real end_ = 0, every_ = infinity, fixed_dt_ = 0, max_dt_ = infinity;  // fixed_dt_ 0: the solver advises

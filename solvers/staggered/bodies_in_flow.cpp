@@ -29,7 +29,7 @@ constexpr real alone = 0.9;
 
 /// A body whose added mass is up to this much of its own is part of the pressure's matrix, which it makes as much harder to solve; a
 /// lighter one takes turns with the pressure.
-constexpr real most_added = 600;
+constexpr real most_added = 60;
 
 /// Of a cell: how deep a body may dive into liquid that has not felt it yet.
 constexpr real unfelt = 0.1;

@@ -109,11 +109,11 @@ TEST("bodies in stages of a Runge-Kutta scheme are refused") {
 }
 
 namespace {
-/// Mean iterations of a step of the pressure in a dam break that carries balls of a thousandth of the water's density.
+/// Mean iterations of a step of the pressure in a dam break that carries balls of a hundredth of the water's density.
 real mean_iterations(int balls) {
     std::string bodies;
     for (int i = 0; i < balls; ++i)
-        bodies += fmt::format("{{ shape = \"sphere\", centre = [{}, 0.62, 0.1], radius = 0.05, density = 1.0 }}, ", 0.08 + 0.12 * i);
+        bodies += fmt::format("{{ shape = \"sphere\", centre = [{}, 0.62, 0.1], radius = 0.05, density = 10.0 }}, ", 0.08 + 0.12 * i);
     const auto solver = solver_of(fmt::format(R"(solver = "mac_water"
 dim = 3
 grid = {{ cells = [48, 32, 24], size = [1.5, 1.0, 0.75] }}
@@ -131,7 +131,7 @@ scheme = {{ transfer = "flip", poisson = {{ method = "multigrid", tolerance = 1e
 }
 }  // namespace
 
-TEST("balls a thousandth as dense as the water add at most six iterations each to the pressure's") {
+TEST("balls a hundredth as dense as the water add at most six iterations each to the pressure's") {
     // Of the coupling of light bodies so much is asked. The pressure's matrix with them has one more eigenvalue for each of the three
     // freedoms of a ball that pressure moves, far from the others', and conjugate gradients take one iteration for each and some for the
     // contacts.
