@@ -17,6 +17,7 @@
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
+#include "sim/shares.hpp"
 #include "sim/solid_cells.hpp"
 #include "validation/cost/over_ranks.hpp"
 #include "validation/report/command.hpp"

@@ -5,6 +5,7 @@
 #include "heightfield/solver.hpp"
 #include "pbf/solver.hpp"
 #include "scene/names.hpp"
+#include "sim/shares.hpp"
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
 #include "tallcell/solver.hpp"

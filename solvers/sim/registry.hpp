@@ -1,6 +1,5 @@
 // Every solver of the program, by name: one line each in registry.cpp. Reader, messages, describe, run and validate find it here.
 #pragma once
-#include "core/halo.hpp"
 #include "scene/solver_kind.hpp"
 
 #include <string>
@@ -17,15 +16,5 @@ const scene::SolverKind& kind_named(std::string_view name, const std::vector<sce
 
 /// Refuses, by its key, what cannot run over so many ranks; see SolverKind::over_ranks.
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
-
-/// What each of so many ranks has of a scene that begins, in words and as solvers are asked for it.
-struct Shares {
-    scene::Shared shared = scene::Shared::by_planes;
-    Cut cut{};  // of planes; none for one rank, where particles are shared (their cut moves with them), and where every rank does all
-    std::string by_all{};  // what of a step every rank does alone
-    bool nothing_shared() const { return shared == scene::Shared::by_planes && cut.empty(); }
-};
-Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
-Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& kind);
 
 }  // namespace weir::sim

@@ -9,6 +9,7 @@
 #include "sim/finite.hpp"
 #include "sim/foretold.hpp"
 #include "sim/registry.hpp"
+#include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
 
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 #include "app/process.hpp"
 #include "core/slabs.hpp"
 #include "sim/registry.hpp"
+#include "sim/shares.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 #include "validation/cost/over_ranks.hpp"

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/slabs.hpp"
+#include "sim/shares.hpp"
 
 #include <fmt/format.h>
 
