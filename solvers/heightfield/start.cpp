@@ -112,8 +112,9 @@ struct Line {
 };
 
 struct Span {
-    real low = 0, high = -1;  // empty where high < low
-    bool gap = false;         // air inside of it
+    real low = 0, high = -1;
+    bool gap = false;  // air inside of it
+    bool empty() const { return high < low; }
 };
 
 constexpr int samples = 64;  // along a line: what is thinner than a 64th of the domain's height may be missed
@@ -146,7 +147,7 @@ void pour(const Scene& scene, State& state) {
             const real bed = state.bed[c];
             if (!(bed < plane.ceiling)) return;
             const Span water = span_of<D>(*shapes[s], rest, plane.x(i), plane.z(k), bed, plane.ceiling);
-            if (water.high < water.low) return;
+            if (water.empty()) return;
             const real slack = (plane.ceiling - bed) / samples;
             if (water.gap || water.low > bed + state.h[c] + slack) bad[static_cast<std::size_t>(k)] = i;
             state.h[c] = std::max(state.h[c], water.high - bed);
@@ -222,7 +223,7 @@ private:
                     const real x = plane_.x(i) + ((a + 0.5) / lines - 0.5) * plane_.dx,
                                z = plane_.z(k) + ((b + 0.5) / across - 0.5) * plane_.dz;
                     const Span solid = span_of<D>(*solids_[s].shape, solids_.pose(s), x, z, low, plane_.ceiling);
-                    const bool there = solid.high > terrain[c];
+                    const bool there = !solid.empty() && solid.high > terrain[c];
                     if (look_for_gaps && there && (solid.gap || solid.low > terrain[c] + slack)) hangs[static_cast<std::size_t>(k)] = i;
                     sum += there ? solid.high - terrain[c] : 0;
                 }

@@ -154,3 +154,14 @@ TEST_IN_2D_AND_3D("solids raise the bed by their height and by the part of a col
         [&] { (void)test::height_solver(scene("min = [0.3, 0.1], max = [0.6, 0.4]", "min = [0.3, 0.1, 0], max = [0.6, 0.4, 1]")); });
     EXPECT_TRUE(has(told, "this solid has air or water below it")) << told;
 }
+
+TEST_IN_2D_AND_3D("where no solid is the bed stays, however deep it lies") {
+    const std::string box = D == 2 ? "min = [0.25, -3], max = [0.5, -2.5]" : "min = [0.25, -3, 0], max = [0.5, -2.5, 1.5]";
+    const State state(test::height_scene(
+        D,
+        std::string("grid.origin = ") + (D == 2 ? "[0, -3]" : "[0, -3, 0]") +
+            "\ninitial.surface = \"-2.2\"\nterrain = { kind = \"formula\", height = \"-2.9\" }\nsolids = [ { shape = \"box\", " + box +
+            " } ]\n",
+        8));
+    for (int i = 0; i < state.plane.nx; ++i) EXPECT_NEAR(state.bed[state.plane.at(i, 0)], i == 2 || i == 3 ? -2.5 : -2.9, 1e-15) << i;
+}
