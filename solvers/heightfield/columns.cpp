@@ -1,7 +1,7 @@
 #include "heightfield/columns.hpp"
 
 #include "core/error.hpp"
-#include "core/grid.hpp"
+#include "core/plane_checkpoint.hpp"
 
 #include <fmt/format.h>
 
@@ -38,32 +38,34 @@ void refuse_what_columns_cannot(const scene::Scene& scene, const State& state) {
 }  // namespace
 
 Columns::Columns(const scene::Scene& scene)
-    : state_(scene),
-      surface_(state_.plane.count()),
-      rate_(state_.plane.count(), 0),
+    : held_(held_rows(scene)),
+      state_(scene),
+      surface_(state_.plane.extent()),
+      rate_(state_.plane.extent()),
       periodic_x_(state_.sides(0, 0).kind == SideKind::periodic),
       periodic_z_(state_.sides(1, 0).kind == SideKind::periodic),
       sweep_(state_.plane, periodic_x_, periodic_z_),
       floats_(make_floats(scene, state_.plane), state_.plane, state_.bed, state_.h, state_.g, state_.rho, periodic_x_, periodic_z_),
       hand_(geometry::make_hand(scene, {HandKind::pour, HandKind::drain})),
-      depth_(state_.plane.count()),
-      nothing_(state_.plane.count(), 0),
-      cut_(state_.plane.dim == 3 ? cut_of(state_.plane.nz, slabs().ranks()) : Cut{}),
+      depth_(state_.plane.extent()),
+      nothing_(state_.plane.extent()),
       cfl_(scene.number("time.cfl")) {
     refuse_what_columns_cannot(scene, state_);
     Field().swap(state_.qx), Field().swap(state_.qz);
     // the still depth is that below the mean surface, so that waves at the start are no deeper water
-    const real wet = sum([&](std::size_t c) { return state_.h[c] > state_.dry ? 1.0 : 0.0; });
+    const Plane& plane = state_.plane;
+    const real wet = sum_of_columns(plane, [&](std::size_t c) { return state_.h[c] > state_.dry ? 1.0 : 0.0; });
     if (wet == 0) scene.refuse("solver", "there is no water in this scene", "liquid, or initial.surface");
-    const real still = sum([&](std::size_t c) { return state_.h[c] > state_.dry ? state_.h[c] + state_.bed[c] : 0.0; }) / wet;
-    for (std::size_t c = 0; c < surface_.size(); ++c) {
+    const real still =
+        sum_of_columns(plane, [&](std::size_t c) { return state_.h[c] > state_.dry ? state_.h[c] + state_.bed[c] : 0.0; }) / wet;
+    for_each_column_near(plane, [&](std::size_t c) {
         const bool is_wet = state_.h[c] > state_.dry;
         surface_[c] = state_.h[c] + state_.bed[c];
         state_.h[c] = is_wet ? std::max(0.0, still - state_.bed[c]) : 0;
-    }
+    });
     make_stiffness();
     if (!floats_.empty()) {
-        displaced_.resize(state_.plane.count());
+        displaced_ = Field(state_.plane.extent());
         try {
             floats_.enter(surface_, rate_, k_);
         } catch (const NumericalFailure& failure) {  // on the bed, or in one another
@@ -76,33 +78,35 @@ Columns::Columns(const scene::Scene& scene)
         damping_ = t->number("rate");
         plans_.push_back({.name = "damping", .pass = effect_pass("damping")});
     }
+    held_.made();
 }
 
 /// Faces between two wet columns pull by g times the mean of their still depths.
 void Columns::make_stiffness() {
     const Plane& plane = state_.plane;
     const Field& depth = state_.h;
-    const auto between = [&](std::size_t a, std::size_t b, real d) {
-        return depth[a] > 0 && depth[b] > 0 ? state_.g * 0.5 * (depth[a] + depth[b]) / (d * d) : 0;
-    };
-    const real first = depth[0];
-    k_.uniform = floats_.empty() && std::all_of(depth.begin(), depth.end(), [&](real d) { return std::abs(d - first) <= 1e-12 * first; });
-    k_.along_x = between(0, 0, plane.dx), k_.along_z = plane.dim == 3 ? between(0, 0, plane.dz) : 0;
+    const auto pull = [&](real a, real b, real d) { return a > 0 && b > 0 ? state_.g * 0.5 * (a + b) / (d * d) : 0; };
+    const real first = over_ranks() ? of_ranks(slabs().rank() == 0 ? depth[0] : 0)[0] : depth[0];
+    const real uneven = sum_of_columns(plane, [&](std::size_t c) { return std::abs(depth[c] - first) <= 1e-12 * first ? 0.0 : 1.0; });
+    k_.uniform = floats_.empty() && uneven == 0;
+    k_.along_x = pull(first, first, plane.dx), k_.along_z = plane.dim == 3 ? pull(first, first, plane.dz) : 0;
     real stiffest = 2 * (k_.along_x + k_.along_z);
     if (!k_.uniform) {
-        const int nx = plane.nx, nz = plane.nz;
-        k_.x.assign(static_cast<std::size_t>(nx + 1) * static_cast<std::size_t>(nz), 0);
-        k_.z.assign(static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz + 1), 0);
-        for (int r = 0; r < nz; ++r)
+        const auto between = [&](std::size_t a, std::size_t b, real d) { return pull(depth[a], depth[b], d); };
+        const int nx = plane.nx, nz = plane.nz, begin = detail::own_share.lower(0), end = detail::own_share.upper(nz);
+        k_.x = Field(Index<2>{{nx + 1, nz}});
+        k_.z = Field(Index<2>{{nx, nz + 1}});
+        for (int r = begin; r < end; ++r)
             for (int f = 0; f <= nx; ++f)
                 if (periodic_x_ || (f > 0 && f < nx))
                     k_.x[static_cast<std::size_t>(r) * static_cast<std::size_t>(nx + 1) + static_cast<std::size_t>(f)] =
                         between(plane.at((f - 1 + nx) % nx, r), plane.at(f % nx, r), plane.dx);
-        for (int f = 0; plane.dim == 3 && f <= nz; ++f)
+        for (int f = begin; plane.dim == 3 && f <= end; ++f)
             for (int i = 0; i < nx; ++i)
                 if (periodic_z_ || (f > 0 && f < nz))
                     k_.z[plane.at(i, f)] = between(plane.at(i, (f - 1 + nz) % nz), plane.at(i, f % nz), plane.dz);
-        const real deepest = *std::max_element(depth.begin(), depth.end()), k = 2 * state_.g * deepest;
+        const real deepest = plane_max(nz, [&](int r) { return *std::max_element(&depth[plane.at(0, r)], &depth[plane.at(0, r)] + nx); });
+        const real k = 2 * state_.g * deepest;
         stiffest = k / (plane.dx * plane.dx) + (plane.dim == 3 ? k / (plane.dz * plane.dz) : 0);
     }
     limit_ = stiffest > 0 ? std::sqrt(2 / stiffest) : infinity;
@@ -112,9 +116,9 @@ void Columns::make_stiffness() {
 real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pace(state_.time)); }
 
 StepReport Columns::step(real dt) {
-    const OwnPlanes mine(cut_);
-    whole_ = cut_.empty();
-    if (over_ranks()) slabs().refresh(cut_, planes_of(surface_), 1, periodic_z_);
+    const OwnPlanes mine = held_.own();
+    brought_ = held_.cut().empty();
+    refresh(surface_, periodic_z_);
     if (hand_) {
         const auto timed = passes_.time("effect hand");
         pour_and_drain(*hand_, state_, surface_, dt, [&](std::size_t c) { return floats_.covers(c); });
@@ -175,10 +179,10 @@ void Columns::let_out(real dt) {
 
 /// Of the rows along x each rank's own; of the first and the last row those of the ranks at the ends.
 void Columns::gather_taken() {
-    const auto ranks = static_cast<std::size_t>(cut_.ranks());
+    const auto ranks = static_cast<std::size_t>(held_.cut().ranks());
     for (std::size_t end = 0; end < 2; ++end) {
-        if (Field& rows = taken_[end]; !rows.empty()) slabs().gather(cut_, {rows.data(), sizeof(real), state_.plane.nz});
-        Field& row = taken_[2 + end];
+        if (auto& rows = taken_[end]; !rows.empty()) slabs().gather(held_.cut(), {rows.data(), sizeof(real), state_.plane.nz});
+        auto& row = taken_[2 + end];
         if (row.empty()) continue;
         std::vector<std::size_t> begins(ranks + 1, end == 0 ? row.size() : 0);
         begins.front() = 0, begins.back() = row.size();
@@ -206,16 +210,19 @@ void Columns::check() const {
                                "has dry ground");
 }
 
-Planes Columns::planes_of(Field& field) const {
-    return {field.data(), sizeof(real) * static_cast<std::size_t>(state_.plane.nx), state_.plane.nz};
-}
-
-/// Brings the rows of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
-void Columns::make_whole() const {
-    if (whole_) return;
+/// What whoever looks may read, from whoever owns it: the rows beside the cuts where each rank holds no more, else all. All ranks look at
+/// the same time.
+void Columns::bring() const {
+    if (brought_) return;
+    const OwnPlanes mine = held_.own();
     auto& own = const_cast<Columns&>(*this);  // what is written is what was not here: the state stays the same
-    for (Field* field : {&own.surface_, &own.rate_}) slabs().gather(cut_, planes_of(*field));
-    whole_ = true;
+    if (held_.alone()) {
+        const std::array<Planes, 2> all{planes_of(own.surface_), planes_of(own.rate_)};
+        slabs().refresh(held_.cut(), all, 1, periodic_z_);
+    } else {
+        for (Field* field : {&own.surface_, &own.rate_}) gather(*field);
+    }
+    brought_ = true;
 }
 
 std::string Columns::concern() const {
@@ -226,43 +233,50 @@ std::string Columns::concern() const {
 }
 
 FieldSet Columns::fields() const {
-    make_whole();
-    for (std::size_t c = 0; c < depth_.size(); ++c) depth_[c] = surface_[c] - state_.bed[c];
+    bring();
+    const OwnPlanes mine = held_.looking();
+    for_each_column_near(state_.plane, [&](std::size_t c) { depth_[c] = surface_[c] - state_.bed[c]; });
     FieldSet set{.grid = state_.plane.view(),
-                 .fields = {{"velocity", "m/s", Where::cell, "", {nothing_, rate_}},
-                            {"depth", "m", Where::cell, "", {depth_}},
-                            {"surface", "m", Where::cell, "", {surface_}},
-                            {"bed", "m", Where::cell, "", {state_.bed}}}};
-    if (state_.plane.dim == 3) set.fields[0].data.push_back(nothing_);
+                 .fields = {{"velocity", "m/s", Where::cell, "", {nothing_.values(), rate_.values()}},
+                            {"depth", "m", Where::cell, "", {depth_.values()}},
+                            {"surface", "m", Where::cell, "", {surface_.values()}},
+                            {"bed", "m", Where::cell, "", {state_.bed.values()}}}};
+    if (state_.plane.dim == 3) set.fields[0].data.push_back(nothing_.values());
     if (!floats_.empty()) {
         floats_.displaced(surface_, displaced_);
         for (std::size_t c = 0; c < depth_.size(); ++c) depth_[c] -= displaced_[c];
-        set.fields.push_back({"displaced", "m", Where::cell, "", {displaced_}});
+        set.fields.push_back({"displaced", "m", Where::cell, "", {displaced_.values()}});
         floats_.show(set);
     }
+    if (held_.alone()) set.cut = &held_.cut();
     return set;
 }
 
-template <class F>
-real Columns::sum(F&& f) const {
-    const Plane& plane = state_.plane;
-    return plane.area() * ordered_sum(plane.nz, [&](int r) {
-               real total = 0;
-               for (int i = 0; i < plane.nx; ++i) total += f(plane.at(i, r));
-               return total;
-           });
+std::unique_ptr<Solver::Brought> Columns::bring_to_first(const std::vector<std::string>& names) const {
+    if (!held_.alone()) return nullptr;
+    fields();
+    auto& own = const_cast<Columns&>(*this);  // as above
+    std::vector<Field*> shown;
+    const auto add = [&](const char* name, std::initializer_list<Field*> list) {
+        if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) shown.insert(shown.end(), list);
+    };
+    add("velocity", {&own.nothing_, &own.rate_});
+    add("depth", {&depth_});
+    add("surface", {&own.surface_});
+    add("bed", {&own.state_.bed});
+    return std::make_unique<BroughtPlanes<real, 2>>(held_.cut(), std::move(shown));
 }
 
 real Columns::volume() const {
-    return sum([&](std::size_t c) { return surface_[c] - state_.bed[c]; }) + floats_.missing(surface_);
+    return sum_of_columns(state_.plane, [&](std::size_t c) { return surface_[c] - state_.bed[c]; }) + floats_.missing(surface_);
 }
 
 std::vector<Integral> Columns::integrals() const {
-    make_whole();
+    const OwnPlanes mine = held_.own();
     const real volume = this->volume();
     if (!floats_.empty()) floats_.displaced(surface_, displaced_);
     // of the water's top over its level at rest; below objects it is lower than the height that its pressure stands for
-    const real raised = sum([&](std::size_t c) {
+    const real raised = sum_of_columns(state_.plane, [&](std::size_t c) {
         const real up = surface_[c] - (displaced_.empty() ? 0 : displaced_[c]) - state_.bed[c] - state_.h[c];
         return state_.h[c] > 0 ? up * up : 0;
     });
@@ -287,27 +301,30 @@ std::vector<Integral> Columns::integrals() const {
 /// The height of the surface, and its rate as the velocity's part upwards. Not around floats, whose columns stand for their weight.
 std::vector<EditableField> Columns::editable() {
     if (!floats_.empty()) return {};
+    const OwnPlanes mine = held_.own();
     volume_before_ = volume();
-    EditableField velocity{"", "velocity", {nothing_, rate_}}, surface{"", "surface", {surface_}};
+    EditableField velocity{"", "velocity", {nothing_.values(), rate_.values()}}, surface{"", "surface", {surface_.values()}};
     velocity.min[0] = velocity.max[0] = 0;
-    if (state_.plane.dim == 3) velocity.data.emplace_back(nothing_), velocity.min[2] = velocity.max[2] = 0;
+    if (state_.plane.dim == 3) velocity.data.emplace_back(nothing_.values()), velocity.min[2] = velocity.max[2] = 0;
     return {std::move(velocity), std::move(surface)};
 }
 
 /// What was raised is poured, what was lowered is drained. The still depth stays.
 void Columns::edited(const EditableField& field) {
-    for (std::size_t c = 0; c < surface_.size(); ++c) {
+    const OwnPlanes mine = held_.looking();
+    for_each_column_near(state_.plane, [&](std::size_t c) {
         if (is_wet(c) ? surface_[c] <= state_.bed[c] : surface_[c] != state_.bed[c] || rate_[c] != 0)
             throw BadInput(fmt::format("\"{}\" at {}: the bed lies at {} m, and columns that pull their neighbours {}", field.name, c,
                                        state_.bed[c], is_wet(c) ? "do not run dry" : "wet no dry ground"));
-    }
+    });
     state_.poured += volume() - volume_before_;
 }
 
 void Columns::save(Checkpoint& to) const {
-    make_whole();
-    to.put("surface", surface_);
-    to.put("rate", rate_);
+    if (!held_.alone()) bring();
+    const OwnPlanes mine = held_.looking();
+    put_planes(to, "surface", surface_);
+    put_planes(to, "rate", rate_);
     to.put_value("time", state_.time);
     to.put_value("poured", state_.poured);
     to.put_value("through", through_);
@@ -317,22 +334,24 @@ void Columns::save(Checkpoint& to) const {
 }
 
 void Columns::restore(const Checkpoint& from) {
-    from.get("surface", std::span<real>(surface_));
-    from.get("rate", std::span<real>(rate_));
+    {
+        const OwnPlanes mine = held_.looking();
+        get_planes(from, "surface", surface_);
+        get_planes(from, "rate", rate_);
+    }
     state_.time = from.get_value<real>("time");
     state_.poured = from.get_value<real>("poured");
     through_ = from.get_value<real>("through");
     steps_ = from.get_value<std::int64_t>("steps");
     if (hand_ && from.has("hand")) hand_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
-    whole_ = true;
+    brought_ = !held_.alone();
 }
 
 std::size_t Columns::bytes() const {
     std::size_t total = state_.bytes() + k_.bytes() + sweep_.bytes() + floats_.bytes();
-    for (const Field* f : {&surface_, &rate_, &std::as_const(depth_), &std::as_const(displaced_), &nothing_})
-        total += f->capacity() * sizeof(real);
-    for (const Field& side : taken_) total += side.capacity() * sizeof(real);
+    for (const Field* f : {&surface_, &rate_, &std::as_const(depth_), &std::as_const(displaced_), &nothing_}) total += f->bytes();
+    for (const auto& side : taken_) total += side.capacity() * sizeof(real);
     return total;
 }
 

@@ -1,6 +1,5 @@
 // Columns as real-time graphics moves them (sweep.hpp), with objects that float or are dragged (floats.hpp).
 #pragma once
-#include "core/slabs.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/floats.hpp"
 #include "heightfield/hand.hpp"
@@ -17,6 +16,8 @@ public:
     StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }
     std::string concern() const override;
     FieldSet fields() const override;
+    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
+    bool holds_own_planes() const override { return held_.alone(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
     Hand* hand() const override { return hand_.get(); }
@@ -34,14 +35,12 @@ private:
     void make_stiffness();
     void let_out(real dt);
     void gather_taken();
-    void make_whole() const;
-    Planes planes_of(Field& field) const;
+    void bring() const;
     void check() const;
     real volume() const;
     bool is_wet(std::size_t c) const { return state_.h[c] > 0; }
-    template <class F>
-    real sum(F&& f) const;
 
+    HeldPlanes held_;
     State state_;  // h is the still depth
     Field surface_, rate_;
     real volume_before_ = 0;  // an edit [m^3]
@@ -53,9 +52,8 @@ private:
     std::shared_ptr<Hand> hand_;  // none where the scene names none
     mutable Field depth_, displaced_;
     Field nothing_;
-    std::array<Field, 4> taken_;  // by open sides, of each column beside them: x_min, x_max, z_min, z_max
-    Cut cut_;                     // over ranks in 3D: who owns which rows
-    mutable bool whole_ = true;   // whether all rows are here, and not this rank's alone
+    std::array<std::vector<real>, 4> taken_;  // by open sides, of each column beside them: x_min, x_max, z_min, z_max
+    mutable bool brought_ = true;             // whether what whoever looks may read is here, and not this rank's rows alone
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;
     real through_ = 0;  // volume a second that sides let in [m^3/s]

@@ -84,16 +84,17 @@ private:
 class Rain final : public Effect<State> {
 public:
     Rain(const scene::Table& table, const State& s)
-        : rate_(table.number("rate")), start_(table.number("start")), end_(table.number_or("end", infinity)), on_(s.plane.count(), 1) {
+        : rate_(table.number("rate")), start_(table.number("start")), end_(table.number_or("end", infinity)), on_(s.plane.extent(), 1) {
         if (!table.has("over")) return;
         const auto& over = table.numbers("over");
         const bool flat = s.plane.dim == 3;
-        for (int k = 0; k < s.plane.nz; ++k)
+        for_each_row_near(s.plane, [&](int k) {
             for (int i = 0; i < s.plane.nx; ++i) {
                 const real x = s.plane.x(i), z = s.plane.z(k);
                 const bool in = flat ? x > over[0] && x < over[2] && z > over[1] && z < over[3] : x > over[0] && x < over[1];
                 on_[s.plane.at(i, k)] = in ? 1 : 0;
             }
+        });
     }
     Stage stage() const override { return Stage::source; }
     void apply(State& s, real dt) override {
@@ -109,7 +110,7 @@ public:
                         return sum;
                     });
     }
-    std::size_t bytes() const override { return on_.capacity() * sizeof(real); }
+    std::size_t bytes() const override { return on_.bytes(); }
 
 private:
     real rate_, start_, end_;

@@ -170,7 +170,7 @@ void Floats::locate(real t, const Field& surface, const Field& rate) {
             contacts_.push_back({static_cast<std::size_t>(place_of_[c.column]), b, c.part, c.underside, touches});
         }
     }
-    for (Field* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_}) f->assign(covered_.size(), 0);
+    for (std::vector<real>* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_}) f->assign(covered_.size(), 0);
 }
 
 /// A body that floats, and is not over columns with all of its area, would sink as if it leaked.
@@ -300,7 +300,7 @@ void Floats::set_up(real dt) {
 }
 
 /// y = A x:  (1 - f) s + dt^2 sum k (s - s_beside) + f sum f s/(m + F)
-void Floats::multiply(const Field& x, Field& y, real dt) const {
+void Floats::multiply(const std::vector<real>& x, std::vector<real>& y, real dt) const {
     for (std::size_t i = 0; i < covered_.size(); ++i) {
         const Covered& c = covered_[i];
         real sum = diagonal_[i] * x[i];
@@ -321,7 +321,7 @@ void Floats::multiply(const Field& x, Field& y, real dt) const {
 /// Conjugate gradients, preconditioned by the diagonal.
 void Floats::solve(real dt) {
     const std::size_t n = covered_.size();
-    const auto dot = [n](const Field& a, const Field& b) {
+    const auto dot = [n](const std::vector<real>& a, const std::vector<real>& b) {
         real sum = 0;
         for (std::size_t i = 0; i < n; ++i) sum += a[i] * b[i];
         return sum;
@@ -444,7 +444,7 @@ void Floats::forget_free_columns() {
 }
 
 void Floats::displaced(const Field& surface, Field& to) const {
-    std::fill(to.begin(), to.end(), 0.0);
+    to.fill(0);
     for (const Contact& c : contacts_) {
         const std::size_t column = covered_[c.place].column;
         if (c.touches) to[column] += c.part * (surface[column] - c.underside - bodies_[c.body]->height());
@@ -470,7 +470,7 @@ real Floats::over_top(const Field& surface) const {
 }
 
 void Floats::show(FieldSet& fields) const {
-    for (Field& f : shown_) f.resize(bodies_.size());
+    for (std::vector<real>& f : shown_) f.resize(bodies_.size());
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         const Vec<3> middle = bodies_[b]->middle(), size = bodies_[b]->size();
         for (std::size_t a = 0; a < 3; ++a) shown_[a][b] = middle[static_cast<int>(a)], shown_[3 + a][b] = size[static_cast<int>(a)];
@@ -492,14 +492,15 @@ real Floats::missing(const Field& surface) const {
 std::size_t Floats::bytes() const {
     std::size_t total = place_of_.capacity() * sizeof(std::ptrdiff_t) + covered_.capacity() * sizeof(Covered) +
                         contacts_.capacity() * sizeof(Contact) + covers_.capacity() * sizeof(Cover);
-    for (const Field* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_, &stiff_, &given_}) total += f->capacity() * sizeof(real);
-    for (const Field& f : shown_) total += f.capacity() * sizeof(real);
+    for (const std::vector<real>* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_, &stiff_, &given_})
+        total += f->capacity() * sizeof(real);
+    for (const std::vector<real>& f : shown_) total += f.capacity() * sizeof(real);
     return total;
 }
 
 void Floats::save(Checkpoint& to) const {
     std::vector<std::size_t> columns;
-    Field water;
+    std::vector<real> water;
     std::vector<char> clings;
     for (const Covered& c : covered_) columns.push_back(c.column), water.push_back(c.water), clings.push_back(c.clings ? 1 : 0);
     to.put("covered_clings", clings);
@@ -515,7 +516,7 @@ void Floats::restore(const Checkpoint& from, real t, const Field& surface, const
     for (const Covered& c : covered_) place_of_[c.column] = -1;
     covered_.clear();
     std::vector<std::size_t> columns;
-    Field water;
+    std::vector<real> water;
     from.get("covered_columns", columns);
     from.get("covered_water", water);
     std::vector<char> clings;

@@ -114,7 +114,7 @@ private:
     void see_neighbours(const Field& surface, const Stiffness& k);
     void set_up(real dt);
     void solve(real dt);
-    void multiply(const Field& x, Field& y, real dt) const;
+    void multiply(const std::vector<real>& x, std::vector<real>& y, real dt) const;
     real height_of(std::size_t body) const;
     bool change_contacts();
     void take(real dt, Field& surface, Field& rate);
@@ -130,11 +130,11 @@ private:
     std::vector<Covered> covered_;
     std::vector<Contact> contacts_;
     std::vector<Cover> covers_;
-    std::vector<std::ptrdiff_t> place_of_;                 // of each column in covered_, or -1
-    Field x_, r_, p_, ap_, diagonal_, free_, gap_, part_;  // one a covered column
-    Field stiff_, given_;                                  // one a body
+    std::vector<std::ptrdiff_t> place_of_;                             // of each column in covered_, or -1
+    std::vector<real> x_, r_, p_, ap_, diagonal_, free_, gap_, part_;  // one a covered column
+    std::vector<real> stiff_, given_;                                  // one a body
     int iterations_ = 0;
-    mutable std::array<Field, 6> shown_;  // middle and size of each body
+    mutable std::array<std::vector<real>, 6> shown_;  // middle and size of each body
 };
 
 }  // namespace weir::heightfield

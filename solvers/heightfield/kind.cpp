@@ -152,11 +152,6 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
     return std::make_unique<ShallowWater>(scene);
 }
 
-/// Rows along x are never cut: a scene in 2D is one row, which every rank moves.
-Cut cut_of_rows(const scene::Scene& scene, int ranks) {
-    return scene.dim() == 3 ? cut_of(static_cast<int>(scene.root().numbers("grid.cells").back()), ranks) : Cut{};
-}
-
 /// What of a scene is not cut into slabs.
 void over_ranks(const scene::Scene& scene) {
     const auto refuse = [&](const std::string& key, const std::string& what) {
@@ -223,10 +218,10 @@ scene::SolverKind kind() {
              "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"},
             over_ranks,
             scene::Shared::by_planes,
-            "the bed under solids that move",
             {},
+            holds_own_rows,
             traffic_of_step,
-            cut_of_rows};
+            [](const scene::Scene& scene, int ranks) { return cut_of_rows(Plane(scene), ranks); }};
 }
 
 }  // namespace weir::heightfield

@@ -1,15 +1,19 @@
-// The columns of a height field: one along y for each place of the horizontal plane; on a line along x in 2D, on x and z in 3D.
+// The columns of a height field: one along y for each place of the horizontal plane; on a line along x in 2D, on x and z in 3D. Over ranks
+// rows along x are cut: a rank has its own and those beside its cuts that it reads.
 #pragma once
+#include "core/held_planes.hpp"
 #include "core/solver.hpp"
 #include "core/types.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace weir::heightfield {
 
-/// Values of all columns, x fastest.
-using Field = std::vector<real>;
+/// Values of all columns, x fastest, in rows (core/plane_store.hpp).
+using Field = Grid<real, 2>;
 
 struct Plane {
     int dim = 2;         // of the scene: 2 has one row of columns, a metre wide
@@ -25,6 +29,7 @@ struct Plane {
         if (dim == 3) nz = static_cast<int>(n[2]), z0 = origin[2], dz = size[2] / n[2];
     }
     std::size_t count() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz); }
+    Index<2> extent() const { return {{nx, nz}}; }
     std::size_t at(int i, int k) const { return static_cast<std::size_t>(k) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i); }
     real x(int i) const { return x0 + (i + 0.5) * dx; }
     real z(int k) const { return dim == 3 ? z0 + (k + 0.5) * dz : 0; }
@@ -36,5 +41,44 @@ struct Plane {
         return g;
     }
 };
+
+/// Rows beyond a cut that a rank holds: as many as a stage of shallow water reads.
+inline constexpr int rows_beside = 2;
+
+/// Who owns which rows; nowhere in 2D: a row is never cut, and every rank moves it.
+inline Cut cut_of_rows(const Plane& plane, int ranks) { return plane.dim == 3 ? cut_of(plane.nz, ranks) : Cut{}; }
+
+/// Over ranks: would each hold its own rows alone? Not where somebody looks at whole fields on all ranks.
+bool holds_own_rows(const scene::Scene& scene, const Cut& cut);
+HeldPlanes held_rows(const scene::Scene& scene);
+
+/// The rows of this rank and those that it reads beside its cuts, in runs: what each finds for itself. All in one process.
+std::vector<PlaneRange> rows_near(const Plane& plane);
+
+/// f(k) for these rows, threaded.
+template <class F>
+void for_each_row_near(const Plane& plane, F&& f) {
+    for (const PlaneRange& rows : rows_near(plane)) parallel_for(rows.begin, rows.end, f);
+}
+
+/// f(c) for their columns, one after the other.
+template <class F>
+void for_each_column_near(const Plane& plane, F&& f) {
+    for (const PlaneRange& rows : rows_near(plane))
+        for (std::size_t c = plane.at(0, rows.begin), end = plane.at(0, rows.end); c < end; ++c) f(c);
+}
+
+/// f of all columns, added row by row, times their area; over ranks of everybody's rows.
+template <class F>
+real sum_of_columns(const Plane& plane, F&& f) {
+    return plane.area() * plane_sum(plane.nz, [&](int k) {
+               real sum = 0;
+               for (int i = 0; i < plane.nx; ++i) sum += f(plane.at(i, k));
+               return sum;
+           });
+}
+
+/// The first of the columns that ranks have found, each the first of its own; none: -1.
+std::int64_t first_of_ranks(std::int64_t column);
 
 }  // namespace weir::heightfield

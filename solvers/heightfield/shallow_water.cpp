@@ -1,7 +1,7 @@
 #include "heightfield/shallow_water.hpp"
 
 #include "core/error.hpp"
-#include "core/grid.hpp"
+#include "core/plane_checkpoint.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,17 +17,17 @@ constexpr real most_cfl = 0.5;
 }  // namespace
 
 ShallowWater::ShallowWater(const scene::Scene& scene)
-    : state_(scene),
+    : held_(held_rows(scene)),
+      state_(scene),
       rows_(state_.plane, limiter_named(scene.text("scheme.limiter"))),
       reports_(static_cast<std::size_t>(state_.plane.nz)),
-      h1_(state_.h.size()),
-      qx1_(state_.qx.size()),
-      qz1_(state_.qz.size()),
-      nothing_(state_.h.size(), 0),
+      h1_(state_.h.extent()),
+      qx1_(state_.qx.extent()),
+      qz1_(state_.qz.extent()),
+      nothing_(state_.h.extent()),
       raised_(make_raised_bed(scene, state_.plane)),
       effects_(make_effects(scene, state_, "move water")),
       hand_(geometry::make_hand(scene, geometry::moving_kinds)),
-      cut_(state_.plane.dim == 3 ? cut_of(state_.plane.nz, slabs().ranks()) : Cut{}),
       cfl_(scene.number("time.cfl")) {
     if (hand_) effects_.add("hand", hand_effect(hand_));
     if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column a step: the depth may become negative", "cfl is at most 0.5");
@@ -36,6 +36,7 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
     else
         raised_.reset();
     measure();
+    held_.made();
 }
 
 /// Volume and the rate that limits the step, anew: at the start, and after effects have changed depths or speeds.
@@ -52,17 +53,13 @@ void ShallowWater::measure() {
         }
         return most;
     });
-    volume_ = plane.area() * plane_sum(plane.nz, [&](int k) {
-                  real sum = 0;
-                  for (int i = 0; i < plane.nx; ++i) sum += state_.h[plane.at(i, k)];
-                  return sum;
-              });
+    volume_ = sum_of_columns(plane, [&](std::size_t c) { return state_.h[c]; });
 }
 
 /// Audusse et al. 2004 with Heun's method.
 StepReport ShallowWater::step(real dt) {
-    const OwnPlanes mine(cut_);
-    whole_ = cut_.empty();
+    const OwnPlanes mine = held_.own();
+    brought_ = held_.cut().empty();
     const real cfl = dt * rate_;
     effects_.apply(Stage::source, state_, dt, passes_);
     if (raised_) raise_bed(state_.time + dt);
@@ -82,35 +79,38 @@ void ShallowWater::raise_bed(real t) {
 void ShallowWater::move_water(real dt) {
     const auto timed = passes_.time("move water");
     const Water now{state_.h.data(), state_.qx.data(), state_.qz.data()}, next{h1_.data(), qx1_.data(), qz1_.data()};
-    bring_beside(now);
+    bring_beside({&state_.h, &state_.qx, &state_.qz}, rows_beside);
     rows_.stage({.state = state_, .from = now, .to = next, .dt = dt, .second = false}, reports_);
     take_reports(0.5);
-    bring_beside(next);
+    bring_beside({&h1_, &qx1_, &qz1_}, rows_beside);
     rows_.stage({.state = state_, .from = next, .to = now, .dt = dt, .second = true}, reports_);
     take_reports(0.5);
 }
 
-/// Over ranks, the rows beyond the cuts that a face's two reconstructions read.
-void ShallowWater::bring_beside(const Water& water) const {
+/// Over ranks, rows beyond the cuts: a face's two reconstructions read two.
+void ShallowWater::bring_beside(const std::array<Field*, 3>& water, int deep) const {
     if (!over_ranks()) return;
-    const std::array<Planes, 3> all{planes_of(water.h), planes_of(water.qx), planes_of(water.qz)};
-    slabs().refresh(cut_, all, rows_beside, state_.sides(1, 0).kind == SideKind::periodic);
+    const std::array<Planes, 3> all{planes_of(*water[0]), planes_of(*water[1]), planes_of(*water[2])};
+    slabs().refresh(held_.cut(), all, deep, held_.ring());
 }
 
-Planes ShallowWater::planes_of(real* field) const {
-    return {field, sizeof(real) * static_cast<std::size_t>(state_.plane.nx), state_.plane.nz};
-}
-
-/// Brings the rows of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
-void ShallowWater::make_whole() const {
-    if (whole_) return;
+/// What whoever looks may read, from whoever owns it: the rows beside the cuts where each rank holds no more, else all. All ranks look at
+/// the same time.
+void ShallowWater::bring() const {
+    if (brought_) return;
+    const OwnPlanes mine = held_.own();
     auto& state = const_cast<State&>(state_);  // what is written is what was not here: the state stays the same
-    for (Field* field : {&state.h, &state.qx, &state.qz}) slabs().gather(cut_, planes_of(field->data()));
-    whole_ = true;
+    if (held_.alone()) {
+        bring_beside({&state.h, &state.qx, &state.qz}, 1);
+    } else {
+        for (Field* field : {&state.h, &state.qx, &state.qz}) gather(*field);
+        if (raised_) gather(state.bed);
+    }
+    brought_ = true;
 }
 
 void ShallowWater::take_reports(real weight) {
-    if (over_ranks()) slabs().gather(cut_, {reports_.data(), sizeof(RowReport), state_.plane.nz});
+    if (over_ranks()) slabs().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
     volume_ = 0, rate_ = 0;
     for (const RowReport& r : reports_) {
         volume_ += r.volume * state_.plane.dz;
@@ -129,9 +129,11 @@ StepLimit ShallowWater::stable_dt() const {
 }
 
 FieldSet ShallowWater::fields() const {
-    make_whole();
+    bring();
+    const OwnPlanes mine = held_.looking();
+    const WiderPlanes beside(1);
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
-    parallel_for(0, state_.plane.nz, [&](int k) {
+    for_each_plane(0, state_.plane.nz, [&](int k) {
         for (int i = 0; i < state_.plane.nx; ++i) {
             const std::size_t c = state_.plane.at(i, k);
             const real over = h[c] > state_.dry ? 1 / h[c] : 0;
@@ -141,24 +143,34 @@ FieldSet ShallowWater::fields() const {
         }
     });
     FieldSet set{.grid = state_.plane.view(),
-                 .fields = {{"velocity", "m/s", Where::cell, "", {qx1_, nothing_}},
-                            {"depth", "m", Where::cell, "", {h}},
-                            {"surface", "m", Where::cell, "", {h1_}},
-                            {"bed", "m", Where::cell, "", {state_.bed}}}};
-    if (!qz.empty()) set.fields[0].data.push_back(qz1_);
+                 .fields = {{"velocity", "m/s", Where::cell, "", {qx1_.values(), nothing_.values()}},
+                            {"depth", "m", Where::cell, "", {h.values()}},
+                            {"surface", "m", Where::cell, "", {h1_.values()}},
+                            {"bed", "m", Where::cell, "", {state_.bed.values()}}}};
+    if (!qz.empty()) set.fields[0].data.push_back(qz1_.values());
+    if (held_.alone()) set.cut = &held_.cut();
     return set;
 }
 
-std::vector<Integral> ShallowWater::integrals() const {
-    make_whole();
-    const Plane& plane = state_.plane;
-    const auto sum = [&](const auto& f) {
-        return plane.area() * ordered_sum(plane.nz, [&](int k) {
-                   real total = 0;
-                   for (int i = 0; i < plane.nx; ++i) total += f(plane.at(i, k));
-                   return total;
-               });
+std::unique_ptr<Solver::Brought> ShallowWater::bring_to_first(const std::vector<std::string>& names) const {
+    if (!held_.alone()) return nullptr;
+    fields();
+    auto& own = const_cast<ShallowWater&>(*this);  // as above
+    std::vector<Field*> shown;
+    const auto add = [&](const char* name, std::initializer_list<Field*> list) {
+        if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) shown.insert(shown.end(), list);
     };
+    add("velocity", {&qx1_, &own.nothing_, &qz1_});
+    add("depth", {&own.state_.h});
+    add("surface", {&h1_});
+    add("bed", {&own.state_.bed});
+    return std::make_unique<BroughtPlanes<real, 2>>(held_.cut(), std::move(shown));
+}
+
+std::vector<Integral> ShallowWater::integrals() const {
+    const OwnPlanes mine = held_.own();
+    const Plane& plane = state_.plane;
+    const auto sum = [&](const auto& f) { return sum_of_columns(plane, f); };
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
     const auto speed2 = [&](std::size_t c) { return h[c] > state_.dry ? (qx[c] * qx[c] + (qz.empty() ? 0 : qz[c] * qz[c])) / h[c] : 0; };
     const real kinetic = sum(speed2), weight = sum([&](std::size_t c) { return h[c] * (state_.bed[c] + 0.5 * h[c]); });
@@ -179,8 +191,8 @@ std::vector<Integral> ShallowWater::integrals() const {
 /// Depths, with the velocity kept, and the velocity, which is a mean over the depth and has no part upwards.
 std::vector<EditableField> ShallowWater::editable() {
     fields();
-    EditableField velocity{"", "velocity", {qx1_, nothing_}}, depth{"", "depth", {state_.h}};
-    if (!qz1_.empty()) velocity.data.emplace_back(qz1_);
+    EditableField velocity{"", "velocity", {qx1_.values(), nothing_.values()}}, depth{"", "depth", {state_.h.values()}};
+    if (!qz1_.empty()) velocity.data.emplace_back(qz1_.values());
     velocity.min[1] = velocity.max[1] = 0;
     depth.min[0] = 0;
     return {std::move(velocity), std::move(depth)};
@@ -188,22 +200,24 @@ std::vector<EditableField> ShallowWater::editable() {
 
 /// Water that was put there is counted as poured; where there is too little to move it stands still.
 void ShallowWater::edited(const EditableField&) {
+    const OwnPlanes mine = held_.looking();
     const real before = volume_;
-    for (std::size_t c = 0; c < state_.h.size(); ++c) {
+    for_each_column_near(state_.plane, [&](std::size_t c) {
         const real wet = state_.h[c] > state_.dry ? state_.h[c] : 0;
         state_.qx[c] = wet * qx1_[c];
         if (!qz1_.empty()) state_.qz[c] = wet * qz1_[c];
-    }
+    });
     measure();
     state_.poured += volume_ - before;
 }
 
 void ShallowWater::save(Checkpoint& to) const {
-    make_whole();
-    to.put("depth", state_.h);
-    to.put("discharge_x", state_.qx);
-    to.put("discharge_z", state_.qz);
-    to.put("bed", state_.bed);
+    if (!held_.alone()) bring();
+    const OwnPlanes mine = held_.looking();
+    put_planes(to, "depth", state_.h);
+    put_planes(to, "discharge_x", state_.qx);
+    put_planes(to, "discharge_z", state_.qz);
+    put_planes(to, "bed", state_.bed);
     to.put_value("time", state_.time);
     to.put_value("poured", state_.poured);
     to.put_value("volume", volume_);
@@ -213,23 +227,24 @@ void ShallowWater::save(Checkpoint& to) const {
 }
 
 void ShallowWater::restore(const Checkpoint& from) {
-    from.get("depth", std::span<real>(state_.h));
-    from.get("discharge_x", std::span<real>(state_.qx));
-    from.get("discharge_z", std::span<real>(state_.qz));
-    from.get("bed", std::span<real>(state_.bed));
+    const OwnPlanes mine = held_.looking();
+    get_planes(from, "depth", state_.h);
+    get_planes(from, "discharge_x", state_.qx);
+    get_planes(from, "discharge_z", state_.qz);
+    get_planes(from, "bed", state_.bed);
+    refresh(state_.bed, held_.ring(), rows_beside);
     state_.time = from.get_value<real>("time");
     state_.poured = from.get_value<real>("poured");
     volume_ = from.get_value<real>("volume");
     rate_ = from.get_value<real>("rate");
     clipped_ = from.get_value<real>("clipped");
     if (hand_ && from.has("hand")) hand_->restore(from);
-    whole_ = true;
+    brought_ = !held_.alone();
 }
 
 std::size_t ShallowWater::bytes() const {
     std::size_t fields = 0;
-    for (const Field* f : {&std::as_const(h1_), &std::as_const(qx1_), &std::as_const(qz1_), &terrain_, &nothing_})
-        fields += f->capacity() * sizeof(real);
+    for (const Field* f : {&std::as_const(h1_), &std::as_const(qx1_), &std::as_const(qz1_), &terrain_, &nothing_}) fields += f->bytes();
     return state_.bytes() + fields + reports_.capacity() * sizeof(RowReport) + rows_.bytes() + effects_.bytes();
 }
 

@@ -1,15 +1,11 @@
 // The shallow-water equations on a plane of columns: second order in space and time, water at rest at rest, no negative depth.
 #pragma once
-#include "core/slabs.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/hand.hpp"
 #include "heightfield/rows.hpp"
 #include "heightfield/start.hpp"
 
 namespace weir::heightfield {
-
-/// Rows beyond a cut that a stage reads.
-inline constexpr int rows_beside = 2;
 
 class ShallowWater final : public Solver {
 public:
@@ -18,6 +14,8 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
+    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
+    bool holds_own_planes() const override { return held_.alone(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
     Hand* hand() const override { return hand_.get(); }
@@ -36,10 +34,10 @@ private:
     void take_reports(real weight);
     void raise_bed(real t);
     void measure();
-    void bring_beside(const Water& water) const;
-    void make_whole() const;
-    Planes planes_of(real* field) const;
+    void bring_beside(const std::array<Field*, 3>& water, int deep) const;
+    void bring() const;
 
+    HeldPlanes held_;
     State state_;
     Rows rows_;
     std::vector<RowReport> reports_;
@@ -47,9 +45,8 @@ private:
     Field terrain_, nothing_;       // the bed without solids, where these move; the vertical velocity
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
-    std::shared_ptr<Hand> hand_;  // none where the scene names none
-    Cut cut_;                     // over ranks in 3D: who owns which rows
-    mutable bool whole_ = true;   // whether all rows are here, and not this rank's alone
+    std::shared_ptr<Hand> hand_;   // none where the scene names none
+    mutable bool brought_ = true;  // whether what whoever looks may read is here, and not this rank's rows alone
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

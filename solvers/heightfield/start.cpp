@@ -23,28 +23,38 @@ std::vector<std::string> coordinates(const Plane& plane) {
     return plane.dim == 2 ? std::vector<std::string>{"x"} : std::vector<std::string>{"x", "z"};
 }
 
-/// f(i, k) for every column, threaded over rows.
+/// f(i, k) for every column that a rank finds for itself, threaded over rows.
 template <class F>
 void for_each_column(const Plane& plane, F&& f) {
-    parallel_for(0, plane.nz, [&](int k) {
+    for_each_row_near(plane, [&](int k) {
         for (int i = 0; i < plane.nx; ++i) f(i, k);
     });
+}
+
+/// The last column that was found in each row, -1 where none was: of them that of the first row.
+std::int64_t first_of_rows(const Plane& plane, const std::vector<int>& found) {
+    std::int64_t first = -1;
+    for (int k = plane.nz - 1; k >= 0; --k)
+        if (const int i = found[static_cast<std::size_t>(k)]; i >= 0) first = static_cast<std::int64_t>(plane.at(i, k));
+    return first_of_ranks(first);
 }
 
 /// The formula at `path` at the middle of each column; refused where it has no value.
 Field formula_field(const Scene& scene, const std::string& path, const Plane& plane) {
     const scene::Formula f = scene::formula_at(scene, path, coordinates(plane));
-    Field values(plane.count());
-    for (int k = 0; k < plane.nz; ++k)  // threads would wait for one another
-        for (int i = 0; i < plane.nx; ++i) {
-            const real at[2] = {plane.x(i), plane.z(k)};
-            values[plane.at(i, k)] = f(at);
-        }
-    for (std::size_t c = 0; c < values.size(); ++c)
-        if (!std::isfinite(values[c])) {
-            const int i = static_cast<int>(c) % plane.nx, k = static_cast<int>(c) / plane.nx;
-            scene.refuse(path, fmt::format("{} has no value at x = {:g}, z = {:g}", path, plane.x(i), plane.z(k)));
-        }
+    Field values(plane.extent());
+    std::int64_t bad = -1;
+    for (const PlaneRange& rows : rows_near(plane))
+        for (int k = rows.begin; k < rows.end; ++k)  // threads would wait for one another
+            for (int i = 0; i < plane.nx; ++i) {
+                const real at[2] = {plane.x(i), plane.z(k)};
+                const std::size_t c = plane.at(i, k);
+                values[c] = f(at);
+                if (bad < 0 && !std::isfinite(values[c])) bad = static_cast<std::int64_t>(c);
+            }
+    if (bad = first_of_ranks(bad); bad >= 0)
+        scene.refuse(path, fmt::format("{} has no value at x = {:g}, z = {:g}", path, plane.x(static_cast<int>(bad % plane.nx)),
+                                       plane.z(static_cast<int>(bad / plane.nx))));
     return values;
 }
 
@@ -152,14 +162,12 @@ void pour(const Scene& scene, State& state) {
             if (water.gap || water.low > bed + state.h[c] + slack) bad[static_cast<std::size_t>(k)] = i;
             state.h[c] = std::max(state.h[c], water.high - bed);
         });
-        for (int k = 0; k < plane.nz; ++k)
-            if (const int i = bad[static_cast<std::size_t>(k)]; i >= 0)
-                scene.refuse(
-                    fmt::format("liquid[{}]", s),
-                    fmt::format("this water hangs above the bed at x = {:g}, z = {:g}: in a height field each column is filled from "
-                                "its bed to one surface",
-                                plane.x(i), plane.z(k)),
-                    "solvers \"mac_water\", \"pbf\" and \"sph\" have drops and overturning waves");
+        if (const std::int64_t c = first_of_rows(plane, bad); c >= 0)
+            scene.refuse(fmt::format("liquid[{}]", s),
+                         fmt::format("this water hangs above the bed at x = {:g}, z = {:g}: in a height field each column is filled from "
+                                     "its bed to one surface",
+                                     plane.x(static_cast<int>(c % plane.nx)), plane.z(static_cast<int>(c / plane.nx))),
+                         "solvers \"mac_water\", \"pbf\" and \"sph\" have drops and overturning waves");
     }
 }
 
@@ -167,7 +175,7 @@ void give_velocity(const Scene& scene, State& state) {
     if (!scene.has("initial.velocity")) return;
     const Plane& plane = state.plane;
     const auto set = [&](Field& q, const auto& u) {
-        for (std::size_t c = 0; c < q.size(); ++c) q[c] = state.h[c] > state.dry ? state.h[c] * u(c) : 0;
+        for_each_column_near(plane, [&](std::size_t c) { q[c] = state.h[c] > state.dry ? state.h[c] * u(c) : 0; });
     };
     if (scene.text("initial.velocity.name") == "formula") {
         const Field u = formula_field(scene, "initial.velocity.x", plane);
@@ -193,24 +201,24 @@ public:
         Field terrain = make_terrain(scene, plane), bed = terrain;
         solids_.set_time(0);
         for (std::size_t s = 0; s < solids_.count(); ++s)
-            if (const int c = raise(s, terrain, bed, true); c >= 0)
+            if (const std::int64_t c = raise(s, terrain, bed, true); c >= 0)
                 scene.refuse(
                     fmt::format("solids[{}]", s),
                     fmt::format("this solid has air or water below it at x = {:g}, z = {:g}: in a height field a solid stands on the "
                                 "bed, which it raises",
-                                plane_.x(c % plane_.nx), plane_.z(c / plane_.nx)),
+                                plane_.x(static_cast<int>(c % plane_.nx)), plane_.z(static_cast<int>(c / plane_.nx))),
                     "scheme.model = \"columns\" has floating and dragged objects (floats)");
     }
     void at(real t, const Field& terrain, Field& bed) override {
         solids_.set_time(t);
-        bed = terrain;
+        for_each_column_near(plane_, [&](std::size_t c) { bed[c] = terrain[c]; });
         for (std::size_t s = 0; s < solids_.count(); ++s) raise(s, terrain, bed, false);
     }
     bool moves() const override { return solids_.moving(); }
 
 private:
     /// Four lines a column and axis; the number of a column over which the solid hangs, if asked for, or -1.
-    int raise(std::size_t s, const Field& terrain, Field& bed, bool look_for_gaps) {
+    std::int64_t raise(std::size_t s, const Field& terrain, Field& bed, bool look_for_gaps) {
         constexpr int lines = 4;
         std::vector<int> hangs(static_cast<std::size_t>(plane_.nz), -1);
         for_each_column(plane_, [&](int i, int k) {
@@ -229,9 +237,7 @@ private:
                 }
             bed[c] = std::max(bed[c], terrain[c] + sum / (lines * across));
         });
-        for (int k = 0; k < plane_.nz; ++k)
-            if (hangs[static_cast<std::size_t>(k)] >= 0) return static_cast<int>(plane_.at(hangs[static_cast<std::size_t>(k)], k));
-        return -1;
+        return look_for_gaps ? first_of_rows(plane_, hangs) : -1;
     }
 
     Plane plane_;
@@ -241,10 +247,10 @@ private:
 }  // namespace
 
 Field make_terrain(const Scene& scene, const Plane& plane) {
-    if (!scene.has("terrain")) return Field(plane.count(), plane.floor);
+    if (!scene.has("terrain")) return Field(plane.extent(), plane.floor);
     if (scene.text("terrain.kind") == "formula") return formula_field(scene, "terrain.height", plane);
     const Raster raster = read_raster(scene, plane);
-    Field bed(plane.count());
+    Field bed(plane.extent());
     for_each_column(plane, [&](int i, int k) { bed[plane.at(i, k)] = raster(plane.x(i), plane.z(k)); });
     return bed;
 }
@@ -256,9 +262,9 @@ std::unique_ptr<RaisedBed> make_raised_bed(const Scene& scene, const Plane& plan
 }
 
 void start(const Scene& scene, State& state) {
-    state.h.assign(state.plane.count(), 0);
-    state.qx.assign(state.plane.count(), 0);
-    if (state.plane.dim == 3) state.qz.assign(state.plane.count(), 0);
+    state.h = Field(state.plane.extent());
+    state.qx = Field(state.plane.extent());
+    if (state.plane.dim == 3) state.qz = Field(state.plane.extent());
     state.bed = make_terrain(scene, state.plane);
     if (const auto raised = make_raised_bed(scene, state.plane)) {
         const Field terrain = state.bed;
@@ -268,7 +274,7 @@ void start(const Scene& scene, State& state) {
         if (!scene.root().tables("liquid").empty())
             scene.refuse("initial.surface", "the water is given twice: by its surface, and as liquid");
         const Field surface = formula_field(scene, "initial.surface", state.plane);
-        for (std::size_t c = 0; c < surface.size(); ++c) state.h[c] = std::max(0.0, surface[c] - state.bed[c]);
+        for_each_column_near(state.plane, [&](std::size_t c) { state.h[c] = std::max(0.0, surface[c] - state.bed[c]); });
     } else if (state.plane.dim == 2) {
         pour<2>(scene, state);
     } else {

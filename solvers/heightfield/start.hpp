@@ -8,7 +8,7 @@
 
 namespace weir::heightfield {
 
-/// Height of the bed of each column, without solids.
+/// Height of the bed of each column, without solids. Over ranks each finds what it holds (rows_near), here and in all that follows.
 Field make_terrain(const scene::Scene& scene, const Plane& plane);
 /// Fills depth, discharge and bed.
 void start(const scene::Scene& scene, State& state);

@@ -19,7 +19,7 @@ struct State {
     real poured = 0;        // volume that came in through sides and from the sky since the start, less what left [m^3]
 
     explicit State(const scene::Scene& scene);
-    std::size_t bytes() const { return (h.capacity() + qx.capacity() + qz.capacity() + bed.capacity()) * sizeof(real); }
+    std::size_t bytes() const { return h.bytes() + qx.bytes() + qz.bytes() + bed.bytes(); }
 };
 
 }  // namespace weir::heightfield

@@ -63,7 +63,7 @@ Sweep::Sweep(const Plane& plane, bool periodic_x, bool periodic_z)
     : plane_(plane),
       periodic_x_(periodic_x),
       periodic_z_(periodic_z),
-      edges_(2 * static_cast<std::size_t>(OwnRows{0, plane.nz}.parts()) * static_cast<std::size_t>(plane.nx)) {}
+      edges_(2 * static_cast<std::size_t>(OwnRows(plane).parts()) * static_cast<std::size_t>(plane.nx)) {}
 
 int Sweep::OwnRows::parts() const { return (end - begin + rows_of_part - 1) / rows_of_part; }
 int Sweep::OwnRows::part_begin(int p) const { return begin + p * rows_of_part; }
@@ -104,8 +104,8 @@ void Sweep::part(const OwnRows& own, int p, Field& surface, Field& rate, const S
 void Sweep::step(Field& surface, Field& rate, const Stiffness& k, real dt) {
     const auto row = static_cast<std::size_t>(plane_.nx);
     const auto wanted = static_cast<std::size_t>(plane_.dim == 2 ? 1 : threads());
-    if (scratch_.size() < wanted) scratch_.resize(wanted, Field(2 * (row + 16)));
-    const OwnRows own{detail::own_share.lower(0), detail::own_share.upper(plane_.nz)};
+    if (scratch_.size() < wanted) scratch_.resize(wanted, std::vector<real>(2 * (row + 16)));
+    const OwnRows own(plane_);
     parallel_for(0, own.parts(), [&](int p) {
         const int begin = own.part_begin(p), last = own.part_end(p) - 1;
         std::copy_n(surface.data() + plane_.at(0, begin), row, edges_.data() + 2 * static_cast<std::size_t>(p) * row);
@@ -118,7 +118,7 @@ void Sweep::step(Field& surface, Field& rate, const Stiffness& k, real dt) {
 
 std::size_t Sweep::bytes() const {
     std::size_t total = edges_.capacity() * sizeof(real);
-    for (const Field& s : scratch_) total += s.capacity() * sizeof(real);
+    for (const std::vector<real>& s : scratch_) total += s.capacity() * sizeof(real);
     return total;
 }
 

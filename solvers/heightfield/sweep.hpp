@@ -16,7 +16,7 @@ struct Stiffness {
     Field x, z;
     bool uniform = false;  // the same k at all inner faces of an axis, none at the ends
     real along_x = 0, along_z = 0;
-    std::size_t bytes() const { return (x.capacity() + z.capacity()) * sizeof(real); }
+    std::size_t bytes() const { return x.bytes() + z.bytes(); }
 };
 
 /// One step of all columns in one sweep over memory; rows that a thread's neighbour overwrites are kept before.
@@ -30,6 +30,7 @@ private:
     /// The rows of this rank, all in one process, in parts of so many.
     struct OwnRows {
         int begin, end;
+        explicit OwnRows(const Plane& plane) : begin(detail::own_share.lower(0)), end(detail::own_share.upper(plane.nz)) {}
         int parts() const;
         int part_begin(int p) const;
         int part_end(int p) const;
@@ -38,8 +39,8 @@ private:
     void part(const OwnRows& own, int p, Field& surface, Field& rate, const Stiffness& k, real dt, real* scratch);
     Plane plane_;
     bool periodic_x_, periodic_z_;
-    std::vector<Field> scratch_;  // one a thread: two rows
-    Field edges_;                 // the first and the last row of each part, as they were
+    std::vector<std::vector<real>> scratch_;  // one a thread: two rows
+    std::vector<real> edges_;                 // the first and the last row of each part, as they were
 };
 
 /// The same, one column after the other.

@@ -101,10 +101,16 @@ public:
     std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
         if (real height = 0; solver.answer(surface_height_name, at_, {&height, 1}))
             return {height - fields.grid.origin[1], std::max(0.0, height - fields.grid.origin[1])};
-        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1], liquid_depth(fields, at_, 1)};
+        if (!fields.cut) return on_line(fields);
+        // ranks that hold their own planes alone are cut along z
+        const int owner = owner_of(*fields.cut, plane_below(Lattice::of_cells(fields.grid), fields.grid.dim - 1, at_));
+        return of_owners(owner == slabs().rank() ? on_line(fields) : std::vector<real>(2), {owner, owner});
     }
 
 private:
+    std::vector<real> on_line(const FieldSet& fields) const {
+        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1], liquid_depth(fields, at_, 1)};
+    }
     Vec<3> at_;
 };
 

@@ -59,6 +59,12 @@ water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={
 # what rank number 0, 1, .. of a run tells of itself, and a bound for it
 told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
 at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
+holds_own() {
+    for run; do
+        grep -q '"storage":"every rank holds its own planes and those near its cuts"' "$run/run.json" || fail "a rank of $run held more than its own planes"
+    done
+}
+holds_whole() { grep -q '"storage":"every rank holds whole grids"' "$1/run.json" || fail "run.json of $1 does not tell that grids are whole"; }
 # continues RANKS FOLDER BESIDE [--set ...]: over so many, each of which reads its part of the checkpoint twice (it goes through it for the
 # checksum, and gets what it owns), `beside` bytes more of its own where not all own as much, and less than 8 KiB that all read: names,
 # sizes, the scene, clocks
@@ -144,13 +150,20 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     ;;
 heightfield)
     compare shallow "$every" "$shallow"
-    grep -q '"storage":"every rank holds whole grids"' shallow-2-1/run.json || fail "run.json does not tell that grids are whole"
+    holds_own shallow-2-1 shallow-4-2
     compare columns "$every" "$columns"
+    holds_own columns-2-1 columns-4-2
     around='--set sides={z_min={kind="periodic"},z_max={kind="periodic"},x_max={kind="wall"}}'
     compare ring "2 1,3 2" "$shallow" $around --set scheme.limiter=van_leer
     compare ring_columns "2 1,3 2" "$columns" $around
     compare thin "4 1" "$shallow" --set grid.cells=[37,1,6]
     compare thin_columns "4 1" "$columns" --set grid.cells=[37,1,5]
+    # whole where somebody looks at all of it
+    for scene in "$shallow" "$columns"; do
+        rm -rf watched*
+        compare watched "2 1,3 2" "$scene" $around --set time.stop_when_steady=1e-9
+        holds_whole watched-2-1
+    done
     # saved on three, continued on two
     for scene in "$shallow" "$columns"; do
         rm -rf parts whole
@@ -374,6 +387,47 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
     alike one parts-2
     alike one parts-4
+    ;;
+storage_heightfield) # the same of rows of columns, with rain over a part of them, and of varied depth where they pull their neighbours
+    cat >lake.toml <<-END
+	solver = "heightfield"
+	dim = 3
+	grid = { cells = [512, 1, 1024], size = [51.2, 2.0, 102.4], origin = [0.0, -1.0, 0.0] }
+	time = { end = 0.06, max_dt = 0.01 }
+	terrain = { kind = "formula", height = "-1 + 0.05*sin(0.3*x)" }
+	initial.surface = "0.1*exp(-((x-5)^2 + (z-45)^2))"
+	effects.gravity.g = [0.0, -9.81, 0.0]
+	output = { every = 1.0, fields = ["depth"] }
+	END
+    rain='--set effects.rain={rate=0.01,over=[1.0,2.0,30.0,90.0]}'
+    for model in shallow_water columns; do
+        lake=(lake.toml --quiet --threads 1 --set scheme.model=$model)
+        [ $model = columns ] || lake+=($rain)
+        ends 0 "$weir" run "${lake[@]}" --checkpoint-every 1000 --out $model
+        one=$(grep -o '"solver_bytes": [0-9]*' $model/run.json | cut -d' ' -f2)
+        for ranks in 2 4; do
+            ends 0 over $ranks "$weir" run "${lake[@]}" --checkpoint-every 1000 --out $model-$ranks
+            alike $model $model-$ranks
+            holds_own $model-$ranks
+            ends 0 over $ranks "$weir" run lake.toml --quiet --threads 1 --set scheme.model=$model --out tiny-$ranks --set grid.cells=[8,1,64]
+            for rank in $(seq 0 $((ranks - 1))); do
+                # Two rows beyond either cut, and one. Whole are what a stage says of each row, 4 numbers, and its scratch of less than 40 rows.
+                held=$(told $model-$ranks solver_bytes $rank) rows=$((1024 / ranks))
+                at_most "$held" $((one * (rows + 5) / 1024 + 4 * 8 * 1024 + 40 * 8 * (512 + 24))) "$model, rank $rank of $ranks"
+                # As the system sees it, beyond what a run of a few columns takes: that, the last good state (4 numbers a column), a page at both
+                # ends of less than 32 arrays; the first rank may keep the room of a frame (the field, and 3 copies).
+                more_held=$(($(told $model-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
+                frame=$([ "$rank" -eq 0 ] && echo $((4 * 8 * 512 * 1024)) || echo 0)
+                at_most $more_held $((held + 4 * 8 * 512 * rows + 32 * 2 * 4096 + frame)) "$model resident, rank $rank of $ranks"
+            done
+        done
+        # continued by others
+        continues 4 $model-2 0 --set time.end=0.09
+        continues 2 $model-4 0 --set time.end=0.09
+        ends 0 "$weir" run --restart $model --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.09
+        alike $model $model-2
+        alike $model $model-4
+    done
     ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
     ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one

@@ -41,12 +41,12 @@ std::string floats(int dim) {
 
 TEST_IN_2D_AND_3D("the fast sweep is the plain one, bit for bit where the pull varies and to round-off where it does not") {
     const Plane plane(columns(D, waves, 70));
-    Field start(plane.count()), rate(plane.count());
+    Field start(plane.extent()), rate(plane.extent());
     for (std::size_t c = 0; c < start.size(); ++c)
         start[c] = std::sin(0.7 * static_cast<real>(c)), rate[c] = std::cos(1.3 * static_cast<real>(c));
     Stiffness k;
-    k.x.resize(plane.count() + static_cast<std::size_t>(plane.nz));
-    k.z.resize(plane.count() + static_cast<std::size_t>(plane.nx), 0);
+    k.x = Field(Index<2>{{plane.nx + 1, plane.nz}});
+    k.z = Field(Index<2>{{plane.nx, plane.nz + 1}});
     for (std::size_t f = 0; f < k.x.size(); ++f) k.x[f] = 1 + 0.5 * std::sin(static_cast<real>(f));
     for (std::size_t f = 0; D == 3 && f < k.z.size(); ++f) k.z[f] = 1 + 0.5 * std::cos(static_cast<real>(f));
     for (const bool periodic : {false, true})
@@ -154,7 +154,7 @@ TEST("far ahead of a wave the surface is level, and no number there is too small
     Sweep sweep(plane, false, false);
     Stiffness k;
     k.uniform = true, k.along_x = 1, k.along_z = 0;
-    Field s(plane.count(), 0.0), w(plane.count(), 0.0), s0, w0;
+    Field s(plane.extent()), w(plane.extent()), s0, w0;
     s[0] = 1;
     s0 = s, w0 = w;
     for (int n = 0; n < 900; ++n) {
