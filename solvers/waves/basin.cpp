@@ -9,7 +9,7 @@ namespace weir::waves {
 /// Cosine and sine series of values at the middles of cells (DCT-II there; DCT-III and DST-III back), one plan for each axis that may
 /// carry sines: 0 none, 1 x, 2 z.
 struct Basin::Plans {
-    Values values;
+    std::vector<real> values;
     fftw_plan forward = nullptr;
     std::array<fftw_plan, 3> back{};
     Plans(int nx, int nz) : values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz)) {
@@ -26,7 +26,7 @@ struct Basin::Plans {
     }
 };
 
-Basin::Basin(const Restoring& by, real depth, const Box& box, const Values& heights)
+Basin::Basin(const Restoring& by, real depth, const Box& box, const std::vector<real>& heights)
     : nx_(box.nx()),
       nz_(box.nz()),
       x0_(box.origin[0]),

@@ -11,7 +11,7 @@ namespace weir::waves {
 class Basin final : public Model {
 public:
     /// `heights`: of the surface at t = 0 over the mean level, at the sheet's points.
-    Basin(const Restoring& by, real depth, const Box& box, const Values& heights);
+    Basin(const Restoring& by, real depth, const Box& box, const std::vector<real>& heights);
     ~Basin() override;
     void set_time(real t) override;
     Motion motion(real x, real z) const override { return {.moved = {{0, height(x, z), 0}}, .velocity = velocity({{x, 0, z}})}; }
@@ -32,8 +32,8 @@ private:
 
     int nx_, nz_;
     real x0_, z0_, length_, width_, depth_, t_ = 0;
-    Values mode_, omega_;  // amplitudes at t = 0 [m]
-    Values now_, rate_;    // amplitudes, and their rates [m/s]
+    std::vector<real> mode_, omega_;  // amplitudes at t = 0 [m]
+    std::vector<real> now_, rate_;    // amplitudes, and their rates [m/s]
     std::unique_ptr<Plans> plans_;
 };
 

@@ -28,14 +28,18 @@ Buffer buffer(std::size_t count) {
 
 /// FFTW_ESTIMATE: measured plans would differ from run to run, and so would the last bits of the answer.
 struct Synthesis::Plans {
-    std::size_t column_length, row_length;
+    PlaneRange held;  // of the field's rows
+    std::size_t column_length, row_length, column_count, row_count;
     Buffer columns, rows;
     fftw_plan column = nullptr, row = nullptr;
-    explicit Plans(const HalfPlane& p)
-        : column_length(padded(p.nz)),
+    Plans(const HalfPlane& p, const PlaneRange& of_rows)
+        : held(of_rows),
+          column_length(padded(p.nz)),
           row_length(padded(p.columns())),
-          columns(buffer(column_length * static_cast<std::size_t>(p.columns()))),
-          rows(buffer(row_length * static_cast<std::size_t>(p.nz))) {
+          column_count(static_cast<std::size_t>(std::max(1, p.held.end - p.held.begin))),
+          row_count(static_cast<std::size_t>(held.end - held.begin)),
+          columns(buffer(column_length * column_count)),
+          rows(buffer(row_length * row_count)) {
         fftw_complex* one = as_fftw(columns.get());
         if (p.nz > 1) column = fftw_plan_dft_1d(p.nz, one, one, FFTW_BACKWARD, FFTW_ESTIMATE);
         row = fftw_plan_dft_c2r_1d(p.nx, as_fftw(rows.get()), reinterpret_cast<real*>(rows.get()), FFTW_ESTIMATE);
@@ -46,11 +50,31 @@ struct Synthesis::Plans {
     }
 };
 
+HalfPlane Synthesis::held_plane(int nx, int nz) {
+    HalfPlane plane{nx, nz};
+    if (!over_ranks() || detail::own_share.kept == 0 || nz == 1) return plane;
+    const Cut cut = cut_of_columns(plane, slabs().ranks());
+    plane.held = {cut.begin(slabs().rank()), cut.end(slabs().rank(), plane.columns())};
+    return plane;
+}
+
 Synthesis::Synthesis(const HalfPlane& plane)
-    : plane_(plane), by_column_(cut_of_columns(plane, slabs().ranks())), plans_(std::make_unique<Plans>(plane)) {}
+    : plane_(plane),
+      by_column_(cut_of_columns(plane, slabs().ranks())),
+      plans_(std::make_unique<Plans>(plane, plane.whole() ? PlaneRange{0, plane.nz} : own_rows())) {}
 Synthesis::~Synthesis() = default;
 
-Complex* Synthesis::column_at(int m) const { return plans_->columns.get() + static_cast<std::size_t>(m) * plans_->column_length; }
+Complex* Synthesis::column_at(int m) const {
+    return plans_->columns.get() + static_cast<std::size_t>(m - plane_.held.begin) * plans_->column_length;
+}
+
+/// Of column m the values of this rank's rows: its own columns are here, those of others have come in blocks, in their order.
+const Complex* Synthesis::own_rows_of(int m) const {
+    const PlaneRange rows = own_rows(), columns = own_columns();
+    if (m >= columns.begin && m < columns.end) return column_at(m) + rows.begin;
+    const int before = m < columns.begin ? m : m - (columns.end - columns.begin);
+    return given_.data() + static_cast<std::size_t>(before) * static_cast<std::size_t>(rows.end - rows.begin);
+}
 
 void Synthesis::transform_column(int m) {
     if (plans_->column) fftw_execute_dft(plans_->column, as_fftw(column_at(m)), as_fftw(column_at(m)));
@@ -61,49 +85,40 @@ void Synthesis::transpose() {
     const Cut& by_row = *detail::own_share.cut;
     const int rank = slabs().rank(), ranks = by_row.ranks();
     const auto rows_of = [&](int r) { return PlaneRange{by_row.begin(r), by_row.end(r, plane_.nz)}; };
-    const PlaneRange columns = columns_of(rank), rows = rows_of(rank);
+    const PlaneRange columns = columns_of(rank), rows = own_rows();
     const auto count = [](const PlaneRange& a, const PlaneRange& b) {
         return static_cast<std::size_t>(a.end - a.begin) * static_cast<std::size_t>(b.end - b.begin);
     };
-    // f(m, place of its first value) for a block that begins at `first`
-    const auto for_block = [](const PlaneRange& of_columns, const PlaneRange& of_rows, std::size_t first, const auto& f) {
-        const auto each = static_cast<std::size_t>(of_rows.end - of_rows.begin);
-        parallel_for(of_columns.begin, of_columns.end,
-                     [&](int m) { f(m, first + each * static_cast<std::size_t>(m - of_columns.begin), each); });
-    };
-    sent_.resize(count(columns, {0, plane_.nz}));
-    given_.resize(count({0, plane_.columns()}, rows));
+    sent_.resize(count(columns, {0, plane_.nz}) - count(columns, rows));
+    given_.resize(count({0, plane_.columns()}, rows) - count(columns, rows));
     std::vector<Parcel> parcels;
     std::size_t out = 0, in = 0;
     for (int peer = 0; peer < ranks; ++peer) {
         if (peer == rank) continue;
         const PlaneRange theirs = rows_of(peer);
-        for_block(columns, theirs, out,
-                  [&](int m, std::size_t at, std::size_t each) { std::copy_n(column_at(m) + theirs.begin, each, sent_.data() + at); });
+        const auto each = static_cast<std::size_t>(theirs.end - theirs.begin);
+        parallel_for(columns.begin, columns.end, [&](int m) {
+            std::copy_n(column_at(m) + theirs.begin, each, sent_.data() + out + each * static_cast<std::size_t>(m - columns.begin));
+        });
         const std::size_t sends = count(columns, theirs), gets = count(columns_of(peer), rows);
         parcels.push_back({peer, sent_.data() + out, sends * sizeof(Complex), given_.data() + in, gets * sizeof(Complex)});
         out += sends, in += gets;
     }
     slabs().trade(parcels);
-    in = 0;
-    for (const Parcel& parcel : parcels) {
-        for_block(columns_of(parcel.peer), rows, in,
-                  [&](int m, std::size_t at, std::size_t each) { std::copy_n(given_.data() + at, each, column_at(m) + rows.begin); });
-        in += parcel.received_bytes / sizeof(Complex);
-    }
 }
 
 void Synthesis::rows(real* out, std::size_t stride) {
-    const PlaneRange own =
-        transposes() ? PlaneRange{detail::own_share.lower(0), detail::own_share.upper(plane_.nz)} : PlaneRange{0, plane_.nz};
+    const PlaneRange own = own_rows();
     const int blocks = (own.end - own.begin + block - 1) / block, columns = plane_.columns();
     const auto nx = static_cast<std::size_t>(plane_.nx);
     parallel_for(0, blocks, [&](int b) {
         const int first = own.begin + b * block, last = std::min(own.end, first + block);
-        const auto row_at = [&](int n) { return plans_->rows.get() + static_cast<std::size_t>(n) * plans_->row_length; };
+        const auto row_at = [&](int n) {
+            return plans_->rows.get() + static_cast<std::size_t>(n - plans_->held.begin) * plans_->row_length;
+        };
         for (int m = 0; m < columns; ++m) {
-            const Complex* from = column_at(m);
-            for (int n = first; n < last; ++n) row_at(n)[m] = from[n];
+            const Complex* from = own_rows_of(m);
+            for (int n = first; n < last; ++n) row_at(n)[m] = from[n - own.begin];
         }
         for (int n = first; n < last; ++n) {
             real* values = reinterpret_cast<real*>(row_at(n));
@@ -114,8 +129,7 @@ void Synthesis::rows(real* out, std::size_t stride) {
 }
 
 std::size_t Synthesis::bytes() const {
-    return (plans_->column_length * static_cast<std::size_t>(plane_.columns()) + plans_->row_length * static_cast<std::size_t>(plane_.nz)) *
-               sizeof(Complex) +
+    return (plans_->column_length * plans_->column_count + plans_->row_length * plans_->row_count) * sizeof(Complex) +
            (sent_.capacity() + given_.capacity()) * sizeof(Complex);
 }
 

@@ -15,12 +15,16 @@ namespace weir::waves {
 
 using Complex = std::complex<real>;
 
-/// The half plane m = 0 .. nx/2, n = 0 .. nz - 1 that is stored; n fastest.
+/// The half plane m = 0 .. nx/2, n = 0 .. nz - 1, of which some columns are stored here; n fastest.
 struct HalfPlane {
     int nx = 1, nz = 1;
+    PlaneRange held = {0, nx / 2 + 1};
     int columns() const { return nx / 2 + 1; }
-    std::size_t size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(nz); }
-    std::size_t at(int m, int n) const { return static_cast<std::size_t>(m) * static_cast<std::size_t>(nz) + static_cast<std::size_t>(n); }
+    bool whole() const { return held == PlaneRange{0, columns()}; }
+    std::size_t size() const { return static_cast<std::size_t>(held.end - held.begin) * static_cast<std::size_t>(nz); }
+    std::size_t at(int m, int n) const {
+        return static_cast<std::size_t>(m - held.begin) * static_cast<std::size_t>(nz) + static_cast<std::size_t>(n);
+    }
     /// n as a wavenumber: -nz/2 .. nz/2.
     int signed_n(int n) const { return 2 * n > nz ? n - nz : n; }
     /// Waves of which a grid sees only one of two phases, sine or cosine.
@@ -33,6 +37,8 @@ class Synthesis {
 public:
     /// Of how many of the half plane's columns each of so many ranks takes care.
     static Cut cut_of_columns(const HalfPlane& plane, int ranks) { return cut_of(plane.columns(), ranks); }
+    /// What this rank stores: all of it, or, where ranks hold their own rows alone, those columns.
+    static HalfPlane held_plane(int nx, int nz);
     explicit Synthesis(const HalfPlane& plane);
     ~Synthesis();
     Synthesis(const Synthesis&) = delete;
@@ -63,12 +69,16 @@ private:
     }
     void transpose();
     Complex* column_at(int m) const;
+    const Complex* own_rows_of(int m) const;
+    PlaneRange own_rows() const {
+        return transposes() ? PlaneRange{detail::own_share.lower(0), detail::own_share.upper(plane_.nz)} : PlaneRange{0, plane_.nz};
+    }
     void transform_column(int m);
     void rows(real* out, std::size_t stride);
 
     HalfPlane plane_;
     Cut by_column_;                      // over ranks: whose columns
-    std::vector<Complex> sent_, given_;  // of a transposition, a block for each rank
+    std::vector<Complex> sent_, given_;  // of a transposition, a block for each other rank
     std::unique_ptr<Plans> plans_;
 };
 

@@ -235,8 +235,8 @@ scene::SolverKind kind() {
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
             over_ranks,
             scene::Shared::by_planes,
-            "the transforms of a basin, in 2D the surface's one row, and the waves' amplitudes and frequencies at the start",
-            {},
+            "the transforms of a basin, and in 2D the surface's one row",
+            holds_own_planes,
             traffic_of_step,
             [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }};
 }

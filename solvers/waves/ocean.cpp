@@ -46,7 +46,7 @@ const Rule& rule_for(int distance) {
 
 Ocean::Ocean(const Sea& sea, const Box& box)
     : sea_(sea),
-      plane_{box.nx(), box.nz()},
+      plane_(Synthesis::held_plane(box.nx(), box.nz())),
       dkx_(2 * pi / (box.nx() * box.spacing[0])),
       dkz_(box.dim == 3 ? 2 * pi / (box.nz() * box.spacing[2]) : 0),
       first_x_(box.x(0)),
@@ -59,8 +59,8 @@ Ocean::Ocean(const Sea& sea, const Box& box)
       synthesis_(plane_) {
     if (sea.spectrum.depth < infinity) along_.assign(plane_.size(), 0);
     if (sideways()) {
-        xx_.assign(box.points(), 0);
-        if (box.dim == 3) zz_.assign(box.points(), 0), xz_.assign(box.points(), 0);
+        xx_ = Values(box.of_sheet());
+        if (box.dim == 3) zz_ = Values(box.of_sheet()), xz_ = Values(box.of_sheet());
     }
     set_amplitudes();
     set_time(0);
@@ -104,7 +104,7 @@ void Ocean::set_amplitudes() {
         const real phase = 2 * pi * uniform(sea_.seed, m, n, 0) + w.kx * first_x_ + w.kz * first_z_;
         return 0.5 * amplitude * std::exp(i * phase);
     };
-    parallel_for(0, plane_.columns(), [&](int m) {
+    parallel_for(plane_.held.begin, plane_.held.end, [&](int m) {
         for (int n = 0; n < plane_.nz; ++n) {
             const std::size_t at = plane_.at(m, n);
             const Wave w = wave(m, n);
@@ -115,7 +115,10 @@ void Ocean::set_amplitudes() {
             if (!along_.empty()) along_[at] = reach(w.k, 0, sea_.spectrum.depth).along;
         }
     });
-    const real variance = 2 * ordered_sum(plane_.columns(), [&](int m) {  // a^2/2 = 2 |a/2|^2
+    const Cut cut = plane_.whole() ? Cut{} : Synthesis::cut_of_columns(plane_, slabs().ranks());
+    const AllPlanes no_rows;
+    const OwnPlanes mine(cut);
+    const real variance = 2 * plane_sum(plane_.columns(), [&](int m) {  // a^2/2 = 2 |a/2|^2
                               real sum = 0;
                               for (int n = 0; n < plane_.nz; ++n)
                                   // the column m = 0 holds k and -k both, every other column only one of the two
@@ -205,23 +208,36 @@ void Ocean::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
     }
 }
 
-/// f(wave, place, e^(i k . x) doubled where the half plane holds only one of k and -k): the real part of the sum is the field at (x, z).
-template <class F>
-void Ocean::each_wave(real x, real z, const F& f) const {
-    turn_all();
+/// add(sum, wave, place, e^(i k . x) doubled where the half plane holds only one of k and -k) of each wave, in their order: the real part
+/// of the sum is the field at (x, z). Ranks that hold their own waves alone are asked together, and each adds to the sum of those before
+/// it.
+template <class Sum, class F>
+Sum Ocean::sum_at(real x, real z, const F& add) const {
     std::vector<Complex> along_z(static_cast<std::size_t>(plane_.nz));
     for (int n = 0; n < plane_.nz; ++n) along_z[static_cast<std::size_t>(n)] = std::exp(i * (plane_.signed_n(n) * dkz_ * (z - first_z_)));
-    for (int m = 0; m < plane_.columns(); ++m) {
-        const Complex along_x = (m == 0 ? 1.0 : 2.0) * std::exp(i * (m * dkx_ * (x - first_x_)));
-        for (int n = 0; n < plane_.nz; ++n)
-            if (const Wave w = wave(m, n); w.k > 0) f(w, plane_.at(m, n), along_x * along_z[static_cast<std::size_t>(n)]);
+    Sum sum{};
+    const auto add_held = [&] {
+        for (int m = plane_.held.begin; m < plane_.held.end; ++m) {
+            const Complex along_x = (m == 0 ? 1.0 : 2.0) * std::exp(i * (m * dkx_ * (x - first_x_)));
+            for (int n = 0; n < plane_.nz; ++n)
+                if (const Wave w = wave(m, n); w.k > 0) add(sum, w, plane_.at(m, n), along_x * along_z[static_cast<std::size_t>(n)]);
+        }
+    };
+    if (plane_.whole()) {
+        turn_all();
+        add_held();
+        return sum;
     }
+    for (int rank = 0; rank < slabs().ranks(); ++rank) {
+        if (rank == slabs().rank()) add_held();
+        sum = of_ranks(sum)[static_cast<std::size_t>(rank)];
+    }
+    return sum;
 }
 
 Motion Ocean::motion(real x, real z) const {
-    Motion sum;
     const real c = sea_.choppiness;
-    each_wave(x, z, [&](const Wave& w, std::size_t at, const Complex& turn) {
+    return sum_at<Motion>(x, z, [&](Motion& sum, const Wave& w, std::size_t at, const Complex& turn) {
         const Complex h = height_[at] * turn, v = moving_[at] * turn;
         const real ex = w.kx / w.k, ez = w.kz / w.k, sideways = c * coth(at);
         sum.moved += Vec<3>{{-sideways * ex * h.imag(), h.real(), -sideways * ez * h.imag()}};
@@ -231,23 +247,20 @@ Motion Ocean::motion(real x, real z) const {
         sum.zz += stretch * ez * ez;
         sum.xz += stretch * ex * ez;
     });
-    return sum;
 }
 
 Vec<3> Ocean::velocity(const Vec<3>& at) const {
-    Vec<3> sum{};
-    each_wave(at[0], at[2], [&](const Wave& w, std::size_t a, const Complex& turn) {
+    return sum_at<Vec<3>>(at[0], at[2], [&](Vec<3>& sum, const Wave& w, std::size_t a, const Complex& turn) {
         const Complex v = omega_[a] * moving_[a] * turn;
         const Reach r = reach(w.k, at[1], sea_.spectrum.depth);
         sum += Vec<3>{{r.along * w.kx / w.k * v.real(), r.up * v.imag(), r.along * w.kz / w.k * v.real()}};
     });
-    return sum;
 }
 
 std::size_t Ocean::bytes() const {
     const std::size_t waves = forth_.capacity() + back_.capacity() + height_.capacity() + moving_.capacity();
-    const std::size_t values = omega_.capacity() + along_.capacity() + xx_.capacity() + zz_.capacity() + xz_.capacity();
-    return waves * sizeof(Complex) + values * sizeof(real) + synthesis_.bytes();
+    return waves * sizeof(Complex) + (omega_.capacity() + along_.capacity()) * sizeof(real) + xx_.bytes() + zz_.bytes() + xz_.bytes() +
+           synthesis_.bytes();
 }
 
 }  // namespace weir::waves

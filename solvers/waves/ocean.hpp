@@ -46,8 +46,8 @@ private:
     real coth(std::size_t at) const { return along_.empty() ? 1 : along_[at]; }
     template <class F>
     void sum_of(const F& factor, const std::vector<Complex>& waves, real* out, std::size_t stride);
-    template <class F>
-    void each_wave(real x, real z, const F& f) const;
+    template <class Sum, class F>
+    Sum sum_at(real x, real z, const F& add) const;
 
     Sea sea_;
     HalfPlane plane_;
@@ -55,8 +55,9 @@ private:
     std::vector<Complex> forth_, back_;             // of the waves k and -k at t = 0
     mutable std::vector<Complex> height_, moving_;  // now: their sum, and their difference, from which velocities are made
     real t_ = 0;
-    mutable PlaneRange turned_{0, 0};  // the columns of which that is known: over ranks this rank's, until somebody asks for a point
-    Values omega_, along_;             // along_: coth(k d), where the sea has a bed
+    mutable PlaneRange turned_{0,
+                               0};  // the columns of which that is known: over ranks its own, until one that holds all is asked for a point
+    std::vector<real> omega_, along_;  // along_: coth(k d), where the sea has a bed
     Values xx_, zz_, xz_;              // of the sideways displacement; scratch
     Synthesis synthesis_;
 };

@@ -212,13 +212,13 @@ std::unique_ptr<Model> Reader::stokes() const {
 
 /// The top of the liquid over each of the sheet's points; it must be one piece from the floor up.
 template <int D>
-Values tops_of_liquid(const scene::Scene& scene, const Box& box) {
+std::vector<real> tops_of_liquid(const scene::Scene& scene, const Box& box) {
     const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     if (shapes.empty())
         scene.refuse("waves.model", "a basin needs the liquid whose surface is let go", "liquid = [ { shape = \"wave\", ... } ]");
     const real floor = box.origin[1], height = box.ny() * box.spacing[1];
     const int layers = std::max(box.ny(), 256);
-    Values tops;
+    std::vector<real> tops;
     for (int k = 0; k < box.nz(); ++k)
         for (int i = 0; i < box.nx(); ++i) {
             const auto wet = [&](real y) {
@@ -251,7 +251,7 @@ std::unique_ptr<Model> Reader::basin() const {
     needs_gravity();
     for (const char* key : {"level", "depth"})
         if (table.has(key)) refuse(key, fmt::format("a basin's {} is that of its liquid", key));
-    Values tops = tops_of_liquid<D>(scene, box);
+    std::vector<real> tops = tops_of_liquid<D>(scene, box);
     real mean = 0;
     for (const real top : tops) mean += top / static_cast<real>(tops.size());
     if (!(mean > box.origin[1])) scene.refuse("liquid", "there is no liquid in the basin");
@@ -279,7 +279,7 @@ Restoring restoring(const scene::Scene& scene) {
 
 real mean_level(const scene::Scene& scene, const Box& box) {
     if (scene.text("waves.model") == "basin") {
-        const Values tops = box.dim == 2 ? tops_of_liquid<2>(scene, box) : tops_of_liquid<3>(scene, box);
+        const std::vector<real> tops = box.dim == 2 ? tops_of_liquid<2>(scene, box) : tops_of_liquid<3>(scene, box);
         real mean = 0;
         for (const real top : tops) mean += top / static_cast<real>(tops.size());
         return mean;

@@ -28,20 +28,20 @@ PlaneRange own_layers(const Box& box) {
     return {detail::own_share.lower(0), detail::own_share.upper(box.ny())};
 }
 
-Sheet::Sheet(const Box& box, const Wanted& wanted) : height(box.points(), 0) {
+Sheet::Sheet(const Box& box, const Wanted& wanted) : height(box.of_sheet()) {
     if (wanted.sideways) {
-        moved_x.assign(box.points(), 0);
-        jacobian.assign(box.points(), 1);
-        if (box.dim == 3) moved_z.assign(box.points(), 0);
+        moved_x = Values(box.of_sheet());
+        jacobian = Values(box.of_sheet(), 1);
+        if (box.dim == 3) moved_z = Values(box.of_sheet());
     }
     if (wanted.velocity)
-        for (int a = 0; a < box.dim; ++a) velocity[static_cast<std::size_t>(a)].assign(box.points(), 0);
+        for (int a = 0; a < box.dim; ++a) velocity[static_cast<std::size_t>(a)] = Values(box.of_sheet());
 }
 
 std::size_t Sheet::bytes() const {
-    std::size_t values = height.capacity() + moved_x.capacity() + moved_z.capacity() + jacobian.capacity();
-    for (const Values& v : velocity) values += v.capacity();
-    return values * sizeof(real);
+    std::size_t total = height.bytes() + moved_x.bytes() + moved_z.bytes() + jacobian.bytes();
+    for (const Values& v : velocity) total += v.bytes();
+    return total;
 }
 
 }  // namespace weir::waves

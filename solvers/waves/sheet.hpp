@@ -1,7 +1,7 @@
 // The surface as a sheet of points over the cells of the horizontal axes, x fastest, and what a model says of one of its points. In a scene
 // of two dimensions there is one row of points.
 #pragma once
-#include "core/grid.hpp"
+#include "core/held_planes.hpp"
 #include "core/types.hpp"
 #include "scene/scene.hpp"
 
@@ -31,6 +31,9 @@ struct Box {
     int ny() const { return cells[1]; }
     int nz() const { return cells[2]; }
     std::size_t points() const { return static_cast<std::size_t>(nx()) * static_cast<std::size_t>(nz()); }
+    /// Of a field on the sheet and of one on the cells: entries of a plane, and planes along the axis that ranks cut.
+    Index<2> of_sheet() const { return {{nx(), nz()}}; }
+    Index<2> of_cells() const { return dim == 3 ? Index<2>{{nx() * ny(), nz()}} : Index<2>{{nx(), ny()}}; }
     real x(int i) const { return origin[0] + (i + 0.5) * spacing[0]; }
     real y(int j) const { return origin[1] + (j + 0.5) * spacing[1]; }
     real z(int k) const { return dim == 3 ? origin[2] + (k + 0.5) * spacing[2] : 0; }
@@ -50,7 +53,8 @@ void for_own_rows(const Box& box, F&& f) {
     parallel_for(rows.begin, rows.end, f);
 }
 
-using Values = std::vector<real>;
+/// Over ranks that hold their own planes alone, those (core/plane_store.hpp): rows of the sheet in 3D, layers of cells in 2D.
+using Values = Grid<real, 2>;
 
 /// What of the surface is wanted; what is not has no values.
 struct Wanted {

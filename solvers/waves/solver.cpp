@@ -1,5 +1,6 @@
 #include "waves/solver.hpp"
 
+#include "scene/whole_fields.hpp"
 #include "waves/read.hpp"
 
 #include <fmt/format.h>
@@ -9,8 +10,23 @@
 
 namespace weir::waves {
 
+bool holds_own_planes(const scene::Scene& scene, const Cut& cut) {
+    if (cut.empty() || slabs().holds_whole() || (scene.dim() == 3 && scene.text("waves.model") == "basin")) return false;
+    return !scene::looks_at_whole_fields(scene, {"point", "line", "integral", "gauge"});
+}
+
+namespace {
+
+HeldPlanes held_planes(const scene::Scene& scene, const Box& box) {
+    const Cut cut = cut_of_box(box, slabs().ranks());
+    return HeldPlanes(cut, holds_own_planes(scene, cut), 1, false);
+}
+
+}  // namespace
+
 Waves::Waves(const scene::Scene& scene)
     : box_(scene),
+      held_(held_planes(scene, box_)),
       model_(make_model(scene, box_)),
       level_(mean_level(scene, box_)),
       density_(scene.number("fluid.density")),
@@ -19,24 +35,24 @@ Waves::Waves(const scene::Scene& scene)
       with_velocity_(scene.flag("waves.velocity")),
       gravity_(scene.effect("gravity") != nullptr),
       tension_(scene.effect("surface_tension") != nullptr),
-      sheet_(box_, {.velocity = with_velocity_, .sideways = model_->sideways()}),
-      cut_(cut_of_box(box_, slabs().ranks())) {
-    for (int a = 0; a < box_.dim; ++a) position_[static_cast<std::size_t>(a)].assign(box_.points(), 0);
+      sheet_(box_, {.velocity = with_velocity_, .sideways = model_->sideways()}) {
+    for (int a = 0; a < box_.dim; ++a) position_[static_cast<std::size_t>(a)] = Values(box_.of_sheet());
     if (const scene::Table* foam = scene.effect("foam")) {
         if (!model_->sideways())
             scene.refuse("effects.foam", "these waves have no foam: their points move up and down only, and such a surface does not fold",
                          "gerstner waves, and a spectrum with choppiness, move sideways");
         foam_below_ = foam->number("below");
-        foam_.assign(box_.points(), 0);
+        foam_ = Values(box_.of_sheet());
     }
     if (shows_water()) {
-        const std::size_t cells = box_.points() * static_cast<std::size_t>(box_.ny());
-        level_set_.assign(cells, 0);
+        level_set_ = Values(box_.of_cells());
         if (with_velocity_)
-            for (int a = 0; a < box_.dim; ++a) water_[static_cast<std::size_t>(a)].assign(cells, 0);
+            for (int a = 0; a < box_.dim; ++a) water_[static_cast<std::size_t>(a)] = Values(box_.of_cells());
     }
     compute();
     passes_.reset();
+    brought_ = !held_.alone();
+    held_.made();
 }
 
 StepReport Waves::step(real dt) {
@@ -45,8 +61,8 @@ StepReport Waves::step(real dt) {
 }
 
 void Waves::set_time(real t) {
-    const OwnPlanes mine(cut_);
-    whole_ = cut_.empty();
+    const OwnPlanes mine = held_.own();
+    brought_ = held_.cut().empty();
     time_ = t;
     compute();
 }
@@ -63,28 +79,43 @@ void Waves::compute() {
     if (foam_below_) make_foam();
 }
 
-/// f(values, of a plane so many) of every field of which over ranks each has its planes: in 2D the sheet is everybody's.
-template <class F>
-void Waves::for_each_shared(const F& f) {
-    const auto nx = static_cast<std::size_t>(box_.nx());
-    if (box_.dim == 3) {
-        for (Values* of_sheet : {&sheet_.height, &sheet_.moved_x, &sheet_.moved_z, &sheet_.jacobian, &foam_}) f(*of_sheet, nx);
-        for (auto* vectors : {&position_, &sheet_.velocity})
-            for (Values& v : *vectors) f(v, nx);
-    }
-    const std::size_t plane = box_.dim == 3 ? nx * static_cast<std::size_t>(box_.ny()) : nx;
-    f(level_set_, plane);
-    for (Values& v : water_) f(v, plane);
+/// Every field of which over ranks each has its planes: in 2D the sheet is everybody's.
+std::vector<Values*> Waves::shared() {
+    std::vector<Values*> list;
+    const auto add = [&](Values& values) {
+        if (!values.empty()) list.push_back(&values);
+    };
+    add(level_set_);
+    for (Values& v : water_) add(v);
+    if (box_.dim == 2) return list;
+    for (Values* of_sheet : {&sheet_.height, &sheet_.moved_x, &sheet_.moved_z, &sheet_.jacobian, &foam_}) add(*of_sheet);
+    for (auto* vectors : {&position_, &sheet_.velocity})
+        for (Values& v : *vectors) add(v);
+    return list;
 }
 
-/// Brings what other ranks own to whoever looks; all ranks look at the same time.
-void Waves::make_whole() const {
-    if (whole_) return;
+/// What whoever looks may read, from whoever owns it: the planes beside the cuts where each rank holds no more, else all. All ranks look at
+/// the same time.
+void Waves::bring() const {
+    if (brought_) return;
+    const OwnPlanes mine = held_.own();
     auto& own = const_cast<Waves&>(*this);  // what is written is what was not here: the state stays the same
-    own.for_each_shared([&](Values& values, std::size_t plane) {
-        if (!values.empty()) slabs().gather(cut_, {values.data(), sizeof(real) * plane, cut_.planes()});
-    });
-    whole_ = true;
+    if (held_.alone()) {
+        std::vector<Planes> all;
+        for (Values* values : own.shared()) all.push_back(planes_of(*values));
+        slabs().refresh(held_.cut(), all, 1, false);
+    } else {
+        for (Values* values : own.shared()) gather(*values);
+    }
+    brought_ = true;
+}
+
+/// f of every row of the sheet, added in their order.
+template <class F>
+real Waves::sum_of_rows(F&& f) const {
+    if (box_.dim == 2) return ordered_sum(1, f);
+    const OwnPlanes mine = held_.own();
+    return plane_sum(box_.nz(), f);
 }
 
 void Waves::place_surface() {
@@ -133,8 +164,9 @@ void Waves::make_foam() {
 }
 
 FieldSet Waves::fields() const {
-    make_whole();
+    bring();
     FieldSet set;
+    if (held_.alone()) set.cut = &held_.cut();
     GridView& grid = set.grid;
     grid.dim = box_.dim;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -144,28 +176,50 @@ FieldSet Waves::fields() const {
     }
     const auto dims = static_cast<std::size_t>(box_.dim);
     const auto vectors = [&](const std::array<Values, 3>& values) {
-        return std::vector<std::span<const real>>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(dims));
+        std::vector<std::span<const real>> list;
+        for (std::size_t a = 0; a < dims; ++a) list.push_back(values[a].values());
+        return list;
     };
     const auto add = [&](const char* name, const char* unit, const std::string& of, std::vector<std::span<const real>> data) {
         set.fields.push_back({name, unit, of.empty() ? Where::cell : Where::particle, of, std::move(data)});
     };
     if (shows_water()) {
-        add(level_set_name, "m", "", {level_set_});
+        add(level_set_name, "m", "", {level_set_.values()});
         if (with_velocity_) add("velocity", "m/s", "", vectors(water_));
     }
     const std::string surface = surface_set_name;
     for (const std::string& of : {std::string(), surface}) {
         if (of.empty() && shows_water()) continue;
         if (of.empty())
-            add(surface_height_name, "m", of, {position_[1]});
+            add(surface_height_name, "m", of, {position_[1].values()});
         else
             add("position", "m", of, vectors(position_));
         if (with_velocity_) add("velocity", "m/s", of, vectors(sheet_.velocity));
-        if (!sheet_.jacobian.empty()) add("jacobian", "", of, {sheet_.jacobian});
-        if (foam_below_) add("foam", "", of, {foam_});
+        if (!sheet_.jacobian.empty()) add("jacobian", "", of, {sheet_.jacobian.values()});
+        if (foam_below_) add("foam", "", of, {foam_.values()});
     }
     set.sheets.push_back({surface, {box_.nx(), box_.nz()}});
     return set;
+}
+
+/// Points of the surface always: a frame shows them.
+std::unique_ptr<Solver::Brought> Waves::bring_to_first(const std::vector<std::string>& names) const {
+    if (!held_.alone()) return nullptr;
+    bring();
+    auto& own = const_cast<Waves&>(*this);  // as above
+    std::vector<Values*> shown;
+    const auto add = [&](const char* name, std::span<Values> list) {
+        const bool named = names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+        for (Values& values : list)
+            if (values.store().windowed() && named) shown.push_back(&values);
+    };
+    add(level_set_name, {&own.level_set_, 1});
+    for (auto* velocity : {&own.water_, &own.sheet_.velocity}) add("velocity", *velocity);
+    add("jacobian", {&own.sheet_.jacobian, 1});
+    add("foam", {&own.foam_, 1});
+    for (Values& values : own.position_)
+        if (values.store().windowed()) shown.push_back(&values);
+    return std::make_unique<BroughtPlanes<real, 2>>(held_.cut(), std::move(shown));
 }
 
 bool Waves::answer(std::string_view field, const Vec<3>& at, std::span<real> values) const {
@@ -187,22 +241,21 @@ bool Waves::answer(std::string_view field, const Vec<3>& at, std::span<real> val
 real Waves::least_jacobian() const {
     if (sheet_.jacobian.empty()) return 1;
     const auto least_of_row = [&](int k) {
-        const auto row = sheet_.jacobian.begin() + static_cast<std::ptrdiff_t>(k) * box_.nx();
+        const real* row = sheet_.jacobian.data() + static_cast<std::ptrdiff_t>(k) * box_.nx();
         return -*std::min_element(row, row + box_.nx());
     };
     if (box_.dim == 2) return -least_of_row(0);
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine = held_.own();
     return -plane_max(box_.nz(), least_of_row);
 }
 
 /// The part of the sheet's patches that have any.
 real Waves::foam_cover() const {
-    return ordered_sum(box_.nz(),
-                       [&](int k) {
-                           const auto row = foam_.begin() + static_cast<std::ptrdiff_t>(k) * box_.nx();
-                           return static_cast<real>(std::count_if(row, row + box_.nx(), [](real f) { return f > 0; }));
-                       }) /
-           static_cast<real>(foam_.size());
+    const real covered = sum_of_rows([&](int k) {
+        const real* row = foam_.data() + static_cast<std::ptrdiff_t>(k) * box_.nx();
+        return static_cast<real>(std::count_if(row, row + box_.nx(), [](real f) { return f > 0; }));
+    });
+    return covered / static_cast<real>(foam_.size());
 }
 
 std::string Waves::concern() const {
@@ -217,10 +270,9 @@ std::string Waves::concern() const {
 
 /// Means over the area above which the surface stands: a point counts as much as its patch has been stretched.
 std::vector<Integral> Waves::integrals() const {
-    make_whole();
     const auto nx = static_cast<std::size_t>(box_.nx());
     const auto mean = [&](const auto& f) {
-        return ordered_sum(box_.nz(), [&](int k) {
+        return sum_of_rows([&](int k) {
             real sum = 0;
             for (std::size_t at = static_cast<std::size_t>(k) * nx, end = at + nx; at < end; ++at)
                 sum += f(sheet_.height[at]) * (sheet_.jacobian.empty() ? 1 : sheet_.jacobian[at]);
@@ -240,18 +292,17 @@ std::vector<Integral> Waves::integrals() const {
 }
 
 std::size_t Waves::bytes() const {
-    std::size_t values = foam_.capacity() + level_set_.capacity();
+    std::size_t total = foam_.bytes() + level_set_.bytes();
     for (const auto* vectors : {&position_, &water_})
-        for (const Values& v : *vectors) values += v.capacity();
-    return values * sizeof(real) + sheet_.bytes() + model_->bytes();
+        for (const Values& v : *vectors) total += v.bytes();
+    return total + sheet_.bytes() + model_->bytes();
 }
 
 std::vector<EffectPlan> Waves::effects() const {
     std::vector<EffectPlan> plans;
     if (gravity_) plans.push_back({.name = "gravity", .inside = "surface"});
     if (tension_) plans.push_back({.name = "surface_tension", .inside = "surface"});
-    if (foam_below_)
-        plans.push_back({.name = "foam", .pass = effect_pass("foam"), .bytes = foam_.capacity() * sizeof(real), .shown = {"foam"}});
+    if (foam_below_) plans.push_back({.name = "foam", .pass = effect_pass("foam"), .bytes = foam_.bytes(), .shown = {"foam"}});
     return plans;
 }
 

@@ -11,6 +11,10 @@
 
 namespace weir::waves {
 
+/// Over ranks: would each hold its own planes of a scene alone? Not where somebody looks at whole fields on all ranks, nor in a basin in
+/// 3D, whose modes every rank sums up.
+bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
+
 class Waves final : public Solver {
 public:
     explicit Waves(const scene::Scene& scene);
@@ -21,6 +25,8 @@ public:
     bool checks_itself() const override { return true; }
     std::string concern() const override;
     FieldSet fields() const override;
+    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
+    bool holds_own_planes() const override { return held_.alone(); }
     /// "position" is that of the particle that rests at the point.
     bool answer(std::string_view field, const Vec<3>& at, std::span<real> values) const override;
     std::vector<Integral> integrals() const override;
@@ -37,9 +43,10 @@ public:
 private:
     void set_time(real t);
     void compute();
-    void make_whole() const;
+    void bring() const;
+    std::vector<Values*> shared();
     template <class F>
-    void for_each_shared(const F& f);
+    real sum_of_rows(F&& f) const;
     void place_surface();
     void fill_water();
     void make_foam();
@@ -50,6 +57,7 @@ private:
     bool shows_water() const { return box_.ny() > 1; }
 
     Box box_;
+    HeldPlanes held_;  // cut by cut_of_box
     std::unique_ptr<Model> model_;
     real level_, density_, g_, end_, time_ = 0;
     bool with_velocity_, gravity_, tension_;
@@ -59,8 +67,7 @@ private:
     Values foam_;
     Values level_set_;             // of the water, where the grid shows it
     std::array<Values, 3> water_;  // its velocity
-    Cut cut_;                      // over ranks (cut_of_box)
-    mutable bool whole_ = true;    // whether what others own is here too
+    mutable bool brought_ = true;  // whether what whoever looks may read is here, and not this rank's planes alone
     Passes passes_;
 };
 

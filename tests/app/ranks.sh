@@ -189,16 +189,21 @@ heightfield_2d) # one row of columns: everybody moves it, objects on it too
 waves)
     compare sea "$every" "$sea"
     grep -q '"cut":\[0,16,44\]' sea-2-1/run.json || fail "run.json does not tell the ranks"
-    grep -q '"storage":"every rank holds whole grids"' sea-2-1/run.json || fail "run.json does not tell that grids are whole"
+    holds_own sea-2-1 sea-4-2
     grep -q '"every_rank_does":"the transforms of a basin' sea-2-1/run.json || fail "run.json does not tell what is not shared"
     compare trains "$every" "$trains"
     grep -q '"cut":\[0,8,22\]' trains-2-1/run.json || fail "run.json does not tell the ranks of layers"
+    holds_own trains-2-1 trains-4-2
     compare below "2 1,3 2,4 1" "$below"
+    holds_own below-4-1
+    compare watched "2 1,3 2" "$sea" --set 'probes=[{name="crest",kind="front",axis="y"}]' --set waves.choppiness=0
+    holds_whole watched-2-1
     compare stokes "2 2,3 1" "$below" --set 'waves={model="stokes",height=1.0,wavelength=40.0,heading=0.5}'
     compare sines "3 1" "$below" --set 'waves={model="sines",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
     compare gerstner "2 1,3 2" "$below" --set 'waves={model="gerstner",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
     compare basin "2 1,3 2" "$below" --set 'waves={model="basin"}' \
         --set 'liquid=[{shape="box",min=[0.0,-10.0,0.0],max=[80.0,0.0,40.0]},{shape="box",min=[0.0,-10.0,0.0],max=[50.0,-0.5,88.0]}]'
+    holds_whole basin-2-1
     # in 2D a sea's row and the water below it; and fewer layers than ranks, where every rank does all of it
     sed -e 's/dim = 3/dim = 2/' -e 's/\[20, 7, 22\], size = \[80.0, 14.0, 88.0\], origin = \[0.0, -10.0, 0.0\]/[40, 9], size = [160.0, 18.0], origin = [0.0, -14.0]/' \
         -e 's/-9.81, 0.0/-9.81/; s/-3.0, 60.0/-3.0/; s/heading = 0.4, //' "$below" >row.toml
@@ -429,6 +434,42 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
         alike $model $model-4
     done
     ;;
+storage_waves) # the same of a sea: rows of the sheet, and its waves by columns of wavenumbers; with water below it, layers of rows
+    cat >sea.toml <<-END
+	solver = "waves"
+	dim = 3
+	grid = { cells = [512, 1, 512], size = [512.0, 40.0, 512.0], origin = [0.0, -20.0, 0.0] }
+	time = { end = 0.3, dt = 0.1 }
+	fluid.density = 1025.0
+	waves = { model = "spectrum", spectrum = { kind = "pierson_moskowitz", wind = 8.0 }, heading = 0.4, depth = 60.0 }
+	effects.gravity.g = [0.0, -9.81, 0.0]
+	output = { every = 1.0, fields = ["velocity"] }
+	END
+    for sea in "choppy --set waves.choppiness=0.8" "deep --set grid.cells=[256,8,512]"; do
+        read -r name more <<<"$sea"
+        cells=$([ $name = choppy ] && echo 512 || echo $((256 * 8))) points=$([ $name = choppy ] && echo 512 || echo 256) # of a plane
+        ends 0 "$weir" run sea.toml $more --checkpoint-every 1000 --quiet --threads 1 --out $name
+        one=$(grep -o '"solver_bytes": [0-9]*' $name/run.json | cut -d' ' -f2)
+        for ranks in 2 4; do
+            ends 0 over $ranks "$weir" run sea.toml $more --checkpoint-every 1000 --quiet --threads 1 --out $name-$ranks
+            alike $name $name-$ranks
+            holds_own $name-$ranks
+            ends 0 over $ranks "$weir" run sea.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[64,1,64]
+            for rank in $(seq 0 $((ranks - 1))); do
+                # One row beyond either cut, and one. Half the waves with 5 complex and 2 real numbers each; of their columns, one more than of the
+                # rows, the last rank has one more than its share. What a transposition brings and takes: half the waves of this rank.
+                held=$(told $name-$ranks solver_bytes $rank) rows=$((512 / ranks))
+                waves=$(((points / 2 + 1) * 512))
+                at_most "$held" $((one * (rows + 3) / 512 + (5 * 16 + 2 * 8) * 512 + 2 * 16 * (waves / ranks + 512))) "$name, rank $rank of $ranks"
+                # As the system sees it: that, a page at both ends of less than 32 arrays; the first rank may keep the room of a frame: of cells and
+                # of points 3 numbers, of points their places and the vertices that are drawn of them, 5, and 3 copies.
+                more_held=$(($(told $name-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
+                frame=$([ "$rank" -eq 0 ] && echo $((4 * 8 * 512 * (3 * cells + 8 * points))) || echo 0)
+                at_most $more_held $((held + 32 * 2 * 4096 + frame)) "$name resident, rank $rank of $ranks"
+            done
+        done
+    done
+    ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
     ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 2 --out poisoned
@@ -449,7 +490,7 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
         alike liquid_3d liquid_3d_poisoned
     done
-    for case in "$shallow" "$columns"; do
+    for case in "$shallow" "$columns" "$sea" "$trains" "$below"; do
         rm -rf field field_poisoned
         ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field_poisoned
