@@ -208,17 +208,17 @@ std::unique_ptr<Solver::Brought> Waves::bring_to_first(const std::vector<std::st
     bring();
     auto& own = const_cast<Waves&>(*this);  // as above
     std::vector<Values*> shown;
-    const auto add = [&](const char* name, std::span<Values> list) {
-        const bool named = names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-        for (Values& values : list)
-            if (values.store().windowed() && named) shown.push_back(&values);
-    };
-    add(level_set_name, {&own.level_set_, 1});
-    for (auto* velocity : {&own.water_, &own.sheet_.velocity}) add("velocity", *velocity);
-    add("jacobian", {&own.sheet_.jacobian, 1});
-    add("foam", {&own.foam_, 1});
-    for (Values& values : own.position_)
+    const auto add = [&](Values& values) {
         if (values.store().windowed()) shown.push_back(&values);
+    };
+    const auto named = [&](const char* name) { return names.empty() || std::find(names.begin(), names.end(), name) != names.end(); };
+    for (Values& values : own.position_) add(values);
+    if (named(level_set_name)) add(own.level_set_);
+    for (auto* velocity : {&own.water_, &own.sheet_.velocity})
+        for (Values& values : *velocity)
+            if (named("velocity")) add(values);
+    if (named("jacobian")) add(own.sheet_.jacobian);
+    if (named("foam")) add(own.foam_);
     return std::make_unique<BroughtPlanes<real, 2>>(held_.cut(), std::move(shown));
 }
 
