@@ -55,8 +55,8 @@ private:
     std::vector<Complex> forth_, back_;             // of the waves k and -k at t = 0
     mutable std::vector<Complex> height_, moving_;  // now: their sum, and their difference, from which velocities are made
     real t_ = 0;
-    mutable PlaneRange turned_{0,
-                               0};  // the columns of which that is known: over ranks its own, until one that holds all is asked for a point
+    /// The columns of which that is known: over ranks this one's, until one that holds all is asked for a point.
+    mutable PlaneRange turned_{0, 0};
     std::vector<real> omega_, along_;  // along_: coth(k d), where the sea has a bed
     Values xx_, zz_, xz_;              // of the sideways displacement; scratch
     Synthesis synthesis_;
