@@ -2,6 +2,7 @@
 
 #include "core/cut_by_work.hpp"
 #include "core/error.hpp"
+#include "core/held_planes.hpp"
 #include "flow/emitters.hpp"
 #include "geometry/hand.hpp"
 #include "scene/names.hpp"
@@ -521,25 +522,13 @@ std::vector<Grid<real, D>*> FlowSolver<D>::shown(const std::string& field) const
 template <int D>
 std::unique_ptr<Solver::Brought> FlowSolver<D>::bring_to_first(const std::vector<std::string>& names) const {
     if (kept_ == 0) return nullptr;
-    struct Lent final : Brought {
-        const FlowSolver& solver;
-        std::vector<Grid<real, D>*> grids{};
-        explicit Lent(const FlowSolver& s) : solver(s) {}
-        ~Lent() override {
-            const OwnPlanes mine = solver.own_planes();
-            for (auto* grid : grids) grid->store().close();
-        }
-    };
-    auto lent = std::make_unique<Lent>(*this);
-    const OwnPlanes mine = own_planes();
+    std::vector<Grid<real, D>*> grids;
     for (const FieldView& view : fields().fields) {
         if (!names.empty() && std::find(names.begin(), names.end(), view.name) == names.end()) continue;
-        for (auto* grid : shown(view.name)) {
-            gather_to_first(*grid);
-            lent->grids.push_back(grid);
-        }
+        const auto list = shown(view.name);
+        grids.insert(grids.end(), list.begin(), list.end());
     }
-    return lent;
+    return std::make_unique<BroughtPlanes<real, D>>(cut_, std::move(grids));
 }
 
 template <int D>
