@@ -538,6 +538,12 @@ ends)
     refused "floats: objects float in one process only" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
     refused "effects.hand: the hand pushes in one process only" "$shallow" --set effects.hand={}
     refused "effects.hand: the hand pushes in one process only" "$line" --set effects.hand={}
+    # what only some ranks see of their rows all say, in the words of one process
+    refused "terrain.height has no value at x = 0.05, z = 3.05" "$shallow" --set 'terrain.height="sqrt(3-z)"'
+    refused "hangs above the bed at x = 2.95, z = 2.85" "$columns" --set initial={} --set 'liquid=[{shape="box",min=[2.0,0.5,2.8],max=[3.0,0.6,7.4]}]'
+    ends 0 over 3 "$weir" run "$shallow" --checkpoint-every 1000 --quiet --out rows --set time.end=0.1
+    cp rows/checkpoint.weir broken/checkpoint.weir
+    refuses_to_continue "the checkpoint does not fit the scene" "$shallow" --set grid.cells=[37,1,48]
     refused "at most 2" "$flat" --set grid.cells=[16,2]
     refused "planes of cells" "$flat" --set grid.cells=[16,2]
     refused "unknown key" "$flat" --set grid.cell=2
