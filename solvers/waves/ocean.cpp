@@ -158,8 +158,8 @@ template <class F>
 void Ocean::sum_of(const F& factor, const std::vector<Complex>& waves, real* out, std::size_t stride) {
     synthesis_(
         [&](int m, Complex* column) {
-            for (int n = 0; n < plane_.nz; ++n) {
-                const std::size_t at = plane_.at(m, n);
+            std::size_t at = plane_.at(m, 0);
+            for (int n = 0; n < plane_.nz; ++n, ++at) {
                 const Wave w = wave(m, n);
                 column[n] = w.k > 0 ? factor(w, at) * waves[at] : Complex{};
             }
