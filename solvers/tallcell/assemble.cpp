@@ -20,14 +20,21 @@ struct FaceOfColumns {
     real weight;
 };
 
+/// The side of a line of columns (add_horizontal) towards the one before it.
+constexpr int towards_lower_line = 2;
+
 template <int D>
 void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& state) {
     find_shared_rows();
+    A_.cut = over_ranks() ? *detail::own_share.cut : Cut{};
     A_.resize();
-    parallel_for(0, layout_.columns(), [&](int c) { place_column(c); });
-    parallel_for(0, layout_.columns(), [&](int c) { add_vertical(phi, state, c); });
-    parallel_for(0, A_.n[1], [&](int z) {
-        for (int f = 0; f < faces(); ++f) add_horizontal(phi, state, z, f);
+    for_each_column_near(A_, 1, [&](int c) { place_column(c); });
+    for_each_column_near(A_, 0, [&](int c) { add_vertical(phi, state, c); });
+    const LineRange own = A_.own();
+    for_each_line_near(A_, 1, [&](int z) {
+        const bool here = z >= own.begin && z < own.end;
+        for (int f = 0; f < faces() && here; ++f) add_horizontal(phi, state, z, f);
+        if (!here && z == own.end % A_.n[1]) add_horizontal(phi, state, z, towards_lower_line);  // faces that it shares with the last line
     });
     A_.finish();
 }

@@ -32,40 +32,73 @@ void ColumnMultigrid::setup(const ColumnMatrix& finest) {
         A = l == 0 ? &finest : &levels_[l].coarse;
         coarsen(*A, levels_[l + 1].coarse);
     }
-    if (places_ == static_cast<const ColumnPlaces&>(finest)) return;  // what lies between lines and rows is zero
+    if (places_ == finest) return;  // what lies between lines and rows is zero
     places_ = finest;
     for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_scratch(*list, finest.size(), 0.0);
 }
 
+/// A level whose lines are cut so is worth messages: it has enough entries, and none of its parents has children of two ranks.
+bool worth_sharing(const ColumnPlaces& places, const Cut& cut) {
+    constexpr std::size_t small_level = 20000;  // as of poisson's multigrid
+    const bool whole_pairs = std::all_of(cut.at.begin(), cut.at.end(), [&](int z) { return z % 2 == 0 || z == places.n[1]; });
+    return whole_pairs && at(places.n[0]) * at(places.n[1]) * at(places.rows) >= small_level;
+}
+
+Cut halved(Cut cut) {
+    for (int& z : cut.at) z = (z + 1) / 2;
+    return cut;
+}
+
 /// Children (sx X + dx, sz Z + dz) of parent (X, Z). Faces between children of one parent vanish; of the others half counts.
 void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
-    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     to.n = {(A.n[0] + 1) / 2, (A.n[1] + 1) / 2};
     to.periodic = A.periodic;
     to.row = A.row;
+    to.cut = halved(A.cut);
     to.resize();
-    parallel_for(0, to.n[1], [&](int Z) {
-        for (int k = 0; k < A.rows; ++k)
-            for (int dz = 0; dz < sz && sz * Z + dz < A.n[1]; ++dz)
-                for (int dx = 0; dx < sx; ++dx)
-                    for (int X = 0; X < to.n[0] && sx * X + dx < A.n[0]; ++X) {
-                        const std::size_t child = A.at(sx * X + dx, sz * Z + dz, k), parent = to.at(X, Z, k);
-                        to.state[parent] |= A.state[child];
-                        to.vertical[parent] += A.vertical[child];
-                        to.lid[parent] += A.lid[child];
-                        to.sink[parent] += 0.5 * A.sink[child];
-                        to.sink_next[parent] += 0.5 * A.sink_next[child];
-                        if (dx == 0 && to.n[0] > 1) {
-                            to.beside[0][parent] += 0.5 * A.beside[0][child];
-                            to.beside_next[0][parent] += 0.5 * A.beside_next[0][child];
-                        }
-                        if (dz == 0 && to.n[1] > 1) {
-                            to.beside[1][parent] += 0.5 * A.beside[1][child];
-                            to.beside_next[1][parent] += 0.5 * A.beside_next[1][child];
-                        }
-                    }
-    });
+    for_each_line_near(to, 0, [&](int Z) { add_children(A, to, Z); });
+    for_each_line_near(to, 1, [&](int Z) { add_lower_faces(A, to, Z); });  // those of the line beyond are this one's too
+    if (!to.cut.empty() && !worth_sharing(to, to.cut)) {
+        const auto plane = at(to.line_stride());
+        slabs().gather(to.cut, {to.state.data(), plane * sizeof(to.state[0]), to.n[1]});
+        for (auto* list : to.lists())
+            if (list != &to.share) slabs().gather(to.cut, {list->data(), plane * sizeof(real), to.n[1]});
+        std::fill(to.share.begin(), to.share.end(), 0.0);
+        to.cut = {};
+    }
     to.finish();
+}
+
+/// Of all of a parent but its faces towards the line below.
+void ColumnMultigrid::add_children(const ColumnMatrix& A, ColumnMatrix& to, int Z) {
+    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
+    for (int k = 0; k < A.rows; ++k)
+        for (int dz = 0; dz < sz && sz * Z + dz < A.n[1]; ++dz)
+            for (int dx = 0; dx < sx; ++dx)
+                for (int X = 0; X < to.n[0] && sx * X + dx < A.n[0]; ++X) {
+                    const std::size_t child = A.at(sx * X + dx, sz * Z + dz, k), parent = to.at(X, Z, k);
+                    to.state[parent] |= A.state[child];
+                    to.vertical[parent] += A.vertical[child];
+                    to.lid[parent] += A.lid[child];
+                    to.sink[parent] += 0.5 * A.sink[child];
+                    to.sink_next[parent] += 0.5 * A.sink_next[child];
+                    if (dx == 0 && to.n[0] > 1) {
+                        to.beside[0][parent] += 0.5 * A.beside[0][child];
+                        to.beside_next[0][parent] += 0.5 * A.beside_next[0][child];
+                    }
+                }
+}
+
+void ColumnMultigrid::add_lower_faces(const ColumnMatrix& A, ColumnMatrix& to, int Z) {
+    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
+    if (to.n[1] == 1) return;
+    for (int k = 0; k < A.rows; ++k)
+        for (int dx = 0; dx < sx; ++dx)
+            for (int X = 0; X < to.n[0] && sx * X + dx < A.n[0]; ++X) {
+                const std::size_t child = A.at(sx * X + dx, sz * Z, k), parent = to.at(X, Z, k);
+                to.beside[1][parent] += 0.5 * A.beside[1][child];
+                to.beside_next[1][parent] += 0.5 * A.beside_next[1][child];
+            }
 }
 
 namespace {
@@ -87,9 +120,20 @@ struct Elimination {
 
 }  // namespace
 
+/// W of a line, in single precision.
+void ColumnMultigrid::narrow_beside(const ColumnMatrix& A, Level& level, int z) {
+    const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
+    for (const std::size_t h : {at(0), at(1)})
+        for (std::size_t i = from; i < to; ++i) {
+            level.beside[h][i] = static_cast<float>(A.beside[h][i]);
+            level.beside_next[h][i] = static_cast<float>(A.beside_next[h][i]);
+        }
+}
+
 void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
     const std::size_t size = A.size();
-    if (!(level.places == static_cast<const ColumnPlaces&>(A)))
+    const bool moved = !(level.places == A);
+    if (moved)
         for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
             refill_scratch(*list, size, 0.0f);
     level.places = A;
@@ -98,14 +142,9 @@ void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
         resize_scratch(level.beside_next[h], size);
     }
     const std::ptrdiff_t row = A.row_stride();
-    parallel_for(0, A.n[1] + 1, [&](int z) {
-        const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
-        for (const std::size_t h : {at(0), at(1)})
-            for (std::size_t i = from; i < to; ++i) {
-                level.beside[h][i] = static_cast<float>(A.beside[h][i]);
-                level.beside_next[h][i] = static_cast<float>(A.beside_next[h][i]);
-            }
-        if (z == A.n[1]) return;
+    for_each_line_near(A, 1, [&](int z) { narrow_beside(A, level, z); });
+    if (moved) narrow_beside(A, level, A.n[1]);
+    for_each_line_near(A, 0, [&](int z) {
         for (const int parity : {0, 1})
             for (int begin = 0; begin < A.of_parity(parity); begin += lanes) {
                 const int count = std::min(lanes, A.of_parity(parity) - begin);
@@ -241,32 +280,37 @@ void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, 
     }
 }
 
-/// All columns, one colour of the checkerboard after the other. Around a periodic axis with an odd number of columns the last line comes by
-/// itself; along a line the neighbour beyond the end is what it was before.
-void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero) {
-    const int last = A.n[1] - 1, lines = A.joint(1) && last > 0 ? last : A.n[1], phases = lines < A.n[1] ? 4 : 2;
-    for (int i = 0; i < phases; ++i) {
-        const int phase = upwards ? i : phases - 1 - i, colour = phase % 2;
-        const bool alone = from_zero && i == 0;
-        const int z_begin = phase < 2 ? 0 : last, z_end = phase < 2 ? lines : A.n[1];
-        if (A.periodic[0] && A.n[0] > 1 && !alone) parallel_for(z_begin, z_end, [&](int z) { wrap_line(A, z, level.x.data()); });
-        const auto parity = [&](int z) { return (colour + z) % 2; };
-        for_each_block(A, z_begin, z_end, parity,
-                       [&](int z, int begin, int end) { solve_columns(A, level, z, parity(z), begin, end, alone); });
-    }
-}
-
 /// Whether columns of the first colour alone may have a residual after sweeps that end with the second, and need a correction before
 /// sweeps that begin with it.
 static bool one_colour(const ColumnMatrix& A) { return !A.joint(0) && !A.joint(1); }
 
+/// All columns, one colour of the checkerboard after the other. Around a periodic axis with an odd number of columns the last line comes by
+/// itself; along a line the neighbour beyond the end is what it was before. Over ranks each colour is brought from beyond the cuts, the
+/// last one where it is `read`.
+void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero, bool read) {
+    const int last = A.n[1] - 1, lines = A.joint(1) && last > 0 ? last : A.n[1], phases = lines < A.n[1] ? 4 : 2;
+    const LineRange own = A.own();
+    if (from_zero && !one_colour(A))
+        for_each_line_near(A, 1, [&](int z) { std::fill_n(level.x.data() + z * A.line_stride(), A.line_stride(), 0.0f); });
+    for (int i = 0; i < phases; ++i) {
+        const int phase = upwards ? i : phases - 1 - i, colour = phase % 2;
+        const bool alone = from_zero && i == 0;
+        const int z_begin = std::max(own.begin, phase < 2 ? 0 : last), z_end = std::min(own.end, phase < 2 ? lines : A.n[1]);
+        if (A.periodic[0] && A.n[0] > 1 && !alone) parallel_for(z_begin, z_end, [&](int z) { wrap_line(A, z, level.x.data()); });
+        const auto parity = [&](int z) { return (colour + z) % 2; };
+        for_each_block(A, z_begin, z_end, parity,
+                       [&](int z, int begin, int end) { solve_columns(A, level, z, parity(z), begin, end, alone); });
+        if (read || i + 1 < phases) refresh_lines(A, level.x);
+    }
+}
+
 /// r = b − A x on shared rows.
 void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
     const std::ptrdiff_t row = A.row_stride();
-    if (A.periodic[0] && A.n[0] > 1) parallel_for(0, A.n[1], [&](int z) { wrap_line(A, z, level.x.data()); });
+    if (A.periodic[0] && A.n[0] > 1) for_each_line_near(A, 0, [&](int z) { wrap_line(A, z, level.x.data()); });
     for (int colour = 0; colour < (one_colour(A) ? 1 : 2); ++colour) {
         const auto parity = [&](int z) { return (colour + z) % 2; };
-        for_each_block(A, 0, A.n[1], parity, [&](int z, int begin, int end) {
+        for_each_block(A, A.own().begin, A.own().end, parity, [&](int z, int begin, int end) {
             const Beside to(A, z, parity(z));
             const int count = end - begin;
             for (int k = 0; k < A.rows; ++k) {
@@ -282,11 +326,13 @@ void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
     }
 }
 
-/// b of the parents: Pᵀ r.
+/// b of the parents: Pᵀ r. Over ranks everybody gets all of the first level that is not shared.
 void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& level, const ColumnMatrix& coarse, Level& next) {
     const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     const bool all = !one_colour(A);
-    parallel_for(0, coarse.n[1], [&](int Z) {
+    ColumnPlaces parents = coarse;
+    parents.cut = halved(A.cut);
+    for_each_line_near(parents, 0, [&](int Z) {
         for (int k = 0; k < A.rows; ++k)
             for (const int parity : {0, 1}) {
                 float* b = next.b.data() + coarse.first(Z, k, parity);
@@ -303,13 +349,15 @@ void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& leve
             for (int begin = 0; begin < coarse.of_parity(parity); begin += lanes)
                 gather(coarse, Z, parity, begin, std::min(begin + lanes, coarse.of_parity(parity)), next.b.data());
     });
+    if (!A.cut.empty() && coarse.cut.empty())
+        slabs().gather(parents.cut, {next.b.data(), sizeof(float) * at(coarse.line_stride()), coarse.n[1]});
 }
 
-/// x += P x of the parents.
+/// x += P x of the parents; over ranks beyond the cuts too, where x is known of children and parents.
 void ColumnMultigrid::add_correction(const ColumnMatrix& A, Level& level, const ColumnMatrix& coarse, const Level& next) {
     const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     const bool all = !one_colour(A);
-    parallel_for(0, A.n[1], [&](int z) {
+    for_each_line_near(A, 1, [&](int z) {
         for (int k = 0; k < A.rows; ++k)
             for (int dx = 0; dx < sx; ++dx) {
                 if (!all && (dx + z) % 2 != 0) continue;
@@ -329,19 +377,19 @@ void ColumnMultigrid::cycle(std::size_t l, const ColumnMatrix& A) {
         solve_columns(A, level, 0, 0, 0, 1, true);
         return;
     }
-    for (int s = 0; s < sweeps_; ++s) sweep(A, level, true, s == 0);
+    for (int s = 0; s < sweeps_; ++s) sweep(A, level, true, s == 0, true);
     residual(A, level);
     restrict_residual(A, level, levels_[l + 1].coarse, levels_[l + 1]);
     cycle(l + 1, levels_[l + 1].coarse);
     add_correction(A, level, levels_[l + 1].coarse, levels_[l + 1]);
-    for (int s = 0; s < sweeps_; ++s) sweep(A, level, false, false);
+    for (int s = 0; s < sweeps_; ++s) sweep(A, level, false, false, l > 0 || s + 1 < sweeps_);
 }
 
 /// x of the finest level times scale_ = M⁻¹ r_.
 void ColumnMultigrid::precondition(const ColumnMatrix& A, real largest) {
     Level& level = levels_[0];
     scale_ = largest > 0 ? largest : 1;  // single precision has no room for what is very small
-    parallel_for(0, A.n[1], [&](int z) {
+    for_each_line_near(A, 0, [&](int z) {
         const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
         for (std::size_t i = from; i < to; ++i) level.b[i] = static_cast<float>(r_[i] / scale_);
     });

@@ -111,22 +111,11 @@ const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacSta
         const Line cell = line(state.p, c);
         for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(knots_.row[at(i)])];
     });
-    bring_right_side();
     const poisson::Report& report = solver_.solve(A_, knots_, b_, q_);
     for (int h = 0; h < D - 1; ++h) project_faces(phi, state, h, own);
     project_faces(phi, state, D - 2, layout_.above());
     project_vertical(phi, state);
     return report;
-}
-
-/// Over ranks everybody solves: what all columns have diverged by, and the first guess.
-template <int D>
-void TallPressure<D>::bring_right_side() {
-    if (!over_ranks()) return;
-    const Cut& cut = *detail::own_share.cut;
-    std::vector<std::size_t> begins;
-    for (const int z : cut.at) begins.push_back(at(knots_.start[at(z * layout_.n[0])]));
-    for (auto* list : {&b_, &q_}) slabs().gather_parts(list->data(), sizeof(real), begins);
 }
 
 /// u −= ∇q on the faces along horizontal axis h, on the lower side of columns.

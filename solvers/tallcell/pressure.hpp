@@ -2,8 +2,7 @@
 // Pᵀ A_f P, symmetric and positive, and the projection is orthogonal: idempotent, never adds energy, exact for the pressure of water at
 // rest. The surface enters by ghost fluid (Gibou et al. 2002) and solids by open fractions (Batty et al. 2007), as on the uniform grid.
 // After a projection the vertical velocity inside elements is rebuilt from the bottom up, which makes it free of divergence cell by cell.
-// Over ranks each has all knots and solves for all of the pressure; what lies between these and the lattice it does of its own columns, and
-// of the faces that these share with the line of columns beyond.
+// Over ranks each has all knots, and does the rest for its own lines of columns and for the faces that these share with the line beyond.
 #pragma once
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
@@ -40,8 +39,11 @@ public:
     /// The same with knots of any kind in `place(layout, cells, knots)`; φ [m] at cell centres. For tests and studies.
     template <class Place>
     void set_surface(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state, Place&& place) {
-        find_liquid(phi, closed, state);
-        place(layout_, state.cells, knots_);
+        {
+            const AllPlanes all;  // every rank has all knots
+            find_liquid(phi, closed, state);
+            place(layout_, state.cells, knots_);
+        }
         finish_surface(phi, state);
     }
 
@@ -123,7 +125,6 @@ private:
         return std::min(1 - phi[air] / phi[liquid], largest_cut_);  // 1/θ between a liquid cell and one of air
     }
     static constexpr int faces() { return 2 * (D - 1); }
-    void bring_right_side();
     void project_faces(const Grid<real, D>& phi, MacState<D>& state, int h, const ColumnRange& columns);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
     /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
