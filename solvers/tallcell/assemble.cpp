@@ -41,8 +41,6 @@ void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& stat
 
 template <int D>
 void TallPressure<D>::find_shared_rows() {
-    refill_scratch(row_index_, at(layout_.rows), -1);
-    for (const int row : knots_.row) row_index_[at(row)] = 0;
     A_.row.clear();
     A_.row.reserve(at(layout_.rows));
     for (int row = 0; row < layout_.rows; ++row) {

@@ -90,8 +90,6 @@ void TallCells<D>::control_volume() {
 template <int D>
 void TallCells<D>::remesh() {
     const auto timed = passes_.time("remesh");
-    surface_.make_whole();
-    surface_.make_layers_whole();
     pressure_.set_surface(surface_, closed_, options_.shape, state_);
 }
 

@@ -74,19 +74,19 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     const surface::SurfaceTally<3> surface(n, lattice.h, scene.number("time.cfl"), sides.periodic(2));
     const auto &cells = surface.cells, &across = surface.faces[2];
     Tally tally(cut, of.rank, sides.periodic(2));
+    const int up = up_axis<3>(gravity_of<3>(scene));
     const int reach = std::min(n[2], shape.cells_crossed + 3);
     tally.gather({sizeof(real), across.count});  // how far anything moves
     tally.refresh(surface.faces, reach);
     tally.refresh({cells}, reach, 2);  // the level set, before and after it moves
     surface.distance(tally);
-    tally.gather(cells);  // to place the knots
-    tally.gather(surface::plane_of<3>(n, sizeof(std::uint8_t)));
+    const std::size_t told = sizeof(int) * static_cast<std::size_t>(n[up] + 2);  // of rows of the lattice, once knots are placed
+    tally.everywhere(told, 1, told * static_cast<std::size_t>(of.ranks));
     if (options.maccormack) {
         tally.refresh({across}, 1);  // what is predicted
         tally.refresh(surface.faces, reach);
     }
     tally.refresh({across}, 1, 3);  // the velocity after motion, before walls and after
-    const int up = up_axis<3>(gravity_of<3>(scene));
     std::set<int> rows;
     for (int z = 0; z < n[2]; ++z)
         add_knots(options.shape, surface.layers, static_cast<int>(std::lround(geometry::wet_part_of_plane<3>(scene, z) * n[up])), rows);
