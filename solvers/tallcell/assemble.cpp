@@ -30,12 +30,10 @@ void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& stat
     A_.resize();
     for_each_column_near(A_, 1, [&](int c) { place_column(c); });
     for_each_column_near(A_, 0, [&](int c) { add_vertical(phi, state, c); });
-    const LineRange own = A_.own();
-    for_each_line_near(A_, 1, [&](int z) {
-        const bool here = z >= own.begin && z < own.end;
-        for (int f = 0; f < faces() && here; ++f) add_horizontal(phi, state, z, f);
-        if (!here && z == own.end % A_.n[1]) add_horizontal(phi, state, z, towards_lower_line);  // faces that it shares with the last line
+    for_each_line_near(A_, 0, [&](int z) {
+        for (int f = 0; f < faces(); ++f) add_horizontal(phi, state, z, f);
     });
+    if (const int beyond = A_.beyond(); beyond >= 0) add_horizontal(phi, state, beyond, towards_lower_line);
     A_.finish();
 }
 

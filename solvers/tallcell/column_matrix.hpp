@@ -34,6 +34,12 @@ struct ColumnPlaces {
     int blocks_of_line() const { return (static_cast<int>(line_stride()) + block - 1) / block; }
     /// The lines that are done here.
     LineRange own() const { return cut.empty() ? LineRange{0, n[1]} : LineRange{cut.begin(slabs().rank()), cut.end(slabs().rank(), n[1])}; }
+    /// Over ranks the line after the last of these, whose faces towards it are theirs too; −1 where there is none.
+    int beyond() const {
+        if (cut.empty()) return -1;
+        const int z = own().end;
+        return z < n[1] ? z : periodic[1] ? 0 : -1;
+    }
     int even() const { return (n[0] + 1) / 2; }
     int of_parity(int parity) const { return parity == 0 ? even() : n[0] / 2; }
     std::ptrdiff_t width() const { return even() + 2; }
