@@ -7,7 +7,8 @@ namespace weir::tallcell {
 Cut cut_of_columns(const scene::Scene& scene, int ranks) {
     if (scene.dim() == 2 || up_axis<3>(gravity_of<3>(scene)) == 2) return {};
     const int lines = scene.index<3>("grid.cells")[2];
-    return lines < 2 * ranks ? Cut{} : cut_of(lines, ranks);  // pairs of lines become one on the next level of the multigrid
+    const bool pairs = lines >= 2 * ranks;  // of lines, which are one on the next level of the multigrid: one for each rank, or all do all
+    return lines >= ranks && !pairs ? Cut{} : cut_of(lines, ranks);
 }
 
 /// The velocity as far beyond the cuts as anything moves in the step, and reads there: a point at the end of its path looks at two samples,

@@ -20,7 +20,7 @@ void add_knots(const Shape& shape, int layers, int wet, std::set<int>& rows) {
     for (int row = count > 0 ? list[static_cast<std::size_t>(count) - 1] : 0; row < wet; ++row) rows.insert(row);
 }
 
-/// Setting up the levels, and a solve of so many iterations (multigrid.cpp, conjugate_gradients.cpp).
+/// Setting up the levels, and a solve of so many iterations (levels.cpp, multigrid.cpp, conjugate_gradients.cpp).
 void tally_pressure(const ColumnPlaces& finest, int sweeps, int iterations, Tally& tally) {
     const auto ranks = static_cast<std::size_t>(tally.cut().ranks());
     const auto line_of = [](const ColumnPlaces& places, std::size_t bytes) {
