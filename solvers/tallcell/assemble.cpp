@@ -20,22 +20,25 @@ struct FaceOfColumns {
     real weight;
 };
 
+/// The side of a line of columns (add_horizontal) towards the one before it.
+constexpr int towards_lower_line = 2;
+
 template <int D>
 void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& state) {
     find_shared_rows();
+    A_.cut = over_ranks() ? *detail::own_share.cut : Cut{};
     A_.resize();
-    parallel_for(0, layout_.columns(), [&](int c) { place_column(c); });
-    parallel_for(0, layout_.columns(), [&](int c) { add_vertical(phi, state, c); });
-    parallel_for(0, A_.n[1], [&](int z) {
+    for_each_column_near(A_, 1, [&](int c) { place_column(c); });
+    for_each_column_near(A_, 0, [&](int c) { add_vertical(phi, state, c); });
+    for_each_line_near(A_, 0, [&](int z) {
         for (int f = 0; f < faces(); ++f) add_horizontal(phi, state, z, f);
     });
+    if (const int beyond = A_.beyond(); beyond >= 0) add_horizontal(phi, state, beyond, towards_lower_line);
     A_.finish();
 }
 
 template <int D>
 void TallPressure<D>::find_shared_rows() {
-    refill_scratch(row_index_, at(layout_.rows), -1);
-    for (const int row : knots_.row) row_index_[at(row)] = 0;
     A_.row.clear();
     A_.row.reserve(at(layout_.rows));
     for (int row = 0; row < layout_.rows; ++row) {

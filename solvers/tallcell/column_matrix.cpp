@@ -9,51 +9,64 @@ namespace weir::tallcell {
 
 void ColumnMatrix::resize() {
     rows = static_cast<int>(row.size());
-    refill_scratch(state, size(), std::uint8_t{0});
-    for (auto* list : {&share, &vertical, &lid, &sink, &sink_next, &beside[0], &beside_next[0], &beside[1], &beside_next[1]})
-        resize_scratch(*list, size());
-    const auto zero = [&](int z) {
+    resize_scratch(state, size());
+    for (auto* list : lists()) resize_scratch(*list, size());
+    const auto clear = [&](int z) {
         const auto from = static_cast<std::ptrdiff_t>(z) * line_stride();
-        for (auto* list : {&share, &vertical, &lid, &sink, &sink_next, &beside[0], &beside_next[0], &beside[1], &beside_next[1]})
-            std::fill(list->begin() + from, list->begin() + from + line_stride(), 0.0);
+        std::fill(state.begin() + from, state.begin() + from + line_stride(), std::uint8_t{0});
+        for (auto* list : lists()) std::fill(list->begin() + from, list->begin() + from + line_stride(), 0.0);
     };
-    parallel_for(0, n[1] + 1, zero);
+    for_each_line_near(*this, 1, clear);
+    if (cleared_ == *this) return;
+    clear(n[1]);
+    cleared_ = *this;
 }
 
 void ColumnMatrix::finish() {
-    refill_scratch(mixed, row.size(), std::uint8_t{0});
     refill_scratch(tall, row.size(), std::uint8_t{0});
-    mixed_end = 0;
     for (std::size_t k = 0; k + 1 < row.size(); ++k)
         if (row[k + 1] > row[k] + 1) tall[k] = tall[k + 1] = 1;
-    parallel_for(0, rows, [&](int k) {
-        std::uint8_t any = 0;
-        for (int z = 0; z < n[1]; ++z)
-            for (const int parity : {0, 1}) {
-                const std::uint8_t* s = state.data() + first(z, k, parity);
-                for (int i = 0; i < of_parity(parity); ++i) any |= s[i];
-            }
-        mixed[static_cast<std::size_t>(k)] = (any & inside) != 0;
-    });
-    for (int k = 0; k < rows; ++k)
-        if (mixed[static_cast<std::size_t>(k)]) mixed_end = std::min(k + 2, rows);
-    parallel_for(0, n[1], [&](int z) {
+    for_each_line_near(*this, 0, [&](int z) {
         wrap_line(*this, z, beside[0].data());
         wrap_line(*this, z, beside_next[0].data());
     });
-    find_shares();
-    alike.resize(row.size());
-    parallel_for(0, rows, [&](int k) { alike[static_cast<std::size_t>(k)] = look_at_row(k); });
+    resize_scratch(looks_, row.size() * (cut.empty() ? 1 : static_cast<std::size_t>(cut.ranks())));
+    Look* here = looks_.data() + (cut.empty() ? 0 : row.size() * static_cast<std::size_t>(slabs().rank()));
+    parallel_for(0, rows, [&](int k) { here[k] = {look_beside(k), any_inside(k)}; });
+    join_looks();
+    resize_scratch(alike, row.size());
+    resize_scratch(mixed, row.size());
+    mixed_end = 0;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+        alike[k] = looks_[k].alike, mixed[k] = looks_[k].inside;
+        if (mixed[k]) mixed_end = std::min(static_cast<int>(k) + 2, rows);
+    }
+    if (mixed_end == 0) return;
+    for_each_line_near(*this, 0, [&](int z) {
+        for (int x = 0; x < n[0]; ++x) find_shares(x, z);
+    });
 }
 
-ColumnMatrix::Alike ColumnMatrix::look_at_row(int k) const {
+bool ColumnMatrix::any_inside(int k) const {
+    std::uint8_t any = 0;
+    for (int z = own().begin; z < own().end; ++z)
+        for (const int parity : {0, 1}) {
+            const std::uint8_t* s = state.data() + first(z, k, parity);
+            for (int i = 0; i < of_parity(parity); ++i) any |= s[i];
+        }
+    return (any & inside) != 0;
+}
+
+/// Over ranks there are two lines for the first at least, so that each has one whose lower side is none of the domain's.
+ColumnMatrix::Alike ColumnMatrix::look_beside(int k) const {
+    const LineRange lines = own();
     Alike found{1, {}, {}};
     for (const std::size_t h : {0, 1}) {
         if (n[h] == 1) continue;
-        const std::size_t sample = h == 0 ? at(1, 0, k) : at(0, 1, k);
+        const std::size_t sample = h == 0 ? at(1, lines.begin, k) : at(0, std::max(lines.begin, 1), k);
         const real w = beside[h][sample], next = beside_next[h][sample];
         found.beside[h] = w, found.beside_next[h] = next;
-        for (int z = 0; z < n[1]; ++z) {
+        for (int z = lines.begin; z < lines.end; ++z) {
             const bool side = h == 1 && z == 0 && !periodic[1];
             for (const int parity : {0, 1}) {
                 const std::size_t from = first(z, k, parity);
@@ -70,11 +83,17 @@ ColumnMatrix::Alike ColumnMatrix::look_at_row(int k) const {
     return found;
 }
 
-void ColumnMatrix::find_shares() {
-    if (mixed_end == 0) return;
-    parallel_for(0, n[1], [&](int z) {
-        for (int x = 0; x < n[0]; ++x) find_shares(x, z);
-    });
+/// Over ranks the first looks become those of all lines.
+void ColumnMatrix::join_looks() {
+    if (cut.empty()) return;
+    std::vector<std::size_t> begins;
+    for (int r = 0; r <= cut.ranks(); ++r) begins.push_back(static_cast<std::size_t>(r) * row.size());
+    slabs().gather_parts(looks_.data(), sizeof(Look), begins);
+    for (std::size_t i = row.size(); i < looks_.size(); ++i) {
+        Look& all = looks_[i % row.size()];
+        all.inside |= looks_[i].inside;
+        if (!(all.alike == looks_[i].alike)) all.alike = {};
+    }
 }
 
 void ColumnMatrix::find_shares(int x, int z) {
@@ -94,7 +113,7 @@ std::size_t ColumnMatrix::bytes() const {
     std::size_t reals = share.capacity() + vertical.capacity() + lid.capacity() + sink.capacity() + sink_next.capacity();
     for (const std::size_t h : {0, 1}) reals += beside[h].capacity() + beside_next[h].capacity();
     return reals * sizeof(real) + row.capacity() * sizeof(int) + state.capacity() + mixed.capacity() + tall.capacity() +
-           alike.capacity() * sizeof(Alike);
+           alike.capacity() * sizeof(Alike) + looks_.capacity() * sizeof(Look);
 }
 
 }  // namespace weir::tallcell

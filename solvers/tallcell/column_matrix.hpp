@@ -5,11 +5,19 @@
 //   A = Rᵀ (Σ_columns T + Σ_faces W ⊗ [1 −1; −1 1]) R      T: vertical faces and faces of air; W: faces between two columns
 // with T and W tridiagonal, and nothing in it is searched for. Coarser columns keep the shared rows, so that theirs are plain sums.
 #pragma once
+#include "core/parallel.hpp"
+#include "core/slabs.hpp"
 #include "tallcell/columns.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace weir::tallcell {
+
+/// Lines of columns [begin, end).
+struct LineRange {
+    int begin = 0, end = 0;
+};
 
 /// Where the entries of columns lie in memory: line by line along the first horizontal axis, in a line row by row, and in a row the columns
 /// of even number before those of odd number. So columns of one colour of a checkerboard lie beside one another, and so do their
@@ -18,8 +26,20 @@ struct ColumnPlaces {
     std::array<int, 2> n{1, 1};      // columns along the horizontal axes
     std::array<bool, 2> periodic{};  // they
     int rows = 0;                    // that columns share
+    Cut cut;                         // over ranks, whose lines are whose; empty where everybody does all
+
+    static constexpr int block = 8192;  // entries of a line that are added up together
 
     bool operator==(const ColumnPlaces&) const = default;
+    int blocks_of_line() const { return (static_cast<int>(line_stride()) + block - 1) / block; }
+    /// The lines that are done here.
+    LineRange own() const { return cut.empty() ? LineRange{0, n[1]} : LineRange{cut.begin(slabs().rank()), cut.end(slabs().rank(), n[1])}; }
+    /// Over ranks the line after the last of these, whose faces towards it are theirs too; −1 where there is none.
+    int beyond() const {
+        if (cut.empty()) return -1;
+        const int z = own().end;
+        return z < n[1] ? z : periodic[1] ? 0 : -1;
+    }
     int even() const { return (n[0] + 1) / 2; }
     int of_parity(int parity) const { return parity == 0 ? even() : n[0] / 2; }
     std::ptrdiff_t width() const { return even() + 2; }
@@ -34,6 +54,38 @@ struct ColumnPlaces {
     /// An axis along which the first and the last column have one colour and are neighbours.
     bool joint(int axis) const { return periodic[static_cast<std::size_t>(axis)] && n[static_cast<std::size_t>(axis)] % 2 == 1; }
 };
+
+/// f(i) for the entries of the lines that are done here and of so many beyond the cuts, around a periodic axis too; a line has `count`.
+template <class F>
+void for_each_near(const ColumnPlaces& places, int beyond, int count, F&& f) {
+    const LineRange own = places.own();
+    const int n = places.n[1], all = n * count, above = places.cut.empty() ? 0 : beyond;
+    const int below = std::min(above, n - (own.end - own.begin) - above);
+    parallel_for((own.begin - below) * count, (own.end + above) * count, [&](int i) {
+        const bool inside = i >= 0 && i < all;
+        if (inside || places.periodic[1]) f(inside ? i : (i + all) % all);
+    });
+}
+
+/// f(line) for the lines that are done here and so many beyond the cuts.
+template <class F>
+void for_each_line_near(const ColumnPlaces& places, int beyond, F&& f) {
+    for_each_near(places, beyond, 1, f);
+}
+
+/// f(column), line after line.
+template <class F>
+void for_each_column_near(const ColumnPlaces& places, int beyond, F&& f) {
+    for_each_near(places, beyond, places.n[0], f);
+}
+
+/// Over ranks, brings the line beyond either cut.
+template <class T>
+void refresh_lines(const ColumnPlaces& places, std::vector<T>& values) {
+    if (places.cut.empty()) return;
+    slabs().refresh(places.cut, {values.data(), sizeof(T) * static_cast<std::size_t>(places.line_stride()), places.n[1]}, 1,
+                    places.periodic[1]);
+}
 
 /// From the entry of a column to those of the columns beside it.
 struct Beside {
@@ -64,21 +116,38 @@ struct ColumnMatrix : ColumnPlaces {
     struct Alike {
         std::uint8_t yes = 0;
         std::array<real, 2> beside{}, beside_next{};
+        bool operator==(const Alike&) const = default;
     };
     std::vector<Alike> alike;
 
     /// Room for `row`, filled with nothing.
     void resize();
-    /// What lies beyond the ends of lines around a periodic axis; and which rows are mixed and tall.
+    /// What lies beyond the ends of lines around a periodic axis; and which rows are mixed, tall and alike.
     void finish();
-    /// share of the rows inside elements, from their knots' rows.
-    void find_shares();
+    /// All that has an entry for each column in a row.
+    auto lists() {
+        return std::array{&share, &vertical, &lid, &sink, &sink_next, &beside[0], &beside_next[0], &beside[1], &beside_next[1]};
+    }
     std::size_t bytes() const;
+    /// Over ranks, of what each says of a row.
+    static constexpr std::size_t bytes_of_look();
 
 private:
+    /// What a row is, as far as the lines that are done here go.
+    struct Look {
+        Alike alike;
+        std::uint8_t inside = 0;
+    };
+    bool any_inside(int k) const;
+    Alike look_beside(int k) const;
+    void join_looks();
     void find_shares(int x, int z);
-    Alike look_at_row(int k) const;
+
+    std::vector<Look> looks_;  // over ranks those of all, one after another
+    ColumnPlaces cleared_;     // where the line of zeros is that
 };
+
+constexpr std::size_t ColumnMatrix::bytes_of_look() { return sizeof(Look); }
 
 /// Copies the columns at the ends of line z to beyond its other end, where the axis is periodic.
 template <class T>

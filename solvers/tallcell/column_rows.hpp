@@ -143,7 +143,7 @@ void interpolate(const ColumnMatrix& A, int z, int parity, int begin, int end, T
 template <class T>
 void interpolate(const ColumnMatrix& A, std::vector<T>& x) {
     if (A.mixed_end == 0) return;
-    parallel_for(0, A.n[1], [&](int z) {
+    for_each_line_near(A, 0, [&](int z) {
         for (const int parity : {0, 1})
             for (int begin = 0; begin < A.of_parity(parity); begin += lanes)
                 interpolate(A, z, parity, begin, std::min(begin + lanes, A.of_parity(parity)), x.data());

@@ -29,6 +29,11 @@ ColumnRange Layout<D>::above() const {
     return periodic[1] ? ColumnRange{0, n[0]} : ColumnRange{};
 }
 
+template <int D>
+std::vector<char> Layout<D>::near_lines() const {
+    return planes_near(n[1], 1, periodic[1]);
+}
+
 /// Tops of tall parts lie on multiples of this, so that a surface that rises or falls by less moves no knot.
 constexpr int top_step = 4;
 

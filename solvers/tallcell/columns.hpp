@@ -33,6 +33,8 @@ struct Layout {
     ColumnRange own() const;
     /// The line beyond the last of these, whose faces on the lower side are theirs too; none at a wall, nor where all are done here.
     ColumnRange above() const;
+    /// Of each line whether its columns are done here or stand beside such; none where all are done here.
+    std::vector<char> near_lines() const;
     /// The lowest cell of a column.
     Index<D> foot(int column) const {
         Index<D> I{};
@@ -53,7 +55,7 @@ struct Layout {
     }
 };
 
-/// The knots of all columns, bottom up.
+/// The knots of all columns, bottom up; over ranks of those that are done here and of those beside them, the others have none.
 struct Knots {
     std::vector<int> start{0};  // of each column; one more than there are columns
     std::vector<int> row;

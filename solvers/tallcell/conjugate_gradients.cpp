@@ -11,23 +11,56 @@ namespace weir::tallcell {
 
 namespace {
 
-/// Sum over all entries of f(i), in blocks of one size: no result depends on the number of threads.
+/// What the blocks of all lines give, N numbers each.
+template <std::size_t N>
+struct Parts {
+    const std::vector<real>& of_block;
+    int count;
+
+    real sum(std::size_t i) const {
+        return fold(i, 0, [](real sum, real part) { return sum + part; });
+    }
+    real largest(std::size_t i) const {
+        return fold(i, 0, [](real most, real part) { return std::max(most, part); });
+    }
+
+private:
+    template <class F>
+    real fold(std::size_t i, real value, F&& f) const {
+        for (int b = 0; b < count; ++b) value = f(value, of_block[at(b) * N + i]);
+        return value;
+    }
+};
+
+/// f(block, begin, end) for the entries of the lines that are done here, in blocks of one size.
 template <class F>
-real sum_over_entries(std::size_t count, F&& f) {
-    constexpr std::size_t block = 8192;
-    return ordered_sum(static_cast<int>((count + block - 1) / block), [&](int b) {
-        real sum = 0;
-        const std::size_t begin = at(b) * block, end = std::min(count, begin + block);
-#pragma omp simd reduction(+ : sum)
-        for (std::size_t i = begin; i < end; ++i) sum += f(i);
-        return sum;
+void for_each_block_of_lines(const ColumnPlaces& places, F&& f) {
+    const std::size_t line = at(places.line_stride());
+    const int blocks = places.blocks_of_line();
+    parallel_for(places.own().begin * blocks, places.own().end * blocks, [&](int i) {
+        const std::size_t first = at(i / blocks) * line, begin = first + at(i % blocks * ColumnPlaces::block);
+        f(i, begin, std::min(first + line, begin + at(ColumnPlaces::block)));
     });
 }
 
-/// y = A x, and x·y.
+/// f(begin, end) of all blocks, those of other ranks from them: no result depends on the number of threads or ranks.
+template <std::size_t N, class F>
+Parts<N> parts_of_lines(const ColumnPlaces& places, F&& f) {
+    const int blocks = places.blocks_of_line(), count = places.n[1] * blocks;
+    auto& parts = detail::reduction_scratch(at(count) * N);
+    for_each_block_of_lines(places, [&](int i, std::size_t begin, std::size_t end) {
+        const std::array<real, N> found = f(begin, end);
+        std::copy(found.begin(), found.end(), parts.begin() + static_cast<std::ptrdiff_t>(at(i) * N));
+    });
+    if (!places.cut.empty()) slabs().gather(places.cut, {parts.data(), N * sizeof(real) * at(blocks), places.n[1]});
+    return {parts, count};
+}
+
+/// y = A x, and x·y. Over ranks x must be known beyond the cuts.
 real multiply_and_dot(const ColumnMatrix& A, std::vector<real>& x, std::vector<real>& y) {
     const std::ptrdiff_t row = A.row_stride();
-    return ordered_sum(A.n[1], [&](int z) {
+    auto& parts = detail::reduction_scratch(at(A.n[1]));
+    for_each_line_near(A, 0, [&](int z) {
         wrap_line(A, z, x.data());
         real dot = 0;
         for (const int parity : {0, 1})
@@ -71,8 +104,10 @@ real multiply_and_dot(const ColumnMatrix& A, std::vector<real>& x, std::vector<r
                     for (int i = 0; i < count; ++i) dot += v[i] * sum[i];
                 }
             }
-        return dot;
+        parts[at(z)] = dot;
     });
+    if (!A.cut.empty()) slabs().gather(A.cut, {parts.data(), sizeof(real), A.n[1]});
+    return detail::sum_in_order(parts, A.n[1]);
 }
 
 }  // namespace
@@ -80,7 +115,7 @@ real multiply_and_dot(const ColumnMatrix& A, std::vector<real>& x, std::vector<r
 /// From values by knots to the shared rows, those inside elements zero.
 void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const {
     const std::size_t stride = at(A.row_stride());
-    parallel_for(0, A.n[1], [&](int z) {
+    for_each_line_near(A, 0, [&](int z) {
         for (int x = 0; x < A.n[0]; ++x) {
             const int c = x + z * A.n[0];
             const std::size_t foot = A.at(x, z, 0);
@@ -94,9 +129,10 @@ void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std
     });
 }
 
+/// Back; over ranks beyond the cuts too.
 void ColumnMultigrid::fetch(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const {
     const std::size_t stride = at(A.row_stride());
-    parallel_for(0, A.n[1], [&](int z) {
+    for_each_line_near(A, 1, [&](int z) {
         for (int x = 0; x < A.n[0]; ++x) {
             const int c = x + z * A.n[0];
             const std::size_t foot = A.at(x, z, 0);
@@ -112,6 +148,7 @@ void ColumnMultigrid::fetch(const ColumnMatrix& A, const Knots& knots, const std
 void ColumnMultigrid::multiply(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& x, std::vector<real>& y) {
     place(A, knots, x, x_);
     interpolate(A, x_);
+    refresh_lines(A, x_);
     multiply_and_dot(A, x_, Ap_);
     fetch(A, knots, Ap_, y);
 }
@@ -127,41 +164,23 @@ void ColumnMultigrid::precondition(const ColumnMatrix& A, const Knots& knots, co
 }
 
 const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& b, std::vector<real>& x) {
-    const std::size_t count = A.size();
     report_.history.clear();
-    report_.iterations = 0, report_.residual_max = 0;
-    const auto squares = [&](const std::vector<real>& v) { return sum_over_entries(count, [&](std::size_t i) { return v[i] * v[i]; }); };
-    const auto largest_residual = [&] {
-        constexpr std::size_t block = 8192;
-        return ordered_max(static_cast<int>((count + block - 1) / block), [&](int part) {
-            real most = 0;
-            const std::size_t begin = at(part) * block, end = std::min(count, begin + block);
-#pragma omp simd reduction(max : most)
-            for (std::size_t i = begin; i < end; ++i) most = std::max(most, std::abs(r_[i]));
-            return most;
-        });
-    };
+    report_.iterations = 0;
     place(A, knots, b, b_);
     place(A, knots, x, x_);
     interpolate(A, x_);
-    const auto residual = [&] {
-        multiply_and_dot(A, x_, Ap_);
-        return std::sqrt(sum_over_entries(count, [&](std::size_t i) {
-            const real r = b_[i] - Ap_[i];
-            r_[i] = r;
-            return r * r;
-        }));
-    };
-    const real scale = std::sqrt(squares(b_));
+    Residual r = residual(A);
+    const real scale = std::sqrt(r.b_squares);
     if (!std::isfinite(scale)) throw NumericalFailure("pressure", "the right-hand side is not finite");
-    real size = residual();
+    real size = r.norm;
     if (!(size < scale)) {
-        std::fill(x_.begin(), x_.end(), 0.0);
-        std::copy(b_.begin(), b_.end(), r_.begin());
-        size = scale;
+        for_each_block_of_lines(A, [&](int, std::size_t begin, std::size_t end) {
+            std::fill_n(x_.data() + begin, end - begin, 0.0);
+            std::copy_n(b_.data() + begin, end - begin, r_.data() + begin);
+        });
+        size = scale, r.largest = r.b_largest;
     }
     report_.residual_before = scale > 0 ? size / scale : 0;
-    const std::vector<float>& z = levels_[0].x;
     real rz = 0, alpha = 0;
     while (size > options_.tolerance * scale) {
         if (report_.iterations == options_.max_iterations) {
@@ -169,34 +188,81 @@ const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const Knots
             throw NumericalFailure("pressure", "the residual is still " + std::to_string(size / scale) + " of the right-hand side after " +
                                                    std::to_string(report_.iterations) + " iterations");
         }
-        precondition(A, largest_residual());
-        // Polak and Ribière's form, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p: single precision leaves the preconditioner not quite the same.
-        const bool first = report_.iterations == 0;
-        const real beta =
-            first ? 0 : -alpha * scale_ * sum_over_entries(count, [&](std::size_t i) { return static_cast<real>(z[i]) * Ap_[i]; }) / rz;
-        rz = scale_ * sum_over_entries(count, [&](std::size_t i) {
-                 const real direction = scale_ * static_cast<real>(z[i]);
-                 p_[i] = first ? direction : direction + beta * p_[i];
-                 return static_cast<real>(z[i]) * r_[i];
-             });
-        interpolate(A, p_);  // single precision has it nearly so
+        precondition(A, r.largest);
+        turn(A, report_.iterations == 0, alpha, rz);
         alpha = rz / multiply_and_dot(A, p_, Ap_);
         if (!std::isfinite(alpha)) throw NumericalFailure("pressure", "conjugate gradients broke down");
-        size = std::sqrt(sum_over_entries(count, [&](std::size_t i) {
-            x_[i] += alpha * p_[i];
-            const real r = r_[i] - alpha * Ap_[i];
-            r_[i] = r;
-            return r * r;
-        }));
+        size = advance(A, alpha, r.largest);
         ++report_.iterations;
         if (options_.record_history) report_.history.push_back(size / scale);
     }
-    size = residual();
-    report_.converged = size <= 2 * options_.tolerance * scale;
-    report_.residual_after = scale > 0 ? size / scale : 0;
-    report_.residual_max = largest_residual();
+    r = residual(A);
+    report_.converged = r.norm <= 2 * options_.tolerance * scale;
+    report_.residual_after = scale > 0 ? r.norm / scale : 0;
+    report_.residual_max = r.largest;
     fetch(A, knots, x_, x);
     return report_;
+}
+
+/// r = b − A x.
+ColumnMultigrid::Residual ColumnMultigrid::residual(const ColumnMatrix& A) {
+    refresh_lines(A, x_);
+    multiply_and_dot(A, x_, Ap_);
+    const auto parts = parts_of_lines<4>(A, [&](std::size_t begin, std::size_t end) {
+        real squares = 0, most = 0, b_squares = 0, b_most = 0;
+#pragma omp simd reduction(+ : squares, b_squares) reduction(max : most, b_most)
+        for (std::size_t i = begin; i < end; ++i) {
+            const real r = b_[i] - Ap_[i];
+            r_[i] = r;
+            squares += r * r, b_squares += b_[i] * b_[i];
+            most = std::max(most, std::abs(r)), b_most = std::max(b_most, std::abs(b_[i]));
+        }
+        return std::array{squares, most, b_squares, b_most};
+    });
+    return {std::sqrt(parts.sum(0)), parts.largest(1), parts.sum(2), parts.largest(3)};
+}
+
+/// p = z + β p, β in Polak and Ribière's form, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p: single precision leaves the preconditioner not
+/// quite the same. rz becomes z·r.
+void ColumnMultigrid::turn(const ColumnMatrix& A, bool first, real alpha, real& rz) {
+    const std::vector<float>& z = levels_[0].x;
+    const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
+        real zAp = 0, zr = 0;
+#pragma omp simd reduction(+ : zAp, zr)
+        for (std::size_t i = begin; i < end; ++i) {
+            zAp += static_cast<real>(z[i]) * Ap_[i];
+            zr += static_cast<real>(z[i]) * r_[i];
+        }
+        return std::array{zAp, zr};
+    });
+    const real beta = first ? 0 : -alpha * scale_ * parts.sum(0) / rz;
+    rz = scale_ * parts.sum(1);
+    for_each_block_of_lines(A, [&](int, std::size_t begin, std::size_t end) {
+        if (first)
+            for (std::size_t i = begin; i < end; ++i) p_[i] = scale_ * static_cast<real>(z[i]);
+        else
+            for (std::size_t i = begin; i < end; ++i) p_[i] = scale_ * static_cast<real>(z[i]) + beta * p_[i];
+    });
+    interpolate(A, p_);  // single precision has it nearly so
+    refresh_lines(A, p_);
+}
+
+/// x += α p,  r −= α A p; answers ‖r‖.
+real ColumnMultigrid::advance(const ColumnMatrix& A, real alpha, real& largest) {
+    const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
+        real squares = 0, most = 0;
+#pragma omp simd reduction(+ : squares) reduction(max : most)
+        for (std::size_t i = begin; i < end; ++i) {
+            x_[i] += alpha * p_[i];
+            const real r = r_[i] - alpha * Ap_[i];
+            r_[i] = r;
+            squares += r * r;
+            most = std::max(most, std::abs(r));
+        }
+        return std::array{squares, most};
+    });
+    largest = parts.largest(1);
+    return std::sqrt(parts.sum(0));
 }
 
 }  // namespace weir::tallcell

@@ -95,7 +95,8 @@ scene::SolverKind kind() {
                             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
                            over_ranks,
                            scene::Shared::by_planes,
-                           "the knots of the columns, the pressure, the level set's continuation into solids"};
+                           "the levels of the pressure of fewer than 20,000 unknowns, the level set's "
+                           "continuation into solids"};
     tall.sends = traffic_of_step;
     tall.cut = cut_of_columns;
     return tall;

@@ -1,12 +1,9 @@
 #include "tallcell/multigrid.hpp"
 
 #include "core/parallel.hpp"
-#include "core/scratch.hpp"
 #include "tallcell/column_rows.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace weir::tallcell {
 
@@ -19,153 +16,6 @@ std::size_t ColumnMultigrid::bytes() const {
             total += list->capacity() * sizeof(float);
     }
     return total;
-}
-
-void ColumnMultigrid::setup(const ColumnMatrix& finest) {
-    const ColumnMatrix* A = &finest;
-    for (std::size_t l = 0;; ++l) {
-        if (l == levels_.size()) levels_.emplace_back();
-        A = l == 0 ? &finest : &levels_[l].coarse;
-        factorise(*A, levels_[l]);
-        if (A->n[0] == 1 && A->n[1] == 1) break;
-        if (l + 1 == levels_.size()) levels_.emplace_back();
-        A = l == 0 ? &finest : &levels_[l].coarse;
-        coarsen(*A, levels_[l + 1].coarse);
-    }
-    if (places_ == static_cast<const ColumnPlaces&>(finest)) return;  // what lies between lines and rows is zero
-    places_ = finest;
-    for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_scratch(*list, finest.size(), 0.0);
-}
-
-/// Children (sx X + dx, sz Z + dz) of parent (X, Z). Faces between children of one parent vanish; of the others half counts.
-void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
-    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
-    to.n = {(A.n[0] + 1) / 2, (A.n[1] + 1) / 2};
-    to.periodic = A.periodic;
-    to.row = A.row;
-    to.resize();
-    parallel_for(0, to.n[1], [&](int Z) {
-        for (int k = 0; k < A.rows; ++k)
-            for (int dz = 0; dz < sz && sz * Z + dz < A.n[1]; ++dz)
-                for (int dx = 0; dx < sx; ++dx)
-                    for (int X = 0; X < to.n[0] && sx * X + dx < A.n[0]; ++X) {
-                        const std::size_t child = A.at(sx * X + dx, sz * Z + dz, k), parent = to.at(X, Z, k);
-                        to.state[parent] |= A.state[child];
-                        to.vertical[parent] += A.vertical[child];
-                        to.lid[parent] += A.lid[child];
-                        to.sink[parent] += 0.5 * A.sink[child];
-                        to.sink_next[parent] += 0.5 * A.sink_next[child];
-                        if (dx == 0 && to.n[0] > 1) {
-                            to.beside[0][parent] += 0.5 * A.beside[0][child];
-                            to.beside_next[0][parent] += 0.5 * A.beside_next[0][child];
-                        }
-                        if (dz == 0 && to.n[1] > 1) {
-                            to.beside[1][parent] += 0.5 * A.beside[1][child];
-                            to.beside_next[1][parent] += 0.5 * A.beside_next[1][child];
-                        }
-                    }
-    });
-    to.finish();
-}
-
-namespace {
-
-/// L D Lᵀ of columns side by side, upwards: what is known of the knot whose pivot is not yet complete.
-struct Elimination {
-    Lanes<real> diagonal{}, whole{};  // of it, and without what has been taken from it
-    Lanes<real> coupling{}, above{};  // with the next knot, and what the element between gives to that
-    Lanes<std::size_t> place{};       // of it
-
-    /// The pivot's inverse and the ratio to the next entry. A column that touches neither air nor another is singular: its last pivot is
-    /// round-off, and counts as none.
-    static std::array<real, 2> divide(real diagonal, real whole, real coupling) {
-        const bool sound = diagonal > 64 * std::numeric_limits<real>::epsilon() * whole;
-        const real inverse = sound ? 1 / (sound ? diagonal : 1) : 0;
-        return {inverse, coupling * inverse};
-    }
-};
-
-}  // namespace
-
-void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
-    const std::size_t size = A.size();
-    if (!(level.places == static_cast<const ColumnPlaces&>(A)))
-        for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
-            refill_scratch(*list, size, 0.0f);
-    level.places = A;
-    for (const std::size_t h : {at(0), at(1)}) {
-        resize_scratch(level.beside[h], size);
-        resize_scratch(level.beside_next[h], size);
-    }
-    const std::ptrdiff_t row = A.row_stride();
-    parallel_for(0, A.n[1] + 1, [&](int z) {
-        const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
-        for (const std::size_t h : {at(0), at(1)})
-            for (std::size_t i = from; i < to; ++i) {
-                level.beside[h][i] = static_cast<float>(A.beside[h][i]);
-                level.beside_next[h][i] = static_cast<float>(A.beside_next[h][i]);
-            }
-        if (z == A.n[1]) return;
-        for (const int parity : {0, 1})
-            for (int begin = 0; begin < A.of_parity(parity); begin += lanes) {
-                const int count = std::min(lanes, A.of_parity(parity) - begin);
-                const Beside to_side(A, z, parity);
-                Elimination e;
-                Lanes<real> D{}, O{}, O_below{};
-                for (int k = 0; k < A.rows; ++k) {
-                    const std::size_t first = A.first(z, k, parity) + at(begin);
-                    const real *c = A.vertical.data() + first, *lid = A.lid.data() + first, *sink = A.sink.data() + first;
-                    const real *w0 = A.beside[0].data() + first, *w1 = A.beside[1].data() + first;
-                    const real *n0 = A.beside_next[0].data() + first, *n1 = A.beside_next[1].data() + first;
-                    const real* sink_next = A.sink_next.data() + first;
-                    float *diagonal = level.diagonal.data() + first, *next = level.next.data() + first;
-#pragma omp simd
-                    for (int i = 0; i < count; ++i) {
-                        O_below[at(i)] = O[at(i)];
-                        D[at(i)] = (c[i] + c[i - row]) + (lid[i] + sink[i]) +
-                                   ((w0[i] + w0[i + to_side.x_upper]) + (w1[i] + w1[i + to_side.z_upper]));
-                        O[at(i)] = sink_next[i] - c[i] + ((n0[i] + n0[i + to_side.x_upper]) + (n1[i] + n1[i + to_side.z_upper]));
-                        diagonal[i] = static_cast<float>(D[at(i)]);
-                        next[i] = static_cast<float>(O[at(i)]);
-                    }
-                    if (k == 0 || k < A.mixed_end) {  // knots stand in different rows: one column after the other
-                        const real *share = A.share.data() + first, *share_below = share - row;
-                        for (int i = 0; i < count; ++i) {
-                            const std::size_t l = at(i);
-                            const bool knot = share[i] == 0;
-                            const real s = knot ? 1 : share[i], t = k > 0 ? share_below[i] : 0;
-                            const real to_lower = (1 - s) * (1 - t) * 2 * O_below[l] + (knot ? 0 : (1 - s) * (1 - s) * D[l]);
-                            e.diagonal[l] += to_lower, e.whole[l] += to_lower;
-                            e.coupling[l] += O_below[l] * ((1 - t) * s + t * (1 - s)) + (knot ? 0 : s * (1 - s) * D[l]);
-                            e.above[l] += 2 * O_below[l] * t * s + (knot ? 0 : s * s * D[l]);
-                            if (!knot) continue;
-                            const auto [inverse, ratio] = Elimination::divide(e.diagonal[l], e.whole[l], e.coupling[l]);
-                            if (k > 0) {
-                                level.inverse[e.place[l]] = static_cast<float>(inverse);
-                                level.ratio[e.place[l]] = static_cast<float>(ratio);
-                            }
-                            e.whole[l] = D[l] + e.above[l];
-                            e.diagonal[l] = e.whole[l] - (k > 0 ? e.coupling[l] * ratio : 0);
-                            e.coupling[l] = e.above[l] = 0;
-                            e.place[l] = first + l;
-                        }
-                        continue;
-                    }
-                    float *inverse_below = level.inverse.data() + first - row, *ratio_below = level.ratio.data() + first - row;
-#pragma omp simd
-                    for (int i = 0; i < count; ++i) {
-                        const auto [inverse, ratio] = Elimination::divide(e.diagonal[at(i)], e.whole[at(i)], O_below[at(i)]);
-                        inverse_below[i] = static_cast<float>(inverse);
-                        ratio_below[i] = static_cast<float>(ratio);
-                        e.whole[at(i)] = D[at(i)];
-                        e.diagonal[at(i)] = D[at(i)] - O_below[at(i)] * ratio;
-                    }
-                }
-                const std::size_t top = A.first(z, A.rows - 1, parity) + at(begin);
-                for (int i = 0; i < count; ++i)
-                    level.inverse[top + at(i)] = static_cast<float>(Elimination::divide(e.diagonal[at(i)], e.whole[at(i)], 0)[0]);
-            }
-    });
 }
 
 /// x of columns side by side from b and from the columns beside them: L D Lᵀ, upwards and down again. `alone`: those beside are zero. Only
@@ -241,32 +91,37 @@ void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, 
     }
 }
 
-/// All columns, one colour of the checkerboard after the other. Around a periodic axis with an odd number of columns the last line comes by
-/// itself; along a line the neighbour beyond the end is what it was before.
-void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero) {
-    const int last = A.n[1] - 1, lines = A.joint(1) && last > 0 ? last : A.n[1], phases = lines < A.n[1] ? 4 : 2;
-    for (int i = 0; i < phases; ++i) {
-        const int phase = upwards ? i : phases - 1 - i, colour = phase % 2;
-        const bool alone = from_zero && i == 0;
-        const int z_begin = phase < 2 ? 0 : last, z_end = phase < 2 ? lines : A.n[1];
-        if (A.periodic[0] && A.n[0] > 1 && !alone) parallel_for(z_begin, z_end, [&](int z) { wrap_line(A, z, level.x.data()); });
-        const auto parity = [&](int z) { return (colour + z) % 2; };
-        for_each_block(A, z_begin, z_end, parity,
-                       [&](int z, int begin, int end) { solve_columns(A, level, z, parity(z), begin, end, alone); });
-    }
-}
-
 /// Whether columns of the first colour alone may have a residual after sweeps that end with the second, and need a correction before
 /// sweeps that begin with it.
 static bool one_colour(const ColumnMatrix& A) { return !A.joint(0) && !A.joint(1); }
 
+/// All columns, one colour of the checkerboard after the other. Around a periodic axis with an odd number of columns the last line comes by
+/// itself; along a line the neighbour beyond the end is what it was before. Over ranks each colour is brought from beyond the cuts, the
+/// last one where it is `read`.
+void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero, bool read) {
+    const int last = A.n[1] - 1, lines = A.joint(1) && last > 0 ? last : A.n[1], phases = lines < A.n[1] ? 4 : 2;
+    const LineRange own = A.own();
+    if (from_zero && !one_colour(A))
+        for_each_line_near(A, 1, [&](int z) { std::fill_n(level.x.data() + z * A.line_stride(), A.line_stride(), 0.0f); });
+    for (int i = 0; i < phases; ++i) {
+        const int phase = upwards ? i : phases - 1 - i, colour = phase % 2;
+        const bool alone = from_zero && i == 0;
+        const int z_begin = std::max(own.begin, phase < 2 ? 0 : last), z_end = std::min(own.end, phase < 2 ? lines : A.n[1]);
+        if (A.periodic[0] && A.n[0] > 1 && !alone) parallel_for(z_begin, z_end, [&](int z) { wrap_line(A, z, level.x.data()); });
+        const auto parity = [&](int z) { return (colour + z) % 2; };
+        for_each_block(A, z_begin, z_end, parity,
+                       [&](int z, int begin, int end) { solve_columns(A, level, z, parity(z), begin, end, alone); });
+        if (read || i + 1 < phases) refresh_lines(A, level.x);
+    }
+}
+
 /// r = b − A x on shared rows.
 void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
     const std::ptrdiff_t row = A.row_stride();
-    if (A.periodic[0] && A.n[0] > 1) parallel_for(0, A.n[1], [&](int z) { wrap_line(A, z, level.x.data()); });
+    if (A.periodic[0] && A.n[0] > 1) for_each_line_near(A, 0, [&](int z) { wrap_line(A, z, level.x.data()); });
     for (int colour = 0; colour < (one_colour(A) ? 1 : 2); ++colour) {
         const auto parity = [&](int z) { return (colour + z) % 2; };
-        for_each_block(A, 0, A.n[1], parity, [&](int z, int begin, int end) {
+        for_each_block(A, A.own().begin, A.own().end, parity, [&](int z, int begin, int end) {
             const Beside to(A, z, parity(z));
             const int count = end - begin;
             for (int k = 0; k < A.rows; ++k) {
@@ -282,11 +137,13 @@ void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
     }
 }
 
-/// b of the parents: Pᵀ r.
+/// b of the parents: Pᵀ r. Over ranks everybody gets all of the first level that is not shared.
 void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& level, const ColumnMatrix& coarse, Level& next) {
     const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     const bool all = !one_colour(A);
-    parallel_for(0, coarse.n[1], [&](int Z) {
+    ColumnPlaces parents = coarse;
+    parents.cut = halved(A.cut);
+    for_each_line_near(parents, 0, [&](int Z) {
         for (int k = 0; k < A.rows; ++k)
             for (const int parity : {0, 1}) {
                 float* b = next.b.data() + coarse.first(Z, k, parity);
@@ -303,13 +160,15 @@ void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& leve
             for (int begin = 0; begin < coarse.of_parity(parity); begin += lanes)
                 gather(coarse, Z, parity, begin, std::min(begin + lanes, coarse.of_parity(parity)), next.b.data());
     });
+    if (!A.cut.empty() && coarse.cut.empty())
+        slabs().gather(parents.cut, {next.b.data(), sizeof(float) * at(coarse.line_stride()), coarse.n[1]});
 }
 
-/// x += P x of the parents.
+/// x += P x of the parents; over ranks beyond the cuts too, where x is known of children and parents.
 void ColumnMultigrid::add_correction(const ColumnMatrix& A, Level& level, const ColumnMatrix& coarse, const Level& next) {
     const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     const bool all = !one_colour(A);
-    parallel_for(0, A.n[1], [&](int z) {
+    for_each_line_near(A, 1, [&](int z) {
         for (int k = 0; k < A.rows; ++k)
             for (int dx = 0; dx < sx; ++dx) {
                 if (!all && (dx + z) % 2 != 0) continue;
@@ -329,19 +188,19 @@ void ColumnMultigrid::cycle(std::size_t l, const ColumnMatrix& A) {
         solve_columns(A, level, 0, 0, 0, 1, true);
         return;
     }
-    for (int s = 0; s < sweeps_; ++s) sweep(A, level, true, s == 0);
+    for (int s = 0; s < sweeps_; ++s) sweep(A, level, true, s == 0, true);
     residual(A, level);
     restrict_residual(A, level, levels_[l + 1].coarse, levels_[l + 1]);
     cycle(l + 1, levels_[l + 1].coarse);
     add_correction(A, level, levels_[l + 1].coarse, levels_[l + 1]);
-    for (int s = 0; s < sweeps_; ++s) sweep(A, level, false, false);
+    for (int s = 0; s < sweeps_; ++s) sweep(A, level, false, false, l > 0 || s + 1 < sweeps_);
 }
 
 /// x of the finest level times scale_ = M⁻¹ r_.
 void ColumnMultigrid::precondition(const ColumnMatrix& A, real largest) {
     Level& level = levels_[0];
     scale_ = largest > 0 ? largest : 1;  // single precision has no room for what is very small
-    parallel_for(0, A.n[1], [&](int z) {
+    for_each_line_near(A, 0, [&](int z) {
         const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
         for (std::size_t i = from; i < to; ++i) level.b[i] = static_cast<float>(r_[i] / scale_);
     });

@@ -5,6 +5,8 @@
 //   prolongation    constant across, the parent's linear functions at the child's knots
 //   operator        Galerkin: Pᵀ A_v P + ½ Pᵀ A_h P; the half makes constants across as stiff as they should be (Braess 1995)
 //   cycle           V(2,2): symmetric and positive, as conjugate gradients need it
+// Over ranks each has some lines of columns (ColumnPlaces::cut), and after each colour those beyond its cuts are brought. Levels that are
+// not worth messages are everybody's. What is summed is summed line by line, so that no bit depends on the number of ranks.
 #pragma once
 #include "poisson/poisson.hpp"
 #include "tallcell/column_matrix.hpp"
@@ -13,9 +15,14 @@
 
 namespace weir::tallcell {
 
+/// Whether a level's lines are worth sharing among ranks by this cut; and the cut of the level below it.
+bool worth_sharing(const ColumnPlaces& places, const Cut& cut);
+Cut halved(Cut cut);
+
 class ColumnMultigrid {
 public:
-    explicit ColumnMultigrid(const poisson::Options& options, int sweeps = 2) : options_(options), sweeps_(sweeps) {}
+    static constexpr int usual_sweeps = 2;
+    explicit ColumnMultigrid(const poisson::Options& options, int sweeps = usual_sweeps) : options_(options), sweeps_(sweeps) {}
     /// Builds all coarser levels from the finest.
     void setup(const ColumnMatrix& finest);
     /// A x = b by knots; x holds the first guess, dropped where zero is nearer. The report's residuals are as poisson::Report says.
@@ -39,9 +46,12 @@ private:
         ColumnPlaces places;  // of all these
     };
     static void coarsen(const ColumnMatrix& A, ColumnMatrix& to);
+    static void add_children(const ColumnMatrix& A, ColumnMatrix& to, int Z);
+    static void add_lower_faces(const ColumnMatrix& A, ColumnMatrix& to, int Z);
+    static void narrow_beside(const ColumnMatrix& A, Level& level, int z);
     static void factorise(const ColumnMatrix& A, Level& level);
     void cycle(std::size_t l, const ColumnMatrix& A);
-    void sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero);
+    void sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero, bool read);
     static void solve_columns(const ColumnMatrix& A, Level& level, int z, int parity, int begin, int end, bool alone);
     static void residual(const ColumnMatrix& A, Level& level);
     static void restrict_residual(const ColumnMatrix& A, const Level& level, const ColumnMatrix& coarse, Level& next);
@@ -49,6 +59,12 @@ private:
     void place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const;
     void fetch(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const;
     void precondition(const ColumnMatrix& A, real largest);
+    struct Residual {
+        real norm, largest, b_squares, b_largest;
+    };
+    Residual residual(const ColumnMatrix& A);
+    void turn(const ColumnMatrix& A, bool first, real alpha, real& rz);
+    real advance(const ColumnMatrix& A, real alpha, real& largest);
 
     poisson::Options options_;
     int sweeps_;

@@ -40,9 +40,11 @@ template <int D, class Deep>
 void place_knots(const Layout<D>& layout, const Grid<poisson::Cell, D>& cells, Division division, int depth, Deep&& deep, Knots& knots) {
     const int columns = layout.columns();
     knots.start.resize(static_cast<std::size_t>(columns) + 1);
+    const std::vector<char> near = layout.near_lines();
+    const auto known = [&](int c) { return near.empty() || near[static_cast<std::size_t>(c / layout.n[0])] != 0; };
     parallel_for(0, columns, [&](int c) {
         int count = 0;
-        walk_column(layout, cells, division, depth, deep, c, [&](int, int) { ++count; });
+        if (known(c)) walk_column(layout, cells, division, depth, deep, c, [&](int, int) { ++count; });
         knots.start[static_cast<std::size_t>(c) + 1] = count;
     });
     knots.start[0] = 0;
@@ -51,10 +53,11 @@ void place_knots(const Layout<D>& layout, const Grid<poisson::Cell, D>& cells, D
     resize_scratch(knots.length, knots.row.size());
     parallel_for(0, columns, [&](int c) {
         auto k = static_cast<std::size_t>(knots.start[static_cast<std::size_t>(c)]);
-        walk_column(layout, cells, division, depth, deep, c, [&](int row, int length) {
-            knots.row[k] = row;
-            knots.length[k++] = length;
-        });
+        if (known(c))
+            walk_column(layout, cells, division, depth, deep, c, [&](int row, int length) {
+                knots.row[k] = row;
+                knots.length[k++] = length;
+            });
     });
 }
 

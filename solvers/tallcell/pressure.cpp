@@ -42,7 +42,10 @@ void TallPressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::ui
 template <int D>
 void TallPressure<D>::find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const {
     const real thin = -thinnest * frame_.h_min();
-    for_each_line(frame_.cells, [&](const Index<D>&, std::size_t from) {
+    const std::vector<char> near = planes_near(frame_.cells[D - 1], 1, frame_.periodic(D - 1));
+    const AllPlanes all;
+    for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t from) {
+        if (!near.empty() && near[at(first[D - 1])] == 0) return;
         for (std::size_t i = from; i < from + at(frame_.cells[0]); ++i)
             state.cells[i] = !closed.empty() && closed[i] ? Cell::solid : phi[i] < thin ? Cell::fluid : Cell::air;
     });
@@ -51,25 +54,49 @@ void TallPressure<D>::find_liquid(const Grid<real, D>& phi, const Grid<std::uint
 template <int D>
 void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>& state) {
     elements_end_ = 0;
+    refill_scratch(row_index_, at(layout_.rows), -1);
+    for (const int row : knots_.row) row_index_[at(row)] = 0;
     for (std::size_t i = 0; i < knots_.row.size(); ++i)
         if (knots_.length[i] > 1) elements_end_ = std::max(elements_end_, knots_.row[i] + knots_.length[i] + 1);
     find_runs(state);
+    agree_on_rows();
     fastest_run_ = 0, fastest_run_below_ = 0;
     assemble(phi, state);
-    if (knots_.count() > 0) solver_.setup(A_);
+    if (A_.rows > 0) solver_.setup(A_);
     for (auto* list : {&b_, &q_, &mean_}) resize_scratch(*list, at(knots_.count()));
+}
+
+/// Over ranks, of all columns: which rows they share, above which there is no element, and below which all faces are in runs.
+template <int D>
+void TallPressure<D>::agree_on_rows() {
+    if (!over_ranks()) return;
+    const std::size_t rows = row_index_.size(), count = rows + 2, ranks = static_cast<std::size_t>(slabs().ranks());
+    resize_scratch(rows_of_ranks_, count * ranks);
+    const auto own = rows_of_ranks_.begin() + static_cast<std::ptrdiff_t>(count * static_cast<std::size_t>(slabs().rank()));
+    std::copy(row_index_.begin(), row_index_.end(), own);
+    own[layout_.rows] = elements_end_, own[layout_.rows + 1] = -floor_;
+    std::vector<std::size_t> begins;
+    for (std::size_t r = 0; r <= ranks; ++r) begins.push_back(r * count);
+    slabs().gather_parts(rows_of_ranks_.data(), sizeof(int), begins);
+    for (std::size_t r = 0; r < ranks; ++r) {
+        const int* of_rank = rows_of_ranks_.data() + r * count;
+        for (std::size_t row = 0; row < rows; ++row) row_index_[row] = std::max(row_index_[row], of_rank[row]);
+        elements_end_ = std::max(elements_end_, of_rank[rows]), floor_ = std::min(floor_, -of_rank[rows + 1]);
+    }
 }
 
 template <int D>
 void TallPressure<D>::find_runs(const MacState<D>& state) {
     const int columns = layout_.columns();
+    const ColumnRange own = layout_.own(), above = layout_.above();
+    const auto done = [&](int c) { return (c >= own.begin && c < own.end) || (c >= above.begin && c < above.end); };
     for (int h = 0; h < D - 1; ++h) {
         auto& starts = run_start_[at(h)];
         starts.resize(at(columns) + 1);
         const auto nothing = [](std::size_t, int, const Row&, const Row&) {};
         parallel_for(0, columns, [&](int c) {
             int count = 0;
-            visit(state, h, c, nothing, [&](const Run&) { ++count; });
+            if (done(c)) visit(state, h, c, nothing, [&](const Run&) { ++count; });
             starts[at(c) + 1] = count;
         });
         starts[0] = 0;
@@ -78,10 +105,11 @@ void TallPressure<D>::find_runs(const MacState<D>& state) {
         resize_scratch(w_[at(h)], at(starts.back()));
         parallel_for(0, columns, [&](int c) {
             int i = starts[at(c)];
-            visit(state, h, c, nothing, [&](const Run& run) { runs_[at(h)][at(i++)] = run; });
+            if (done(c)) visit(state, h, c, nothing, [&](const Run& run) { runs_[at(h)][at(i++)] = run; });
         });
     }
-    floor_ = -static_cast<int>(ordered_max(columns, [&](int c) { return static_cast<real>(-covered_from_below(c)); }));
+    floor_ =
+        -static_cast<int>(ordered_max(own.end - own.begin, [&](int i) { return static_cast<real>(-covered_from_below(own.begin + i)); }));
 }
 
 /// Up to which row, from the bottom, a column's faces on its lower sides, and its own, are in runs. Walls have a velocity of their own.
@@ -103,7 +131,7 @@ int TallPressure<D>::covered_from_below(int column) const {
 
 template <int D>
 const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacState<D>& state, real dt) {
-    if (knots_.count() == 0) return nothing_to_do_;
+    if (A_.rows == 0) return nothing_to_do_;
     weak_divergence(state, b_);
     const real scale = dt / state.rho;
     const ColumnRange own = layout_.own();
@@ -111,22 +139,11 @@ const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacSta
         const Line cell = line(state.p, c);
         for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(knots_.row[at(i)])];
     });
-    bring_right_side();
     const poisson::Report& report = solver_.solve(A_, knots_, b_, q_);
     for (int h = 0; h < D - 1; ++h) project_faces(phi, state, h, own);
     project_faces(phi, state, D - 2, layout_.above());
     project_vertical(phi, state);
     return report;
-}
-
-/// Over ranks everybody solves: what all columns have diverged by, and the first guess.
-template <int D>
-void TallPressure<D>::bring_right_side() {
-    if (!over_ranks()) return;
-    const Cut& cut = *detail::own_share.cut;
-    std::vector<std::size_t> begins;
-    for (const int z : cut.at) begins.push_back(at(knots_.start[at(z * layout_.n[0])]));
-    for (auto* list : {&b_, &q_}) slabs().gather_parts(list->data(), sizeof(real), begins);
 }
 
 /// u −= ∇q on the faces along horizontal axis h, on the lower side of columns.
@@ -251,7 +268,8 @@ typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) con
 template <int D>
 void TallPressure<D>::show_heights(Grid<real, D>& to) const {
     const Knots& knots = knots_;
-    parallel_for(0, layout_.columns(), [&](int c) {
+    const ColumnRange own = layout_.own();
+    parallel_for(own.begin, own.end, [&](int c) {
         const Line cell = line(to, c);
         int row = 0;
         for (int i = knots.start[at(c)]; i < knots.start[at(c) + 1]; ++i) {
@@ -264,13 +282,19 @@ void TallPressure<D>::show_heights(Grid<real, D>& to) const {
 }
 
 template <int D>
+std::int64_t TallPressure<D>::unknowns() const {
+    const ColumnRange own = layout_.own();
+    return sum_of_ranks(knots_.start[at(own.end)] - knots_.start[at(own.begin)]);
+}
+
+template <int D>
 std::size_t TallPressure<D>::samples() const {
     return 2 * (w_[0].size() + w_[1].size());
 }
 
 template <int D>
 std::size_t TallPressure<D>::bytes() const {
-    std::size_t total = knots_.bytes() + A_.bytes() + row_index_.capacity() * sizeof(int) + solver_.bytes() +
+    std::size_t total = knots_.bytes() + A_.bytes() + (row_index_.capacity() + rows_of_ranks_.capacity()) * sizeof(int) + solver_.bytes() +
                         (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
     for (std::size_t h = 0; h < 2; ++h)
         total += run_start_[h].capacity() * sizeof(int) + runs_[h].capacity() * sizeof(Run) + w_[h].capacity() * sizeof(Pair);

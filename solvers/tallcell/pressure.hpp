@@ -2,8 +2,7 @@
 // Pᵀ A_f P, symmetric and positive, and the projection is orthogonal: idempotent, never adds energy, exact for the pressure of water at
 // rest. The surface enters by ghost fluid (Gibou et al. 2002) and solids by open fractions (Batty et al. 2007), as on the uniform grid.
 // After a projection the vertical velocity inside elements is rebuilt from the bottom up, which makes it free of divergence cell by cell.
-// Over ranks each has all knots and solves for all of the pressure; what lies between these and the lattice it does of its own columns, and
-// of the faces that these share with the line of columns beyond.
+// Over ranks each has its own lines of columns, the faces that these share with the line beyond, and the knots of a line beyond either cut.
 #pragma once
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
@@ -53,6 +52,10 @@ public:
     int floor_of_singles() const { return floor_; }
     /// How many runs there are along an axis; of the vertical one, knots.
     std::size_t run_count(int a) const { return a == layout_.up ? at(knots_.count()) : runs_[layout_.axes[0] == a ? 0 : 1].size(); }
+    /// Unknowns of the pressure.
+    std::int64_t unknowns() const;
+    /// Whether all columns have been set here; over ranks not once a step has begun.
+    bool has_all() const { return A_.cut.empty(); }
     /// Solves for the pressure and makes the unknowns free of divergence.
     const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt);
     /// Back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
@@ -74,7 +77,7 @@ public:
     ColumnMultigrid& solver() { return solver_; }
     /// y = A x, by knots.
     void multiply(const std::vector<real>& x, std::vector<real>& y) { solver_.multiply(A_, knots_, x, y); }
-    /// Of every cell: how high the element is in which it lies [m]; 0 outside the liquid.
+    /// Of every cell of the columns that are done here: how high the element is in which it lies [m]; 0 outside the liquid.
     void show_heights(Grid<real, D>& to) const;
     /// The runs of faces along axis a above one another, on the lower side of a column (its own vertical faces where a is up), bottom up.
     class RunsUp {
@@ -112,6 +115,7 @@ private:
     void find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const;
     void finish_surface(const Grid<real, D>& phi, const MacState<D>& state);
     void find_runs(const MacState<D>& state);
+    void agree_on_rows();
     int covered_from_below(int column) const;
     void assemble(const Grid<real, D>& phi, const MacState<D>& state);
     void find_shared_rows();
@@ -123,7 +127,6 @@ private:
         return std::min(1 - phi[air] / phi[liquid], largest_cut_);  // 1/θ between a liquid cell and one of air
     }
     static constexpr int faces() { return 2 * (D - 1); }
-    void bring_right_side();
     void project_faces(const Grid<real, D>& phi, MacState<D>& state, int h, const ColumnRange& columns);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
     /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
@@ -201,7 +204,8 @@ private:
     Layout<D> layout_;
     poisson::Options options_;
     Knots knots_;
-    std::vector<int> row_index_;  // of the lattice's rows among those that columns share, −1 for others
+    std::vector<int> row_index_;      // of the lattice's rows among those that columns share, −1 for others
+    std::vector<int> rows_of_ranks_;  // what each knows of the lattice's rows
     ColumnMatrix A_;
     ColumnMultigrid solver_;
     std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side

@@ -1,12 +1,14 @@
 // What several ranks that run one scene of tall cells have of one another. Each owns the planes between two cuts, and in them whole lines
-// of columns; what is linear within columns it finds of its own. Knots, the matrix and the pressure everybody has and finds whole.
+// of columns, their knots and their pressure; coarse levels of this are everybody's (multigrid.hpp).
 #include "tallcell/solver.hpp"
 
 namespace weir::tallcell {
 
 Cut cut_of_columns(const scene::Scene& scene, int ranks) {
     if (scene.dim() == 2 || up_axis<3>(gravity_of<3>(scene)) == 2) return {};
-    return cut_of(scene.index<3>("grid.cells")[2], ranks);
+    const int lines = scene.index<3>("grid.cells")[2];
+    const bool pairs = lines >= 2 * ranks;  // of lines, which are one on the next level of the multigrid: one for each rank, or all do all
+    return lines >= ranks && !pairs ? Cut{} : cut_of(lines, ranks);
 }
 
 /// The velocity as far beyond the cuts as anything moves in the step, and reads there: a point at the end of its path looks at two samples,
@@ -22,8 +24,7 @@ void TallCells<D>::bring_faces(real dt) {
     refresh_faces(state_.u, frame_, reach_);
 }
 
-/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time. What is liquid, and where
-/// its surface is, they have since the columns' knots were placed.
+/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
 template <int D>
 void TallCells<D>::make_whole() const {
     if (whole_) return;
@@ -31,6 +32,11 @@ void TallCells<D>::make_whole() const {
     auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
+    gather(const_cast<Grid<real, D>&>(surface_.phi));
+    if (!pressure_.has_all()) {
+        pressure_.show_heights(tall_);
+        gather(tall_);
+    }
     whole_ = true;
 }
 

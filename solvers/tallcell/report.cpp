@@ -9,7 +9,7 @@ namespace weir::tallcell {
 template <int D>
 FieldSet TallCells<D>::fields() const {
     make_whole();
-    pressure_.show_heights(tall_);
+    if (pressure_.has_all()) pressure_.show_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
     FieldView velocity{"velocity", "m/s", Where::face, "", {}};
@@ -26,7 +26,7 @@ std::vector<Integral> TallCells<D>::integrals() const {
     make_whole();
     const OwnPlanes mine(cut_);
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
-    list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.knots().count())});
+    list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});
     if (hand_) geometry::sum_up(*hand_, D, list);
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     return list;
@@ -36,6 +36,8 @@ template <int D>
 void TallCells<D>::save(Checkpoint& to) const {
     make_whole();
     const OwnPlanes mine(cut_);
+    const_cast<LevelSet<D>&>(surface_).make_layers_whole();  // of everybody's, as all of the state
+    gather(const_cast<MacState<D>&>(state_).cells);
     state_.save(to);
     surface_.save(to);
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};

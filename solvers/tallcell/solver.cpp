@@ -90,9 +90,6 @@ void TallCells<D>::control_volume() {
 template <int D>
 void TallCells<D>::remesh() {
     const auto timed = passes_.time("remesh");
-    surface_.make_whole();
-    surface_.make_layers_whole();
-    const AllPlanes all;  // every rank has all columns
     pressure_.set_surface(surface_, closed_, options_.shape, state_);
 }
 

@@ -5,19 +5,47 @@
 #include "tallcell/solver.hpp"
 
 #include <cmath>
+#include <set>
 
 namespace weir::tallcell {
 
 namespace {
 
-/// Knots of a column whose lowest `rows` cells are liquid below a flat surface, with a band of so many layers.
-std::size_t knots_of(const Shape& shape, int layers, int rows) {
-    const int top = rows - std::max(shape.depth, layers);
-    if (shape.division == Division::uniform || top <= 2) return static_cast<std::size_t>(rows);
+/// Rows of the knots of a column whose lowest `wet` cells are liquid below a flat surface, with a band of so many layers.
+void add_knots(const Shape& shape, int layers, int wet, std::set<int>& rows) {
+    const int top = wet - std::max(shape.depth, layers);
     std::array<int, 64> list;
-    const int count = divide(shape.division, 0, top - 1, rows, list);
-    const int above = count > 0 ? rows - 1 - list[static_cast<std::size_t>(count) - 1] : rows;
-    return static_cast<std::size_t>(count + above);
+    const int count = shape.division == Division::uniform || top <= 2 ? 0 : divide(shape.division, 0, top - 1, wet, list);
+    rows.insert(list.begin(), list.begin() + count);
+    for (int row = count > 0 ? list[static_cast<std::size_t>(count) - 1] : 0; row < wet; ++row) rows.insert(row);
+}
+
+/// Setting up the levels, and a solve of so many iterations (levels.cpp, multigrid.cpp, conjugate_gradients.cpp).
+void tally_pressure(const ColumnPlaces& finest, int sweeps, int iterations, Tally& tally) {
+    const auto ranks = static_cast<std::size_t>(tally.cut().ranks());
+    const auto line_of = [](const ColumnPlaces& places, std::size_t bytes) {
+        return PlaneSize{bytes * static_cast<std::size_t>(places.line_stride()), places.n[1]};
+    };
+    for (ColumnPlaces level = finest;;) {
+        const std::size_t looks = ColumnMatrix::bytes_of_look() * static_cast<std::size_t>(level.rows);
+        tally.everywhere(looks, 1, looks * ranks);
+        const int colours = level.joint(1) ? 4 : 2, unread = level.n == finest.n ? 1 : 0;  // the last colour of a cycle
+        const PlaneSize x = line_of(level, sizeof(float));
+        tally.refresh(level.cut, level.periodic[1], std::span(&x, 1), 1, std::int64_t{2 * sweeps * colours - unread} * iterations);
+        for (int& n : level.n) n = (n + 1) / 2;
+        level.cut = halved(level.cut);
+        if (worth_sharing(level, level.cut)) continue;
+        tally.gather(level.cut, line_of(level, sizeof(std::uint8_t)), 1);
+        tally.gather(level.cut, line_of(level, sizeof(real)), 8);  // T, lids, sinks, W
+        tally.gather(level.cut, line_of(level, sizeof(float)), iterations);
+        break;
+    }
+    const auto numbers = [&](std::size_t count) { return PlaneSize{sizeof(real) * count, finest.n[1]}; };
+    const auto blocks = static_cast<std::size_t>(finest.blocks_of_line());
+    tally.refresh({line_of(finest, sizeof(real))}, 1, 2 + iterations);  // x of both true residuals, and directions
+    tally.gather(numbers(1), 2 + iterations);                           // their products
+    tally.gather(numbers(4 * blocks), 2);                               // residuals and right-hand side
+    tally.gather(numbers(2 * blocks), 2 * iterations);                  // z·r and z·Ap, and residuals
 }
 
 /// What the formula does not know the messages of.
@@ -46,27 +74,28 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     const surface::SurfaceTally<3> surface(n, lattice.h, scene.number("time.cfl"), sides.periodic(2));
     const auto &cells = surface.cells, &across = surface.faces[2];
     Tally tally(cut, of.rank, sides.periodic(2));
+    const int up = up_axis<3>(gravity_of<3>(scene));
     const int reach = std::min(n[2], shape.cells_crossed + 3);
     tally.gather({sizeof(real), across.count});  // how far anything moves
     tally.refresh(surface.faces, reach);
     tally.refresh({cells}, reach, 2);  // the level set, before and after it moves
     surface.distance(tally);
-    tally.gather(cells);  // to place the knots
-    tally.gather(surface::plane_of<3>(n, sizeof(std::uint8_t)));
+    const std::size_t told = sizeof(int) * static_cast<std::size_t>(n[up] + 2);  // of rows of the lattice, once knots are placed
+    tally.everywhere(told, 1, told * static_cast<std::size_t>(of.ranks));
     if (options.maccormack) {
         tally.refresh({across}, 1);  // what is predicted
         tally.refresh(surface.faces, reach);
     }
     tally.refresh({across}, 1, 3);  // the velocity after motion, before walls and after
-    const int up = up_axis<3>(gravity_of<3>(scene)), columns = n[0];
-    std::size_t own = 0, all = 0;
-    for (int z = 0; z < n[2]; ++z) {
-        const auto rows = static_cast<int>(std::lround(geometry::wet_part_of_plane<3>(scene, z) * n[up]));
-        const std::size_t knots = static_cast<std::size_t>(up == 0 ? n[1] : columns) * knots_of(options.shape, surface.layers, rows);
-        all += knots;
-        if (z >= cut.begin(of.rank) && z < cut.end(of.rank, n[2])) own += knots;
-    }
-    tally.everywhere(sizeof(real) * own, 2, sizeof(real) * all);  // right-hand side and guess: each solves for itself
+    std::set<int> rows;
+    for (int z = 0; z < n[2]; ++z)
+        add_knots(options.shape, surface.layers, static_cast<int>(std::lround(geometry::wet_part_of_plane<3>(scene, z) * n[up])), rows);
+    ColumnPlaces finest;
+    finest.n = {up == 0 ? n[1] : n[0], n[2]};
+    finest.periodic = {sides.periodic(up == 0 ? 1 : 0), sides.periodic(2)};
+    finest.rows = static_cast<int>(rows.size());
+    finest.cut = cut;
+    tally_pressure(finest, ColumnMultigrid::usual_sweeps, shape.iterations, tally);
     tally.everywhere(sizeof(real), 2, sizeof(real) * static_cast<std::size_t>(of.ranks));  // the fastest run, what diverges
     tally.refresh({across}, 1);
     surface.continue_velocity(tally, surface.layers - 1);

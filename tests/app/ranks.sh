@@ -213,7 +213,7 @@ waves)
 tallcell)
     compare deep "1 2,2 1,2 2,3 1,4 2" "$tall_deep"
     grep -q '"storage":"every rank holds whole grids"' deep-2-1/run.json || fail "run.json does not tell that grids are whole"
-    grep -q '"every_rank_does":"the knots of the columns, the pressure' deep-2-1/run.json || fail "run.json does not tell what is not shared"
+    grep -q '"every_rank_does":"the levels of the pressure of fewer than 20,000 unknowns' deep-2-1/run.json || fail "run.json does not tell what is not shared"
     compare flat "2 1,3 2,4 1" "$tall"
     tall_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
     clear='--set solids=[]' # columns are looked at together where no solid cuts them
@@ -225,7 +225,12 @@ tallcell)
     compare lines "2 1,4 2" "$tall_deep" $clear --set grid.cells=[32,48,26] --set grid.size=[0.64,0.96,0.52]
     compare lying "3 1" "$tall_deep" --set 'effects={gravity={g=[-9.81,0.0,0.0]}}'  # columns along x
     compare across "3 1" "$tall_deep" --set 'effects={gravity={g=[0.0,0.0,-9.81]}}' # columns through all slabs: every rank does all
-    compare thin "4 1" "$tall_deep" --set grid.cells=[28,48,7] --set grid.size=[0.56,0.96,0.14]
+    compare thin "4 1" "$tall_deep" --set grid.cells=[28,48,9] --set grid.size=[0.56,0.96,0.18]
+    compare few "4 1" "$tall_deep" --set grid.cells=[28,48,7] --set grid.size=[0.56,0.96,0.14] # no pair of lines for each
+    grep -q '"every_rank_does":"all of it"' few-4-1/run.json || fail "run.json does not tell that every rank does all of it"
+    # two levels of the pressure that are cut, and one with an odd number of lines around
+    compare levels "2 1,4 2" "$tall_deep" $clear --set grid.cells=[64,32,64] --set grid.size=[1.28,0.64,1.28] --set scheme.columns=uniform --set time.end=0.03
+    compare odd "3 1" "$tall_deep" $tall_ring $clear --set grid.cells=[27,48,25] --set grid.size=[0.54,0.96,0.5]
     compare flat_cells "3 1" "$tall_deep" --set grid.cells=[28,60,26]
     for scene in "$tall" "$tall_deep"; do
         in_two_parts 0.03 0.06 "$scene"

@@ -183,6 +183,11 @@ TEST("tallcell: deep water at rest sends what the formula says, around the cut a
     const std::string ring = "sides = { z_min = { kind = \"periodic\" }, z_max = { kind = \"periodic\" } }\n";
     expect_as_told(box, {2, 3}, {1e-4, 3, 8});
     expect_as_told(box + ring + "scheme = { columns = \"single\", advection = \"semi_lagrangian\" }\n", {2, 3}, {1e-4, 3, 8});
+    expect_as_told(deep +  // two levels of the pressure that are cut
+                       "dim = 3\ngrid = { cells = [64, 32, 64], size = [1.28, 0.64, 1.28] }\nscheme.columns = \"uniform\"\n"
+                       "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [1.28, 0.6, 1.28] } ]\n"
+                       "effects.gravity = { g = [0.0, -9.81, 0.0] }\n",
+                   {2}, {1e-4, 2, 4});
     expect_as_told(deep +
                        "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\n"
                        "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.3] } ]\n",

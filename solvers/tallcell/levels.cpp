@@ -1,0 +1,202 @@
+// The levels of the multigrid on columns: coarser matrices, and the factors of every column's block.
+#include "core/parallel.hpp"
+#include "core/scratch.hpp"
+#include "tallcell/column_rows.hpp"
+#include "tallcell/multigrid.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace weir::tallcell {
+
+void ColumnMultigrid::setup(const ColumnMatrix& finest) {
+    const ColumnMatrix* A = &finest;
+    for (std::size_t l = 0;; ++l) {
+        if (l == levels_.size()) levels_.emplace_back();
+        A = l == 0 ? &finest : &levels_[l].coarse;
+        factorise(*A, levels_[l]);
+        if (A->n[0] == 1 && A->n[1] == 1) break;
+        if (l + 1 == levels_.size()) levels_.emplace_back();
+        A = l == 0 ? &finest : &levels_[l].coarse;
+        coarsen(*A, levels_[l + 1].coarse);
+    }
+    if (places_ == finest) return;  // what lies between lines and rows is zero
+    places_ = finest;
+    for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_scratch(*list, finest.size(), 0.0);
+}
+
+/// A level whose lines are cut so is worth messages: it has enough entries, and none of its parents has children of two ranks.
+bool worth_sharing(const ColumnPlaces& places, const Cut& cut) {
+    constexpr std::size_t small_level = 20000;  // as of poisson's multigrid
+    const bool whole_pairs = std::all_of(cut.at.begin(), cut.at.end(), [&](int z) { return z % 2 == 0 || z == places.n[1]; });
+    return whole_pairs && at(places.n[0]) * at(places.n[1]) * at(places.rows) >= small_level;
+}
+
+Cut halved(Cut cut) {
+    for (int& z : cut.at) z = (z + 1) / 2;
+    return cut;
+}
+
+/// Children (sx X + dx, sz Z + dz) of parent (X, Z). Faces between children of one parent vanish; of the others half counts.
+void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
+    to.n = {(A.n[0] + 1) / 2, (A.n[1] + 1) / 2};
+    to.periodic = A.periodic;
+    to.row = A.row;
+    to.cut = halved(A.cut);
+    to.resize();
+    for_each_line_near(to, 0, [&](int Z) {
+        add_children(A, to, Z);
+        add_lower_faces(A, to, Z);
+    });
+    if (const int beyond = to.beyond(); beyond >= 0) add_lower_faces(A, to, beyond);
+    if (!to.cut.empty() && !worth_sharing(to, to.cut)) {
+        const auto plane = at(to.line_stride());
+        slabs().gather(to.cut, {to.state.data(), plane * sizeof(to.state[0]), to.n[1]});
+        for (auto* list : to.lists())
+            if (list != &to.share) slabs().gather(to.cut, {list->data(), plane * sizeof(real), to.n[1]});
+        std::fill(to.share.begin(), to.share.end(), 0.0);
+        to.cut = {};
+    }
+    to.finish();
+}
+
+/// Of all of a parent but its faces towards the line below.
+void ColumnMultigrid::add_children(const ColumnMatrix& A, ColumnMatrix& to, int Z) {
+    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
+    for (int k = 0; k < A.rows; ++k)
+        for (int dz = 0; dz < sz && sz * Z + dz < A.n[1]; ++dz)
+            for (int dx = 0; dx < sx; ++dx)
+                for (int X = 0; X < to.n[0] && sx * X + dx < A.n[0]; ++X) {
+                    const std::size_t child = A.at(sx * X + dx, sz * Z + dz, k), parent = to.at(X, Z, k);
+                    to.state[parent] |= A.state[child];
+                    to.vertical[parent] += A.vertical[child];
+                    to.lid[parent] += A.lid[child];
+                    to.sink[parent] += 0.5 * A.sink[child];
+                    to.sink_next[parent] += 0.5 * A.sink_next[child];
+                    if (dx == 0 && to.n[0] > 1) {
+                        to.beside[0][parent] += 0.5 * A.beside[0][child];
+                        to.beside_next[0][parent] += 0.5 * A.beside_next[0][child];
+                    }
+                }
+}
+
+void ColumnMultigrid::add_lower_faces(const ColumnMatrix& A, ColumnMatrix& to, int Z) {
+    const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
+    if (to.n[1] == 1) return;
+    for (int k = 0; k < A.rows; ++k)
+        for (int dx = 0; dx < sx; ++dx)
+            for (int X = 0; X < to.n[0] && sx * X + dx < A.n[0]; ++X) {
+                const std::size_t child = A.at(sx * X + dx, sz * Z, k), parent = to.at(X, Z, k);
+                to.beside[1][parent] += 0.5 * A.beside[1][child];
+                to.beside_next[1][parent] += 0.5 * A.beside_next[1][child];
+            }
+}
+
+namespace {
+
+/// L D Lᵀ of columns side by side, upwards: what is known of the knot whose pivot is not yet complete.
+struct Elimination {
+    Lanes<real> diagonal{}, whole{};  // of it, and without what has been taken from it
+    Lanes<real> coupling{}, above{};  // with the next knot, and what the element between gives to that
+    Lanes<std::size_t> place{};       // of it
+
+    /// The pivot's inverse and the ratio to the next entry. A column that touches neither air nor another is singular: its last pivot is
+    /// round-off, and counts as none.
+    static std::array<real, 2> divide(real diagonal, real whole, real coupling) {
+        const bool sound = diagonal > 64 * std::numeric_limits<real>::epsilon() * whole;
+        const real inverse = sound ? 1 / (sound ? diagonal : 1) : 0;
+        return {inverse, coupling * inverse};
+    }
+};
+
+}  // namespace
+
+/// W of a line, in single precision.
+void ColumnMultigrid::narrow_beside(const ColumnMatrix& A, Level& level, int z) {
+    const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
+    for (const std::size_t h : {at(0), at(1)})
+        for (std::size_t i = from; i < to; ++i) {
+            level.beside[h][i] = static_cast<float>(A.beside[h][i]);
+            level.beside_next[h][i] = static_cast<float>(A.beside_next[h][i]);
+        }
+}
+
+void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
+    const std::size_t size = A.size();
+    const bool moved = !(level.places == A);
+    if (moved)
+        for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
+            refill_scratch(*list, size, 0.0f);
+    level.places = A;
+    for (const std::size_t h : {at(0), at(1)}) {
+        resize_scratch(level.beside[h], size);
+        resize_scratch(level.beside_next[h], size);
+    }
+    const std::ptrdiff_t row = A.row_stride();
+    for_each_line_near(A, 0, [&](int z) { narrow_beside(A, level, z); });
+    if (const int beyond = A.beyond(); beyond >= 0) narrow_beside(A, level, beyond);
+    if (moved) narrow_beside(A, level, A.n[1]);
+    for_each_line_near(A, 0, [&](int z) {
+        for (const int parity : {0, 1})
+            for (int begin = 0; begin < A.of_parity(parity); begin += lanes) {
+                const int count = std::min(lanes, A.of_parity(parity) - begin);
+                const Beside to_side(A, z, parity);
+                Elimination e;
+                Lanes<real> D{}, O{}, O_below{};
+                for (int k = 0; k < A.rows; ++k) {
+                    const std::size_t first = A.first(z, k, parity) + at(begin);
+                    const real *c = A.vertical.data() + first, *lid = A.lid.data() + first, *sink = A.sink.data() + first;
+                    const real *w0 = A.beside[0].data() + first, *w1 = A.beside[1].data() + first;
+                    const real *n0 = A.beside_next[0].data() + first, *n1 = A.beside_next[1].data() + first;
+                    const real* sink_next = A.sink_next.data() + first;
+                    float *diagonal = level.diagonal.data() + first, *next = level.next.data() + first;
+#pragma omp simd
+                    for (int i = 0; i < count; ++i) {
+                        O_below[at(i)] = O[at(i)];
+                        D[at(i)] = (c[i] + c[i - row]) + (lid[i] + sink[i]) +
+                                   ((w0[i] + w0[i + to_side.x_upper]) + (w1[i] + w1[i + to_side.z_upper]));
+                        O[at(i)] = sink_next[i] - c[i] + ((n0[i] + n0[i + to_side.x_upper]) + (n1[i] + n1[i + to_side.z_upper]));
+                        diagonal[i] = static_cast<float>(D[at(i)]);
+                        next[i] = static_cast<float>(O[at(i)]);
+                    }
+                    if (k == 0 || k < A.mixed_end) {  // knots stand in different rows: one column after the other
+                        const real *share = A.share.data() + first, *share_below = share - row;
+                        for (int i = 0; i < count; ++i) {
+                            const std::size_t l = at(i);
+                            const bool knot = share[i] == 0;
+                            const real s = knot ? 1 : share[i], t = k > 0 ? share_below[i] : 0;
+                            const real to_lower = (1 - s) * (1 - t) * 2 * O_below[l] + (knot ? 0 : (1 - s) * (1 - s) * D[l]);
+                            e.diagonal[l] += to_lower, e.whole[l] += to_lower;
+                            e.coupling[l] += O_below[l] * ((1 - t) * s + t * (1 - s)) + (knot ? 0 : s * (1 - s) * D[l]);
+                            e.above[l] += 2 * O_below[l] * t * s + (knot ? 0 : s * s * D[l]);
+                            if (!knot) continue;
+                            const auto [inverse, ratio] = Elimination::divide(e.diagonal[l], e.whole[l], e.coupling[l]);
+                            if (k > 0) {
+                                level.inverse[e.place[l]] = static_cast<float>(inverse);
+                                level.ratio[e.place[l]] = static_cast<float>(ratio);
+                            }
+                            e.whole[l] = D[l] + e.above[l];
+                            e.diagonal[l] = e.whole[l] - (k > 0 ? e.coupling[l] * ratio : 0);
+                            e.coupling[l] = e.above[l] = 0;
+                            e.place[l] = first + l;
+                        }
+                        continue;
+                    }
+                    float *inverse_below = level.inverse.data() + first - row, *ratio_below = level.ratio.data() + first - row;
+#pragma omp simd
+                    for (int i = 0; i < count; ++i) {
+                        const auto [inverse, ratio] = Elimination::divide(e.diagonal[at(i)], e.whole[at(i)], O_below[at(i)]);
+                        inverse_below[i] = static_cast<float>(inverse);
+                        ratio_below[i] = static_cast<float>(ratio);
+                        e.whole[at(i)] = D[at(i)];
+                        e.diagonal[at(i)] = D[at(i)] - O_below[at(i)] * ratio;
+                    }
+                }
+                const std::size_t top = A.first(z, A.rows - 1, parity) + at(begin);
+                for (int i = 0; i < count; ++i)
+                    level.inverse[top + at(i)] = static_cast<float>(Elimination::divide(e.diagonal[at(i)], e.whole[at(i)], 0)[0]);
+            }
+    });
+}
+
+}  // namespace weir::tallcell
