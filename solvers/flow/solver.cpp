@@ -503,45 +503,6 @@ void FlowSolver<D>::bring_beside() const {
     whole_ = true;
 }
 
-/// The arrays of a field that is shown.
-template <int D>
-std::vector<Grid<real, D>*> FlowSolver<D>::shown(const std::string& field) const {
-    auto& state = const_cast<MacState<D>&>(state_);
-    std::vector<Grid<real, D>*> list;
-    if (field == "velocity")
-        for (int a = 0; a < D; ++a) list.push_back(&state.u[a]);
-    if (field == "pressure") list.push_back(&state.p);
-    if (auto* values = state.find(field)) list.push_back(values);
-    if (field == "vorticity")
-        for (auto& component : vorticity_) list.push_back(&component);
-    if (field == "divergence") list.push_back(&divergence_);
-    return list;
-}
-
-template <int D>
-std::unique_ptr<Solver::Brought> FlowSolver<D>::bring_to_first(const std::vector<std::string>& names) const {
-    if (kept_ == 0) return nullptr;
-    struct Lent final : Brought {
-        const FlowSolver& solver;
-        std::vector<Grid<real, D>*> grids{};
-        explicit Lent(const FlowSolver& s) : solver(s) {}
-        ~Lent() override {
-            const OwnPlanes mine = solver.own_planes();
-            for (auto* grid : grids) grid->store().close();
-        }
-    };
-    auto lent = std::make_unique<Lent>(*this);
-    const OwnPlanes mine = own_planes();
-    for (const FieldView& view : fields().fields) {
-        if (!names.empty() && std::find(names.begin(), names.end(), view.name) == names.end()) continue;
-        for (auto* grid : shown(view.name)) {
-            gather_to_first(*grid);
-            lent->grids.push_back(grid);
-        }
-    }
-    return lent;
-}
-
 template <int D>
 real FlowSolver<D>::advised_dt() const {
     const OwnPlanes mine(cut_);
