@@ -15,8 +15,8 @@
 
 namespace weir::output {
 
-/// The least and the largest of some numbers, as VTK finds them: of equal ones (0 and -0) the first, and of none what it calls the largest
-/// and the least double.
+/// The least and the largest of some numbers, as VTK finds them: of none what it calls the largest and the least double. Of equal ones (0
+/// and -0) the first, where VTK has that of whichever thread was first.
 struct Extremes {
     static constexpr double least_of_none = 1.0e+299, most_of_none = -1.0e+299;
     double least = least_of_none, most = most_of_none;
