@@ -88,8 +88,8 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
 std::string explain_ranks(const Simulation& simulation) {
     const scene::Scene& scene = simulation.scene();
     if (!slabs().several()) return {};
-    const sim::Shares shares = sim::shares_of(scene, slabs().ranks());
-    const Cut& cut = simulation.cut();
+    const sim::Shares& shares = simulation.shares();
+    const Cut& cut = shares.cut;
     std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, ";
     if (shares.nothing_shared()) return text + "every rank does all of it: there is nothing to cut\n";
     text += std::string("cut along ") + (scene.dim() == 2 ? "y" : "z");
@@ -193,12 +193,12 @@ private:
     using clock = std::chrono::steady_clock;
     void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankMemory>& memory) {
         if (!slabs().several()) return;
-        const sim::Shares shares = sim::shares_of(simulation.scene(), slabs().ranks());
+        const sim::Shares& shares = simulation.shares();
         using Holds = output::RunLog::Holds;
         const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
                             : simulation.solver().holds_own_planes()     ? Holds::own_planes
                                                                          : Holds::whole_grids;
-        log_.set_ranks(slabs().ranks(), simulation.cut(), holds, shares.by_all, sent, memory);
+        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.by_all, sent, memory);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);

@@ -3,8 +3,10 @@
 #include "core/halo.hpp"
 #include "core/slabs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 

@@ -5,6 +5,7 @@
 #include "heightfield/shallow_water.hpp"
 #include "heightfield/solver.hpp"
 #include "scene/formula.hpp"
+#include "scene/one_process.hpp"
 
 namespace weir::heightfield {
 
@@ -159,11 +160,8 @@ Cut cut_of_rows(const scene::Scene& scene, int ranks) {
 
 /// What of a scene is not cut into slabs.
 void over_ranks(const scene::Scene& scene) {
-    const auto refuse = [&](const std::string& key, const std::string& what) {
-        scene.refuse(key, key + ": " + what + " in one process only");
-    };
-    if (scene.dim() == 3 && !scene.root().tables("floats").empty()) refuse("floats", "objects float");
-    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
+    if (scene.dim() == 3 && !scene.root().tables("floats").empty()) scene::one_process_only(scene, "floats", "objects float");
+    scene::refuse_hand(scene);
 }
 
 /// Of a step over ranks: rows beside the cuts before each stage, and what stages say of all rows.

@@ -3,6 +3,7 @@
 #include "particles/heat.hpp"
 #include "rigid/bodies.hpp"
 #include "rigid/joints.hpp"
+#include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
 
 namespace weir::particles {
@@ -26,13 +27,10 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
 }
 
 void refuse_over_ranks(const scene::Scene& scene) {
-    const auto refuse = [&](const std::string& key, const std::string& what) {
-        scene.refuse(key, key + ": " + what + " in one process only");
-    };
-    if (scene.has("bodies") && !scene.root().tables("bodies").empty()) refuse("bodies", "bodies move");
-    if (heat_is_named(scene)) refuse("substance", "a substance is heated");
-    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
-    if (backend_of(scene).kind != backend::Choice::Kind::threads) refuse("scheme.backend", "this backend runs");
+    scene::refuse_bodies(scene);
+    if (heat_is_named(scene)) scene::one_process_only(scene, "substance", "a substance is heated");
+    scene::refuse_hand(scene);
+    if (backend_of(scene).kind != backend::Choice::Kind::threads) scene::one_process_only(scene, "scheme.backend", "this backend runs");
 }
 
 scene::PlainStep plain_step(std::vector<std::string> more_fields, std::vector<std::string> passes) {

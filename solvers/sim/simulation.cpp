@@ -93,8 +93,8 @@ Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::r
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
     : scene_(unread(fitting(std::move(scene), kinds))),
       kind_(sim::kind_named(scene_.solver(), kinds)),
-      cut_(std::make_shared<const Cut>(sim::shares_of(scene_, slabs().ranks(), kind_).cut)),
-      solver_(make_solver(scene_, kind_, *cut_)),
+      shares_(std::make_shared<sim::Shares>(sim::shares_of(scene_, slabs().ranks(), kind_))),
+      solver_(make_solver(scene_, kind_, shares_->cut)),
       probes_(scene_, *solver_),
       every_(scene_.root().number_or("output.every", infinity)),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
@@ -127,7 +127,7 @@ void Simulation::steer(const scene::Override& change) {
     scene::Scene changed = unread(scene_.steered(change, {kind_.schema}));
     Checkpoint state;
     solver_->save(state);
-    std::unique_ptr<Solver> solver = make_solver(changed, kind_, *cut_);
+    std::unique_ptr<Solver> solver = make_solver(changed, kind_, shares_->cut);
     if (!change.key.starts_with("time.") && !changed.root().was_read(change.key))
         changed.refuse(change.key, change.key + " does nothing in this scene");
     solver->restore(state);
@@ -146,13 +146,14 @@ void Simulation::replace(std::unique_ptr<Solver> solver) {
 
 /// Empty where the present one will do.
 Cut Simulation::better_cut(const Checkpoint& state) const {
-    if (cut_->empty() || !kind_.work_of_planes) return {};
+    const Cut& present = shares_->cut;
+    if (present.empty() || !kind_.work_of_planes) return {};
     constexpr double worth = 0.9;  // a solver is made anew for it, which takes as long as some steps
     const auto work = kind_.work_of_planes(scene_, &state);
-    if (static_cast<int>(work.size()) != cut_->planes()) return {};  // of another scene, which the solver refuses
-    Cut cut = cut_by_work(work, cut_->ranks());
+    if (static_cast<int>(work.size()) != present.planes()) return {};  // of another scene, which the solver refuses
+    Cut cut = cut_by_work(work, present.ranks());
     const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
-    return most(cut) < worth * most(*cut_) ? cut : Cut{};
+    return most(cut) < worth * most(present) ? cut : Cut{};
 }
 
 bool Simulation::asks_for_other_cut(const Checkpoint& state) const { return !better_cut(state).empty(); }
@@ -163,7 +164,7 @@ void Simulation::cut_anew(const Checkpoint& state) {
     std::unique_ptr<Solver> solver = make_solver(scene_, kind_, cut);
     solver->restore(state);
     replace(std::move(solver));
-    cut_ = std::make_shared<const Cut>(std::move(cut));
+    shares_->cut = std::move(cut);
 }
 
 real Simulation::end_time() const {
@@ -324,7 +325,7 @@ void Simulation::restore(const Checkpoint& from) {
         resume_changes(from);
         if (Cut cut = better_cut(from); !cut.empty()) {
             solver_ = make_solver(scene_, kind_, cut);
-            cut_ = std::make_shared<const Cut>(std::move(cut));
+            shares_->cut = std::move(cut);
         }
         solver_->restore(from);
         probes_.restore(from);

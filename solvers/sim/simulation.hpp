@@ -21,6 +21,10 @@
 
 namespace weir {
 
+namespace sim {
+struct Shares;  // sim/shares.hpp
+}
+
 /// A field as edit() hands it out: a copy, laid out as FieldView says, that takes the field's place when all of it may be.
 struct FieldEdit {
     std::string set, name, unit;
@@ -106,8 +110,8 @@ public:
     Solver& solver() { return *solver_; }
     const Solver& solver() const { return *solver_; }
     const scene::Scene& scene() const { return scene_; }
-    /// Over ranks, how the planes are cut now; empty in one process, and where particles are shared.
-    const Cut& cut() const { return *cut_; }
+    /// What each of several ranks has of the scene now. Its cut of planes is empty in one process, and where particles are shared.
+    const sim::Shares& shares() const { return *shares_; }
     /// Whether a state, as save() has put it or as it was read, asks for another cut: whoever has most to do would have a tenth less. All
     /// ranks ask together.
     bool asks_for_other_cut(const Checkpoint& state) const;
@@ -142,7 +146,7 @@ private:
 
     scene::Scene scene_;
     scene::SolverKind kind_;
-    std::shared_ptr<const Cut> cut_;
+    std::shared_ptr<sim::Shares> shares_;  // of this simulation alone
     std::unique_ptr<Solver> solver_;
     sim::Probes probes_;
     real end_ = 0, every_ = infinity, fixed_dt_ = 0, max_dt_ = infinity;  // fixed_dt_ 0: the solver advises

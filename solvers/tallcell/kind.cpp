@@ -2,6 +2,7 @@
 
 #include "core/traffic.hpp"
 #include "geometry/hand.hpp"
+#include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/kind.hpp"
@@ -67,13 +68,8 @@ Key scheme_keys() {
 
 /// What of a scene is not shared by ranks.
 void over_ranks(const scene::Scene& scene) {
-    const auto refuse = [&](const std::string& key, const std::string& what) {
-        scene.refuse(key, key + ": " + what + " in one process only");
-    };
-    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
-    for (std::size_t i = 0; scene.has("solids") && i < scene.root().tables("solids").size(); ++i)
-        if (const auto& solid = scene.root().tables("solids")[i]; solid.has("motion") && solid.text("motion.kind") != "rest")
-            refuse("solids[" + std::to_string(i) + "].motion", "solids move");
+    scene::refuse_hand(scene);
+    scene::refuse_moving_solids(scene);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // What a scene may say to the solver "mac_water".
+#include "scene/one_process.hpp"
 #include "staggered/kind.hpp"
 #include "core/traffic.hpp"
 #include "matter/heat.hpp"
@@ -58,16 +59,11 @@ Key scheme_keys() {
 
 /// What of a scene is not cut into slabs yet.
 void over_ranks(const scene::Scene& scene) {
-    const auto refuse = [&](const std::string& key, const std::string& what) {
-        scene.refuse(key, key + ": " + what + " in one process only");
-    };
-    if (!scene.root().tables("bodies").empty()) refuse("bodies", "bodies move");
-    if (LiquidHeat<2>::named(scene)) refuse("substance", "a substance melts or boils");
-    if (scene.effect("hand")) refuse("effects.hand", "the hand pushes");
-    for (std::size_t i = 0; scene.has("solids") && i < scene.root().tables("solids").size(); ++i)
-        if (const auto& solid = scene.root().tables("solids")[i]; solid.has("motion") && solid.text("motion.kind") != "rest")
-            refuse("solids[" + std::to_string(i) + "].motion", "solids move");
-    if (scene.root().text("scheme.poisson.method").starts_with("petsc")) refuse("scheme.poisson.method", "PETSc's methods are");
+    scene::refuse_bodies(scene);
+    if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts or boils");
+    scene::refuse_hand(scene);
+    scene::refuse_moving_solids(scene);
+    scene::refuse_petsc(scene);
 }
 
 }  // namespace

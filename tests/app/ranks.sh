@@ -47,6 +47,17 @@ compare() {
     done <<<"$list,"
 }
 
+# in_two_parts MIDDLE END SCENE [--set ...]: saved by three ranks, continued by two, it ends as one process does that ran through
+in_two_parts() {
+    local middle=$1 end=$2
+    shift 2
+    rm -rf parts whole
+    ends 0 over 3 "$weir" run "$@" --checkpoint-every 1000 --quiet --out parts --set time.end="$middle"
+    ends 0 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end="$end"
+    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end="$end"
+    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+}
+
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
 tall=$scenes/ranks_tall.toml tall_deep=$scenes/ranks_tall_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml one_end=$scenes/ranks_one_end.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
@@ -112,11 +123,7 @@ water_schemes)
     compare ring_own "2 1,4 1" "$water_deep" $water_ring $even --set time.cfl=2 --set time.max_dt=0.05
     grep -q '"storage":"every rank holds its own planes' ring_own-4-1/run.json || fail "a rank held more than its own planes"
     compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
-    # saved on three, continued on two
-    ends 0 over 3 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
-    ends 0 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.06
-    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.06
-    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    in_two_parts 0.03 0.06 "$water_deep"
     ;;
 water_cut) # planes are cut by what they hold: as the scene begins, as a restart finds it, and anew at checkpoints
     told_cut() { grep -o '"cut":\[[0-9,]*\]' "$1/run.json" | cut -d: -f2; }
@@ -127,10 +134,7 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     grep -q '"storage":"every rank holds its own planes' begun-4-2/run.json || fail "a rank held more than its own planes"
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$one_end" --checkpoint-every 1000 --quiet --threads 1 --out poisoned
     alike begun poisoned
-    # saved on three, continued on two, which are cut by what there is then
-    ends 0 over 3 "$weir" run "$one_end" --checkpoint-every 1000 --quiet --out parts --set time.end=0.06
-    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.07
-    diff -rq --exclude run.json --exclude checkpoint.weir begun parts >log || fail "a run in two parts is another"
+    in_two_parts 0.06 0.07 "$one_end"
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
     ends 2 over 2 "$weir" run --restart parts --quiet --set time.end=0.08 --set grid.cells=[24,20,72]
     says "does not fit the scene"
@@ -153,13 +157,8 @@ heightfield)
     compare ring_columns "2 1,3 2" "$columns" $around
     compare thin "4 1" "$shallow" --set grid.cells=[37,1,6]
     compare thin_columns "4 1" "$columns" --set grid.cells=[37,1,5]
-    # saved on three, continued on two
     for scene in "$shallow" "$columns"; do
-        rm -rf parts whole
-        ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
-        ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.4
-        ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.4
-        diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+        in_two_parts 0.2 0.4 "$scene"
     done
     ;;
 heightfield_2d) # one row of columns: everybody moves it, objects on it too
@@ -169,11 +168,7 @@ heightfield_2d) # one row of columns: everybody moves it, objects on it too
         grep -q '"every_rank_does":"all of it"' $model-3-2/run.json || fail "run.json does not tell that every rank does all of it"
     done
     compare floats "2 1,3 2" "$line" --set scheme.model=columns --set 'floats=[{size=[0.5,0.2],at=[5.0,0.35]}]'
-    rm -rf parts whole
-    ends 0 over 3 "$weir" run "$line" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
-    ends 0 "$weir" run "$line" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.4
-    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.4
-    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    in_two_parts 0.2 0.4 "$line"
     ;;
 waves)
     compare sea "$every" "$sea"
@@ -195,13 +190,8 @@ waves)
     compare row_basin "3 1" row.toml --set 'waves={model="basin"}' --set 'liquid=[{shape="wave",level=0.0,amplitude=0.5,wavelength=160.0}]'
     compare surface "3 2" row.toml --set grid.cells=[40,1] --set probes=[]
     grep -q '"every_rank_does":"all of it"' surface-3-2/run.json || fail "run.json does not tell that every rank does all of it"
-    # saved on three, continued on two
     for scene in "$sea" "$trains"; do
-        rm -rf parts whole
-        ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.2
-        ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.6
-        ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.6
-        diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+        in_two_parts 0.2 0.6 "$scene"
     done
     ;;
 tallcell)
@@ -221,13 +211,8 @@ tallcell)
     compare across "3 1" "$tall_deep" --set 'effects={gravity={g=[0.0,0.0,-9.81]}}' # columns through all slabs: every rank does all
     compare thin "4 1" "$tall_deep" --set grid.cells=[28,48,7] --set grid.size=[0.56,0.96,0.14]
     compare flat_cells "3 1" "$tall_deep" --set grid.cells=[28,60,26]
-    # saved on three, continued on two
     for scene in "$tall" "$tall_deep"; do
-        rm -rf parts whole
-        ends 0 over 3 "$weir" run "$scene" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
-        ends 0 "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.06
-        ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.06
-        diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+        in_two_parts 0.03 0.06 "$scene"
     done
     ;;
 particles_schemes)
@@ -242,11 +227,7 @@ particles_schemes)
     compare ring_sph "4 1" "$drops" $sph --set "sides={$ring}"
     compare ring_deep "3 1" "$drops_deep" --set "sides={$ring_deep}"
     compare ring_deep_sph "4 1" "$drops_deep" $sph --set "sides={$ring_deep}"
-    # saved on three, continued on two
-    ends 0 over 3 "$weir" run "$drops" --checkpoint-every 1000 --quiet --out parts --set time.end=0.04
-    ends 0 "$weir" run "$drops" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.08
-    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.08
-    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    in_two_parts 0.04 0.08 "$drops"
     ;;
 schemes)
     periodic='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},y_min={kind="periodic"},y_max={kind="periodic"}} --set emitters=[]'
@@ -417,11 +398,7 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     done
     ;;
 ends)
-    # saved on three, continued on two
-    ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out whole
-    ends 0 over 3 "$weir" run "$flat" --checkpoint-every 1000 --quiet --out parts --set time.end=0.08
-    ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end=0.12
-    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    in_two_parts 0.08 0.12 "$flat"
     # a checkpoint that is none, or of another scene: the words of one process, once, and its exit code
     refuses_to_continue() { # WORDS SCENE.. of a restart of broken/
         local words=$1

@@ -49,6 +49,21 @@ void add_rows(HtmlTable& table, const json& study) {
     }
 }
 
+/// What was asked for beyond the floor that is guarded, with how far each comes.
+std::string not_reached(const std::vector<json>& studies) {
+    HtmlTable table({"case", "pushed along", "asked", "last stable", "floor", "why it is not reached"},
+                    "Limits that were asked for and are not reached");
+    bool any = false;
+    for (const json& study : studies)
+        for (const json& l : study["limits"]) {
+            if (!l.contains("asked")) continue;
+            any = true;
+            table.row({word(text_at(study, "study")), word(axis_of(l)), value(number_at(l, "asked")), last_stable(l),
+                       value(number_at(l, "floor")), word(text_at(l, "not_reached"))});
+        }
+    return any ? "<h3 id=\"asked-limits\">Asked and not reached</h3>\n" + table.html() : "";
+}
+
 /// Each axis once, with what makes it hard.
 std::string reasons(const std::vector<json>& studies) {
     std::string list;
@@ -94,6 +109,7 @@ void Counts::add(const json& limit) {
         ++guards;
     else
         ++limits, unbroken += broke ? 0 : 1;
+    asked += limit.contains("asked") ? 1 : 0;
     below += limit.value("guarded", true) ? 0 : 1;
     doubted += text_at(limit, "doubt").empty() ? 0 : 1;
 }
@@ -101,7 +117,8 @@ void Counts::add(const json& limit) {
 std::string Counts::verdict() const {
     const std::string floors =
         below ? fmt::format("{} below the floor that is guarded.", below) : std::string("Every floor that is guarded holds.");
-    return floors + (doubted ? fmt::format(" {} are not what they say.", doubted) : "");
+    return floors + (asked ? fmt::format(" {} asked for beyond the floor {} not reached.", asked, asked == 1 ? "is" : "are") : "") +
+           (doubted ? fmt::format(" {} are not what they say.", doubted) : "");
 }
 
 Map drawing_of_map(const json& m) {
@@ -166,7 +183,7 @@ Section limits_section(const std::vector<json>& studies) {
                     fmt::format("<figure><div class=\"scroll\">{}</div><figcaption>{}: hard because {}</figcaption></figure>\n",
                                 map_svg(drawing_of_map(map)), escaped(text_at(study, "study")), escaped(text_at(map, "hard_because")));
     if (!section.html.empty()) section.html = "<h3>Two axes at once</h3><div class=\"maps\">" + section.html + "</div>";
-    section.html += "<h3>All limits</h3>" + table.html() + reasons(studies);
+    section.html += not_reached(studies) + "<h3>All limits</h3>" + table.html() + reasons(studies);
     std::string footer;
     for (const std::string& m : machines) footer += "<li>" + escaped(m) + "</li>";
     section.html += "<details class=\"fine\"><summary><code>./weir.sh stability --all</code></summary><ul>" + footer + "</ul></details>\n";

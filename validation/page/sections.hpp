@@ -30,7 +30,7 @@ Section pictures_section(const std::filesystem::path& results);
 
 /// How many axes there are of each kind, and how they came out.
 struct Counts {
-    std::size_t limits = 0, unbroken = 0, units = 0, guards = 0, below = 0, doubted = 0;
+    std::size_t limits = 0, unbroken = 0, units = 0, guards = 0, asked = 0, below = 0, doubted = 0;
     void add(const nlohmann::json& limit);
     /// "Every floor that is guarded holds."
     std::string verdict() const;

@@ -81,7 +81,7 @@ void publish_limits(const std::vector<json>& studies, const std::filesystem::pat
     std::string page =
         "# Where it breaks\n\nThis page is written by `weir stability --publish`; nothing in it is typed by hand. Each key is "
         "raised until an invariant breaks; the last value at which none did is the limit.\n\n" +
-        all_limits_markdown(all);
+        asked_limits_markdown(all) + all_limits_markdown(all);
     for (const json& study : all) page += limits_markdown(study);
     output::write_file(folder / "index.md", page);
 }

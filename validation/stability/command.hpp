@@ -30,6 +30,8 @@ inline real bisection_factor(Size size) { return size == Size::ci ? 1.5 : 1.1; }
 std::string limits_table(const StressStudy& study, const std::vector<Limit>& limits);
 nlohmann::json limits_json(const StressStudy& study, const std::vector<Limit>& limits);
 std::string limits_markdown(const nlohmann::json& study);
+/// What was asked for beyond the floors and is not reached, of all studies; empty where nothing is.
+std::string asked_limits_markdown(const std::vector<nlohmann::json>& studies);
 /// One table of all studies' limits, by solver.
 std::string all_limits_markdown(const std::vector<nlohmann::json>& studies);
 

@@ -91,6 +91,7 @@ std::string_view name(AxisKind kind) { return kind == AxisKind::limit ? "limit" 
 
 std::string Limit::doubt() const {
     if (!climbed) return {};
+    if (stress.asked && last_stable && *last_stable >= *stress.asked) return "what is listed as asked and not reached holds";
     if (first_unstable && stress.kind == AxisKind::units) return "rungs that are dimensionally similar do not all hold";
     if (first_unstable && !stress.unbroken.empty()) return "it breaks, though it is said that nothing can";
     if (!first_unstable && stress.kind == AxisKind::limit && stress.unbroken.empty()) return "it ends before anything breaks";

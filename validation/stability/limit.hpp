@@ -46,6 +46,8 @@ struct Stress {
     std::string theory_source{};
     std::optional<real> floor{};  // the least that must be stable
     std::string floor_why{};
+    std::optional<real> asked{};  // more than the floor, and not reached: listed, and an error once it holds
+    std::string not_reached{};    // why
     bool nested = false;     // a run at one value contains those at all lesser ones: the end is tried first
     std::int64_t steps = 0;  // a run ends here if its scene has not ended before
     Variant base{};
@@ -99,8 +101,8 @@ struct Limit {
     int runs = 0;
     double seconds = 0;
     bool guarded() const { return !stress.floor || (last_stable && *last_stable >= *stress.floor); }
-    /// What speaks against the axis itself: it ends before anything breaks and nobody says why, it breaks though that was ruled out, or
-    /// another kind of axis breaks. Empty where nothing does.
+    /// What speaks against the axis itself: it ends before anything breaks and nobody says why, it breaks though that was ruled out,
+    /// another kind of axis breaks, or what is listed as not reached holds. Empty where nothing does.
     std::string doubt() const;
     bool passes() const { return guarded() && doubt().empty(); }
 };

@@ -87,6 +87,8 @@ std::vector<Key> axis_keys() {
                   text("theory_source", "Where that limit comes from."),
                   positive("floor", "The least that must be stable."),
                   text("floor_why", "Why so much is asked."),
+                  positive("asked", "What was asked for beyond the floor and is not reached: it is listed, and an error once it holds."),
+                  text("not_reached", "Why it is not reached."),
                   {.name = "nested",
                   .type = Type::flag,
                   .doc = "A run at one value contains those at all lesser ones (steps, time): the end is tried first.",
@@ -203,10 +205,14 @@ Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader
              .theory_source = axis.text_or("theory_source", ""),
              .floor = optional_number(axis, "floor"),
              .floor_why = axis.text_or("floor_why", ""),
+             .asked = optional_number(axis, "asked"),
+             .not_reached = axis.text_or("not_reached", ""),
              .nested = axis.flag("nested"),
              .base = method};
     if (s.low >= s.high) reader.problem(axis.place("low"), "\"low\" must be less than \"high\"");
     if (s.floor && s.floor_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
+    if (s.asked && s.not_reached.empty()) reader.problem(axis.place("asked"), "\"asked\" needs a \"not_reached\"");
+    if (s.asked && (!s.floor || *s.floor >= *s.asked)) reader.problem(axis.place("asked"), "\"asked\" needs a \"floor\" that is less");
     if (s.theory && s.theory_source.empty()) reader.problem(axis.place("theory"), "\"theory\" needs a \"theory_source\"");
     s.proof = proofs(axis, method.name, reader);
     s.unbroken = why_unbroken(axis, method.name, s.kind, reader);

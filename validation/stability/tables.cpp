@@ -48,6 +48,7 @@ std::string limits_table(const StressStudy& study, const std::vector<Limit>& lim
                          width, name(l.stress.kind), last_stable(l), number(l.stress.theory), number(l.stress.floor), l.runs, l.seconds,
                          what_broke(l));
         s += l.doubt().empty() ? "\n" : fmt::format(" ({})\n", l.doubt());
+        if (l.stress.asked) s += fmt::format("        {:.3g} asked and not reached: {}\n", *l.stress.asked, l.stress.not_reached);
     }
     return s;
 }
@@ -72,6 +73,7 @@ json limits_json(const StressStudy& study, const std::vector<Limit>& limits) {
         if (l.first_unstable) entry["first_unstable"] = *l.first_unstable;
         if (l.stress.theory) entry["theory"] = *l.stress.theory, entry["theory_source"] = l.stress.theory_source;
         if (l.stress.floor) entry["floor"] = *l.stress.floor, entry["floor_why"] = l.stress.floor_why;
+        if (l.stress.asked) entry["asked"] = *l.stress.asked, entry["not_reached"] = l.stress.not_reached;
         list.push_back(entry);
     }
     return {{"study", study.name}, {"question", study.question}, {"limits", list}, {"maps", json::array()}};
@@ -105,6 +107,20 @@ std::string limits_markdown(const json& study) {
         for (const auto& map : study["maps"])
             s += fmt::format("\n![{}](svg/{})\n\n*Hard because* {}.\n", text(map, "name"), map_file(study, map), text(map, "hard_because"));
     return s + fmt::format("\nCommit {}, on {}.\n\n", study.value("commit", "unknown"), study.value("machine", "unknown"));
+}
+
+std::string asked_limits_markdown(const std::vector<json>& studies) {
+    std::string rows;
+    for (const json& study : studies)
+        for (const auto& l : study["limits"])
+            if (l.contains("asked"))
+                rows += fmt::format("| [{0}](#{0}) | {1} | {2} | {3} | {4} | {5} | {6} |\n", text(study, "study"), text(l, "axis"),
+                                    text(l, "method"), number_at(l, "asked"), number_at(l, "last_stable"), number_at(l, "floor"),
+                                    text(l, "not_reached"));
+    if (rows.empty()) return "";
+    return "## Asked and not reached\n\n| case | axis | method | asked | last stable | floor that is guarded | why it is not reached |\n"
+           "|---|---|---|---|---|---|---|\n" +
+           rows + "\n";
 }
 
 std::string all_limits_markdown(const std::vector<json>& studies) {

@@ -172,7 +172,7 @@ TEST("the README's results are written between its markers, the rest stays, and 
     const weir::test::TemporaryFolder folder;
     results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2"), claim(false, 3, 2, "<= 2")}));
     fs::create_directories(folder.path() / "stability/svg");  // beside the studies
-    std::ofstream(folder.path() / "stability/s.json") << R"({"limits": [{"guarded": true}, {"guarded": false, "first_unstable": 2}]})";
+    std::ofstream(folder.path() / "stability/s.json") << R"({"limits": [{"guarded": true}, {"guarded": false, "first_unstable": 2, "asked": 3}]})";
     const fs::path readme = folder.path() / "README.md";
     std::ofstream(readme) << "before\n" << readme_begins << "\nold\n" << readme_ends << "\nafter\n";
     update_readme(readme, folder.path());
@@ -183,6 +183,7 @@ TEST("the README's results are written between its markers, the rest stays, and 
     EXPECT_NE(once.find("| Are the equations solved right? | 1 of 2 | [1]("), std::string::npos) << once;
     EXPECT_NE(once.find("2 limits measured, 1 of them not reached"), std::string::npos) << once;
     EXPECT_NE(once.find("1 below the floor"), std::string::npos);
+    EXPECT_NE(once.find("1 asked for beyond the floor is not reached"), std::string::npos) << once;
     update_readme(readme, folder.path());
     EXPECT_EQ(bytes_of(readme), once);
     std::ofstream(readme) << "no markers";

@@ -221,6 +221,10 @@ TEST("what is wrong in stability.toml is named") {
     EXPECT_NE(refusal("question = \"q\"\nwatch = [{ series = \"mass\", why = \"w\" }]\n" + axis).find("needs one of: at_most"),
               std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "floor = 1\n").find("\"floor\" needs a \"floor_why\""), std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + axis + "asked = 1\n").find("\"asked\" needs a \"not_reached\""), std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + axis + "floor = 1\nfloor_why = \"w\"\nasked = 1\nnot_reached = \"n\"\n")
+                  .find("\"asked\" needs a \"floor\" that is less"),
+              std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "theory = 1\n").find("\"theory\" needs a \"theory_source\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n").find("axes"), std::string::npos);
 }
@@ -242,7 +246,26 @@ TEST("the command writes limits and page; a floor that does not hold is exit cod
     std::ostringstream text;
     text << page.rdbuf();
     EXPECT_NE(text.str().find("below its floor"), std::string::npos);
+    EXPECT_EQ(text.str().find("Asked and not reached"), std::string::npos);
     EXPECT_TRUE(fs::exists(folder.path() / "out/study.json"));
+}
+
+TEST("what is asked for beyond a floor is listed with its reason while it is not reached, and is an error once it holds") {
+    const test::TemporaryFolder folder;
+    const auto run = [&](real asked) {
+        const auto study = add(folder.path(), stalls + axis + "floor = 0.1\nfloor_why = \"w\"\nasked = " + std::to_string(asked) +
+                                                  "\nnot_reached = \"its own clock stands still\"\n");
+        StabilityOptions options;
+        options.names = {study.string()}, options.quiet = true;
+        options.out = folder.path() / "out", options.publish = folder.path() / "page";
+        return stability_command(options, test::fake_kinds());
+    };
+    EXPECT_EQ(run(1.5), exit_success);  // it breaks before
+    std::stringstream page;
+    page << std::ifstream(folder.path() / "page/index.md").rdbuf();
+    EXPECT_NE(page.str().find("## Asked and not reached"), std::string::npos);
+    EXPECT_NE(page.str().find("its own clock stands still"), std::string::npos);
+    EXPECT_EQ(run(0.15), exit_claim_failed);
 }
 
 namespace {

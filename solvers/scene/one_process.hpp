@@ -1,0 +1,34 @@
+// What solvers do not share among ranks, refused by its key and in the same words whoever refuses it.
+#pragma once
+#include "scene/scene.hpp"
+
+#include <string>
+
+namespace weir::scene {
+
+/// One line of what a solver cannot do over ranks: "effects.hand: the hand pushes in one process only".
+[[noreturn]] inline void one_process_only(const Scene& scene, const std::string& key, const std::string& what) {
+    scene.refuse(key, key + ": " + what + " in one process only");
+}
+
+inline void refuse_hand(const Scene& scene) {
+    if (scene.effect("hand")) one_process_only(scene, "effects.hand", "the hand pushes");
+}
+
+inline void refuse_bodies(const Scene& scene) {
+    if (scene.has("bodies") && !scene.root().tables("bodies").empty()) one_process_only(scene, "bodies", "bodies move");
+}
+
+inline void refuse_moving_solids(const Scene& scene) {
+    if (!scene.has("solids")) return;
+    const auto& solids = scene.root().tables("solids");
+    for (std::size_t i = 0; i < solids.size(); ++i)
+        if (solids[i].has("motion")) one_process_only(scene, "solids[" + std::to_string(i) + "].motion", "solids move");
+}
+
+inline void refuse_petsc(const Scene& scene) {
+    if (scene.root().text("scheme.poisson.method").starts_with("petsc"))
+        one_process_only(scene, "scheme.poisson.method", "PETSc's methods are");
+}
+
+}  // namespace weir::scene
