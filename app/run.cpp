@@ -59,11 +59,27 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
     return options;
 }
 
+/// A surface is made of all liquid, by the first rank.
+void bring_liquid_to_first(output::FrameOptions& options, const Simulation& simulation) {
+    if (!options.surface || !slabs().several()) return;
+    options.surface = [&simulation, make = options.surface](const FieldSet&, real t) -> const SurfaceMesh& {
+        static const SurfaceMesh none;
+        const auto brought = simulation.solver().bring_to_first();
+        const FieldSet fields = simulation.fields();
+        const SurfaceMesh* made = &none;
+        by_first_rank([&] { made = &make(fields, t); });
+        return *made;
+    };
+}
+
 /// The frames of a run; none, with a word about it, where this build has no VTK.
 std::optional<output::Frames> open_frames(const Simulation& simulation, const std::filesystem::path& folder, bool restarted) {
-    const auto options = frame_options(simulation.scene());
+    auto options = frame_options(simulation.scene());
+    bring_liquid_to_first(options, simulation);
     if (!output::can_write_frames()) {
-        std::fprintf(stderr, "this weir was built without VTK (WEIR_VTK=OFF): probes and run.json are written, frames are not\n");
+        by_first_rank([] {
+            std::fprintf(stderr, "this weir was built without VTK (WEIR_VTK=OFF): probes and run.json are written, frames are not\n");
+        });
         return std::nullopt;
     }
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
@@ -92,12 +108,17 @@ std::string explain_planned_ranks(const scene::Scene& scene, int ranks) {
     return validation::over_ranks_text(validation::forecast_over_ranks(scene, f, ranks), f, scene);
 }
 
-/// What of this process stands in memory and in no file [bytes]; 0 where the system does not say.
-std::size_t resident_bytes() {
+/// What the system says of this process's memory [bytes]; 0 where it does not.
+std::size_t memory_told(const std::string& wanted) {
     std::ifstream status("/proc/self/status");
     for (std::string key; status >> key; status.ignore(std::numeric_limits<std::streamsize>::max(), '\n'))
-        if (std::size_t kilobytes = 0; key == "RssAnon:" && status >> kilobytes) return 1024 * kilobytes;
+        if (std::size_t kilobytes = 0; key == wanted && status >> kilobytes) return 1024 * kilobytes;
     return 0;
+}
+
+/// What stands in memory and in no file, and the most that has stood in memory.
+output::RunLog::RankMemory memory_of(const Simulation& simulation, std::size_t checkpoint) {
+    return {simulation.solver().bytes(), memory_told("RssAnon:"), memory_told("VmHWM:"), checkpoint};
 }
 
 /// Of this machine's memory, which ranks share for all that is known here: so much may one process need that holds all. Ranks that hold
@@ -110,7 +131,8 @@ double memory_for_all(const scene::Scene& scene) {
     return available / (1 + ranks * sim::planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
 
-/// Writes everything that a run leaves behind, and shows how it goes. Over ranks the first writes; what is looked at all look at.
+/// Writes everything that a run leaves behind, and shows how it goes. Over ranks all write frames, and the first the rest; what is looked
+/// at all look at.
 class Recorder final : public sim::Watcher {
 public:
     /// checkpoint: what was read of the one that is continued [bytes]; 0: none.
@@ -119,7 +141,7 @@ public:
           probes_(folder / "probes"),
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
-        by_first_rank([&] { frames_ = open_frames(simulation, folder, checkpoint > 0); });
+        frames_ = open_frames(simulation, folder, checkpoint > 0);
         tell_ranks(simulation, {}, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
@@ -133,12 +155,11 @@ public:
         by_first_rank([&] { tell_step(simulation, report, seconds); });
     }
     void on_frame(const Simulation& simulation) override {
-        const auto brought = output::can_write_frames()
-                                 ? simulation.solver().bring_to_first(simulation.scene().root().texts("output.fields"))
-                                 : nullptr;  // until all is written
-        const FieldSet fields = output::can_write_frames() ? simulation.fields() : FieldSet{};
+        if (frames_) {
+            const auto parts = simulation.solver().show_in_parts();
+            frames_->write(simulation.fields(), simulation.time());
+        }
         by_first_rank([&] {
-            if (frames_) frames_->write(fields, simulation.time());
             probes_.update(simulation.probes());  // those of the start too
             // the log of a long run is long: not more than a few per cent of the time goes into replacing it
             const auto now = clock::now();
@@ -148,7 +169,7 @@ public:
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
         const auto sent = of_ranks(slabs().traffic());  // before what this takes
-        tell_ranks(simulation, sent, of_ranks(output::RunLog::RankMemory{simulation.solver().bytes(), resident_bytes(), checkpoint_}));
+        tell_ranks(simulation, sent, of_ranks(memory_of(simulation, checkpoint_)));
         if (measured_) log_.set_measured(measured_->values());
         by_first_rank([&] {
             probes_.update(simulation.probes());
@@ -286,7 +307,10 @@ int simulate(const RunArguments& arguments) {
     const std::size_t restarted = checkpoint ? checkpoint->bytes_read() : 0;
     if (restarted > 0 && simulation.finished()) return tell_finished(simulation);
     checkpoint.reset();  // the next one takes its place, and it its room on the disk
-    output::check(frame_options(simulation.scene()), simulation.fields());
+    {
+        const auto parts = simulation.solver().show_in_parts();
+        output::check(frame_options(simulation.scene()), simulation.fields());
+    }
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     by_first_rank([&] { output::require_writable(folder); });
     const std::string space = check_space(simulation, folder, arguments.any_size);

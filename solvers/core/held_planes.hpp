@@ -2,11 +2,9 @@
 // all ranks, everything.
 #pragma once
 #include "core/grid.hpp"
-#include "core/solver.hpp"
 
 #include <memory>
 #include <utility>
-#include <vector>
 
 namespace weir {
 
@@ -40,26 +38,6 @@ private:
     int kept_;
     bool ring_;
     std::unique_ptr<OwnPlanes> making_;
-};
-
-/// Fields of ranks that hold their own planes alone, all of which the first has while it lives (Solver::bring_to_first).
-template <class T, int D>
-class BroughtPlanes final : public Solver::Brought {
-public:
-    BroughtPlanes(const Cut& cut, std::vector<Grid<T, D>*> fields) : cut_(cut), fields_(std::move(fields)) {
-        const OwnPlanes mine(cut_);
-        for (auto* field : fields_) gather_to_first(*field);
-    }
-    ~BroughtPlanes() override {
-        const OwnPlanes mine(cut_);
-        for (auto* field : fields_) field->store().close();
-    }
-    BroughtPlanes(const BroughtPlanes&) = delete;
-    BroughtPlanes& operator=(const BroughtPlanes&) = delete;
-
-private:
-    const Cut& cut_;
-    std::vector<Grid<T, D>*> fields_;
 };
 
 }  // namespace weir

@@ -82,6 +82,8 @@ struct FieldSet {
     std::vector<SheetView> sheets{};
     /// Over ranks that hold their own planes alone: where they are cut. Each rank may then read its own planes and those beside them.
     const Cut* cut = nullptr;
+    /// Over ranks: of every particle set each rank shows its part, which follow each other in the order of the ranks.
+    bool particles_in_parts = false;
     const FieldView* find(std::string_view name) const {
         for (const auto& f : fields)
             if (f.name == name) return &f;
@@ -127,13 +129,16 @@ public:
     /// What is wrong with using the method on the state of the moment, in one line, with its numbers; empty where nothing is.
     virtual std::string concern() const { return {}; }
     virtual FieldSet fields() const = 0;
-    /// Over ranks that hold their own planes alone: while it lives, the first rank can read those of all in these fields (all where none is
-    /// named) as fields() showed them. All ranks ask for it together. Elsewhere nothing: whoever looks reads everything anyway.
+    /// Over ranks, for as long as it lives, fields() show something else than all to all. All ranks ask for it together.
     class Brought {
     public:
         virtual ~Brought() = default;
     };
-    virtual std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& /*names*/) const { return nullptr; }
+    /// Where ranks share particles: of these each its part, as many as any other, in the order of one process.
+    virtual std::unique_ptr<Brought> show_in_parts() const { return nullptr; }
+    /// Where each holds its own part alone: what a surface of liquid is made from, all of it to the first rank. What others show then
+    /// nobody reads.
+    virtual std::unique_ptr<Brought> bring_to_first() const { return nullptr; }
     /// Over ranks: does each hold its own planes alone?
     virtual bool holds_own_planes() const { return false; }
     /// The components of a field at a point, from a solver that knows them without a grid; false: take them from fields().

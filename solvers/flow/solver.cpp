@@ -2,7 +2,6 @@
 
 #include "core/cut_by_work.hpp"
 #include "core/error.hpp"
-#include "core/held_planes.hpp"
 #include "flow/emitters.hpp"
 #include "geometry/hand.hpp"
 #include "scene/names.hpp"
@@ -502,33 +501,6 @@ void FlowSolver<D>::bring_beside() const {
     for (auto& field : state.fields) all.push_back(planes_of(field.values));
     slabs().refresh(cut_, all, planes_beside, ring_);
     whole_ = true;
-}
-
-/// The arrays of a field that is shown.
-template <int D>
-std::vector<Grid<real, D>*> FlowSolver<D>::shown(const std::string& field) const {
-    auto& state = const_cast<MacState<D>&>(state_);
-    std::vector<Grid<real, D>*> list;
-    if (field == "velocity")
-        for (int a = 0; a < D; ++a) list.push_back(&state.u[a]);
-    if (field == "pressure") list.push_back(&state.p);
-    if (auto* values = state.find(field)) list.push_back(values);
-    if (field == "vorticity")
-        for (auto& component : vorticity_) list.push_back(&component);
-    if (field == "divergence") list.push_back(&divergence_);
-    return list;
-}
-
-template <int D>
-std::unique_ptr<Solver::Brought> FlowSolver<D>::bring_to_first(const std::vector<std::string>& names) const {
-    if (kept_ == 0) return nullptr;
-    std::vector<Grid<real, D>*> grids;
-    for (const FieldView& view : fields().fields) {
-        if (!names.empty() && std::find(names.begin(), names.end(), view.name) == names.end()) continue;
-        const auto list = shown(view.name);
-        grids.insert(grids.end(), list.begin(), list.end());
-    }
-    return std::make_unique<BroughtPlanes<real, D>>(cut_, std::move(grids));
 }
 
 template <int D>

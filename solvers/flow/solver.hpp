@@ -39,7 +39,6 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
     bool holds_own_planes() const override { return kept_ > 0; }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
@@ -100,7 +99,6 @@ private:
         return none;
     }
     void bring_beside() const;
-    std::vector<Grid<real, D>*> shown(const std::string& field) const;
 
     Cut cut_;                            // none in one process
     bool ring_;                          // the cut axis is periodic

@@ -252,21 +252,6 @@ FieldSet Columns::fields() const {
     return set;
 }
 
-std::unique_ptr<Solver::Brought> Columns::bring_to_first(const std::vector<std::string>& names) const {
-    if (!held_.alone()) return nullptr;
-    fields();
-    auto& own = const_cast<Columns&>(*this);  // as above
-    std::vector<Field*> shown;
-    const auto add = [&](const char* name, std::initializer_list<Field*> list) {
-        if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) shown.insert(shown.end(), list);
-    };
-    add("velocity", {&own.nothing_, &own.rate_});
-    add("depth", {&depth_});
-    add("surface", {&own.surface_});
-    add("bed", {&own.state_.bed});
-    return std::make_unique<BroughtPlanes<real, 2>>(held_.cut(), std::move(shown));
-}
-
 real Columns::volume() const {
     return sum_of_columns(state_.plane, [&](std::size_t c) { return surface_[c] - state_.bed[c]; }) + floats_.missing(surface_);
 }

@@ -16,7 +16,6 @@ public:
     StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }
     std::string concern() const override;
     FieldSet fields() const override;
-    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
     bool holds_own_planes() const override { return held_.alone(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;

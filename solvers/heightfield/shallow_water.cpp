@@ -152,21 +152,6 @@ FieldSet ShallowWater::fields() const {
     return set;
 }
 
-std::unique_ptr<Solver::Brought> ShallowWater::bring_to_first(const std::vector<std::string>& names) const {
-    if (!held_.alone()) return nullptr;
-    fields();
-    auto& own = const_cast<ShallowWater&>(*this);  // as above
-    std::vector<Field*> shown;
-    const auto add = [&](const char* name, std::initializer_list<Field*> list) {
-        if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) shown.insert(shown.end(), list);
-    };
-    add("velocity", {&qx1_, &own.nothing_, &qz1_});
-    add("depth", {&own.state_.h});
-    add("surface", {&h1_});
-    add("bed", {&own.state_.bed});
-    return std::make_unique<BroughtPlanes<real, 2>>(held_.cut(), std::move(shown));
-}
-
 std::vector<Integral> ShallowWater::integrals() const {
     const OwnPlanes mine = held_.own();
     const Plane& plane = state_.plane;

@@ -14,7 +14,6 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
     bool holds_own_planes() const override { return held_.alone(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;

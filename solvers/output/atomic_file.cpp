@@ -3,32 +3,12 @@
 #include "core/error.hpp"
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <string>
 
 namespace weir::output {
 
 namespace {
-
-struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-[[noreturn]] void refuse(const std::filesystem::path& path, int reason) {
-    throw OutputError("cannot write " + path.string() + ": " + std::strerror(reason));
-}
-
-/// 0, or why the bytes are not in the file now. A full disk may be reported by the write, by the flush, or only when the file is closed.
-int write_through(const std::filesystem::path& path, std::string_view bytes) {
-    std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "wb"));
-    if (!file) return errno;
-    const bool good = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size() && std::fflush(file.get()) == 0;
-    const int reason = errno;
-    if (std::fclose(file.release()) != 0 && good) return errno;
-    return good ? 0 : reason;
-}
 
 /// What a path means: that which its links point to, also where nothing stands there yet.
 std::filesystem::path target_of(std::filesystem::path path) {
@@ -41,20 +21,45 @@ std::filesystem::path target_of(std::filesystem::path path) {
 
 }  // namespace
 
-void write_file(const std::filesystem::path& path, std::string_view bytes) {
-    const auto target = target_of(path);
+NewFile::NewFile(const std::filesystem::path& path) : path_(path), target_(target_of(path)), written_(target_) {
     std::error_code ignored;
-    if (std::filesystem::is_other(target, ignored)) {
-        if (const int reason = write_through(target, bytes)) refuse(path, reason);
-        return;
-    }
-    auto temporary = target;
-    temporary += ".part";
-    int reason = write_through(temporary, bytes);
-    if (reason == 0 && std::rename(temporary.c_str(), target.c_str()) != 0) reason = errno;
+    if (!std::filesystem::is_other(target_, ignored)) written_ += ".part";
+    file_.reset(std::fopen(written_.c_str(), "wb"));
+    if (!file_) refuse(errno);
+}
+
+NewFile::~NewFile() {
+    if (!file_) return;
+    file_.reset();
+    if (written_ != target_) std::remove(written_.c_str());
+}
+
+void NewFile::refuse(int reason) const { throw OutputError("cannot write " + path_.string() + ": " + std::strerror(reason)); }
+
+void NewFile::write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) refuse(errno);
+}
+
+void NewFile::write_over_start(std::string_view bytes) {
+    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) refuse(errno);
+    write(bytes);
+}
+
+/// A full disk may be reported by the write, by the flush, or only when the file is closed.
+void NewFile::finish() {
+    if (std::fflush(file_.get()) != 0) refuse(errno);
+    int reason = std::fclose(file_.release()) != 0 ? errno : 0;
+    if (written_ == target_) return reason == 0 ? void() : refuse(reason);
+    if (reason == 0 && std::rename(written_.c_str(), target_.c_str()) != 0) reason = errno;
     if (reason == 0) return;
-    std::remove(temporary.c_str());
-    refuse(path, reason);
+    std::remove(written_.c_str());
+    refuse(reason);
+}
+
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+    NewFile file(path);
+    file.write(bytes);
+    file.finish();
 }
 
 void require_writable(const std::filesystem::path& folder) {

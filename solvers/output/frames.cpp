@@ -1,9 +1,10 @@
 #include "output/frames.hpp"
 
 #include "core/error.hpp"
+#include "core/slabs.hpp"
 #include "output/atomic_file.hpp"
+#include "output/frame_files.hpp"
 #include "output/series_file.hpp"
-#include "output/vtk_bytes.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -33,7 +34,19 @@ bool has_grid_fields(const FieldSet& fields, const FrameOptions& options, bool f
            });
 }
 
+#ifdef WEIR_HAS_VTK
+void require_vtk() {}
+#else
+void require_vtk() { throw BadInput("this weir was built without VTK (WEIR_VTK=OFF) and writes no frames"); }
+#endif
+
 }  // namespace
+
+#ifdef WEIR_HAS_VTK
+bool can_write_frames() { return true; }
+#else
+bool can_write_frames() { return false; }
+#endif
 
 void check(const FrameOptions& options, const FieldSet& fields) {
     std::set<std::string> known;
@@ -47,39 +60,48 @@ void check(const FrameOptions& options, const FieldSet& fields) {
 }
 
 Frames::Frames(std::filesystem::path folder, FrameOptions options) : Frames(std::move(folder), std::move(options), Resume{}) {
-    require_writable(folder_ / frame_folder);
-    for (const auto& old : series_in(folder_)) truncate_series(folder_ / old, 0);
+    by_first_rank([&] {
+        require_writable(folder_ / frame_folder);
+        for (const auto& old : series_in(folder_)) truncate_series(folder_ / old, 0);
+    });
 }
 
 Frames Frames::resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept) {
     Frames frames(std::move(folder), std::move(options), Resume{});
-    require_writable(frames.folder_ / frame_folder);
-    for (const auto& name : series_in(frames.folder_)) {
-        const auto entries = truncate_series(frames.folder_ / name, kept);
-        if (static_cast<std::int64_t>(entries.size()) != kept)
-            throw BadInput((frames.folder_ / name).string() + " has " + std::to_string(entries.size()) +
-                           " frames, and the checkpoint was taken after " + std::to_string(kept) +
-                           ": continue in the folder of the first run, or in a new one");
-        frames.times_.clear();
-        for (const auto& entry : entries) frames.times_.push_back(entry.time);
-        frames.pieces_[name.stem().string()] = std::filesystem::path(entries.empty() ? "" : entries[0].file).extension().string();
-    }
+    by_first_rank([&] { frames.take_up(kept); });
     return frames;
 }
 
-void Frames::write(const FieldSet& fields, real t) {
-    if (has_grid_fields(fields, options_, false)) write_piece("grid", ".vti", image_bytes(fields, t, options_));
-    if (options_.faces && has_grid_fields(fields, options_, true))
-        for (int axis = 0; axis < fields.grid.dim; ++axis)
-            write_piece(std::string("faces_") + "xyz"[axis], ".vti", face_image_bytes(fields, axis, t, options_));
-    for (const auto& set : particle_sets(fields)) write_piece(set, ".vtp", particle_bytes(fields, set, t, options_));
-    if (options_.surface) write_piece("liquid_surface", ".vtp", surface_bytes(options_.surface(fields, t), t, options_));
-    times_.push_back(t);
-    write_series();
+void Frames::take_up(std::int64_t kept) {
+    require_writable(folder_ / frame_folder);
+    for (const auto& name : series_in(folder_)) {
+        const auto entries = truncate_series(folder_ / name, kept);
+        if (static_cast<std::int64_t>(entries.size()) != kept)
+            throw BadInput((folder_ / name).string() + " has " + std::to_string(entries.size()) +
+                           " frames, and the checkpoint was taken after " + std::to_string(kept) +
+                           ": continue in the folder of the first run, or in a new one");
+        times_.clear();
+        for (const auto& entry : entries) times_.push_back(entry.time);
+        pieces_[name.stem().string()] = std::filesystem::path(entries.empty() ? "" : entries[0].file).extension().string();
+    }
 }
 
-void Frames::write_piece(const std::string& name, const char* extension, const std::string& bytes) {
-    write_file(folder_ / file_name(name, count(), extension), bytes);
+void Frames::write(const FieldSet& fields, real t) {
+    require_vtk();
+    if (has_grid_fields(fields, options_, false)) write_piece("grid", ".vti", image_of(fields, t, options_));
+    if (options_.faces && has_grid_fields(fields, options_, true))
+        for (int axis = 0; axis < fields.grid.dim; ++axis)
+            write_piece(std::string("faces_") + "xyz"[axis], ".vti", face_image_of(fields, axis, t, options_));
+    for (const auto& set : particle_sets(fields)) write_piece(set, ".vtp", particles_of(fields, set, t, options_));
+    if (options_.surface) write_piece("liquid_surface", ".vtp", surface_of(options_.surface(fields, t), t, options_));
+    by_first_rank([&] {
+        times_.push_back(t);
+        write_series();
+    });
+}
+
+void Frames::write_piece(const std::string& name, const char* extension, const VtkFile& file) {
+    output::write(folder_ / file_name(name, count(), extension), file, options_.compression);
     pieces_[name] = extension;
 }
 

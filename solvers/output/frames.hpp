@@ -1,5 +1,6 @@
 // Frames of a run as VTK files: one image (.vti) of the grid, one (.vtp) of each particle set, and a .pvd series of each. A frame's files
-// stand before the series names them, and the series is replaced whole, so a killed run leaves a readable one.
+// stand before the series names them, and the series is replaced whole, so a killed run leaves a readable one. Over ranks all write a frame
+// together, each its part of the fields: every call is everybody's.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
@@ -17,6 +18,8 @@ struct SurfaceMesh;
 
 namespace weir::output {
 
+struct VtkFile;
+
 enum class Compression { none, zlib, lz4 };
 
 struct FrameOptions {
@@ -24,9 +27,10 @@ struct FrameOptions {
     bool faces = false;                    // also an image for each axis with the face components as they are, at the faces' centres
     Compression compression = Compression::zlib;
     bool single_precision = false;
-    /// 1 for each cell that a solid takes at a time: ParaView draws nothing there. Empty: there are no solids.
-    std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t)> solid = {};
-    /// The liquid's surface at a time, written as liquid_surface.pvd. Empty: the scene names none.
+    /// 1 for each of the cells [begin, end), which are whole planes, that a solid takes at a time: ParaView draws nothing there. Empty:
+    /// there are no solids.
+    std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t, std::size_t begin, std::size_t end)> solid = {};
+    /// The liquid's surface at a time, written as liquid_surface.pvd; over ranks the first's. Empty: the scene names none.
     std::function<const SurfaceMesh&(const FieldSet& fields, real t)> surface = {};
 };
 
@@ -52,11 +56,13 @@ public:
 private:
     struct Resume {};
     Frames(std::filesystem::path folder, FrameOptions options, Resume) : folder_(std::move(folder)), options_(std::move(options)) {}
-    void write_piece(const std::string& name, const char* extension, const std::string& bytes);
+    void take_up(std::int64_t kept);
+    void write_piece(const std::string& name, const char* extension, const VtkFile& file);
     void write_series() const;
 
     std::filesystem::path folder_;
     FrameOptions options_;
+    // Over ranks what the first knows:
     std::vector<real> times_;
     std::map<std::string, std::string> pieces_;  // series by name, and the extension of its files
 };

@@ -92,6 +92,7 @@ void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string
     for (const RankMemory& rank : memory) {
         ranks["solver_bytes"].push_back(rank.solver);
         ranks["resident_bytes"].push_back(rank.resident);
+        ranks["peak_bytes"].push_back(rank.peak);
         if (rank.checkpoint > 0) ranks["checkpoint_bytes"].push_back(rank.checkpoint);
     }
     ranks_ = ranks.dump();

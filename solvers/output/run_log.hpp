@@ -31,7 +31,7 @@ public:
     /// Of a rank: what its solver holds, what of the process stands in memory that no file backs, and what it has read of the checkpoint
     /// that it continues [bytes].
     struct RankMemory {
-        std::size_t solver = 0, resident = 0, checkpoint = 0;
+        std::size_t solver = 0, resident = 0, peak = 0, checkpoint = 0;
     };
     enum class Holds { whole_grids, own_planes, own_particles };
     /// Where planes are cut among the ranks of the run, what each of them holds, what of a step each does alone (nothing said: all is

@@ -106,6 +106,34 @@ void Fluid<D>::reorder(const std::vector<int>& order) {
 }
 
 template <int D>
+void Fluid<D>::take_setting(const Fluid& from) {
+    domain = from.domain, gravity = from.gravity, rho0 = from.rho0, mass = from.mass;
+    time = from.time, steps = from.steps, next_id = from.next_id, clamps = from.clamps;
+}
+
+template <int D>
+void Fluid<D>::deal(Fluid& part) const {
+    part.take_setting(*this);
+    part.shared = true;
+    HandOver::Arrays own, sorted;
+    const_cast<Fluid&>(*this).for_each_array([&](std::vector<real>& f) { own.push_back(&f); });  // they are read
+    part.for_each_array([&](std::vector<real>& f) { sorted.push_back(&f); });
+    HandOver hands;
+    hands.clear();
+    const int ranks = slabs().ranks();
+    for (int i = 0; i < count(); ++i)
+        hands.move(std::min(ranks - 1, static_cast<int>(place[static_cast<std::size_t>(i)] * ranks / next_place)), i);
+    hands.trade(own, 0);
+    part.resize(hands.movers());
+    hands.take_movers(sorted, 0);
+    std::vector<int> order(part.id.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto stands = [&](int i) { return part.place[static_cast<std::size_t>(i)]; };
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return stands(i) < stands(j); });
+    part.reorder(order);
+}
+
+template <int D>
 void Fluid<D>::gather(Fluid& all, bool to_first) const {
     const auto gathered = [&](const std::vector<real>& own) {
         if (!to_first) return of_all_ranks(own);
@@ -116,8 +144,7 @@ void Fluid<D>::gather(Fluid& all, bool to_first) const {
         });
         return list;
     };
-    all.domain = domain, all.gravity = gravity, all.rho0 = rho0, all.mass = mass;
-    all.time = time, all.steps = steps, all.next_id = next_id, all.clamps = clamps;
+    all.take_setting(*this);
     const std::vector<real> places = gathered(place);
     std::vector<int> at(places.empty() ? 0 : static_cast<std::size_t>(next_place), -1), order;  // who stands there
     for (std::size_t i = 0; i < places.size(); ++i) at[static_cast<std::size_t>(places[i])] = static_cast<int>(i);
@@ -224,28 +251,10 @@ std::vector<Integral> Fluid<D>::integrals() const {
 template <int D>
 void Fluid<D>::save_part(Checkpoint& to) const {
     Fluid part;
-    part.shared = true;
-    HandOver::Arrays own, sorted;
-    const_cast<Fluid&>(*this).for_each_array([&](std::vector<real>& f) { own.push_back(&f); });  // they are read
-    part.for_each_array([&](std::vector<real>& f) { sorted.push_back(&f); });
-    HandOver hands;
-    hands.clear();
-    const int ranks = slabs().ranks();
-    for (int i = 0; i < count(); ++i)
-        hands.move(std::min(ranks - 1, static_cast<int>(place[static_cast<std::size_t>(i)] * ranks / next_place)), i);
-    hands.trade(own, 0);
-    part.resize(hands.movers());
-    hands.take_movers(sorted, 0);
-    std::vector<int> order(part.id.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto stands = [&](int i) { return part.place[static_cast<std::size_t>(i)]; };
-    std::sort(order.begin(), order.end(), [&](int i, int j) { return stands(i) < stands(j); });
-    part.reorder(order);
-    const std::vector<std::size_t> counts = of_ranks(order.size());
-    const std::size_t begin = std::accumulate(counts.begin(), counts.begin() + slabs().rank(), std::size_t{0}),
-                      all = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+    deal(part);
+    const std::vector<std::size_t> begins = begins_of_ranks(part.id.size());
     const auto put = [&](const std::string& name, const std::vector<real>& f) {
-        to.put_part("particles." + name, std::span<const real>(f), begin, all);
+        to.put_part("particles." + name, std::span<const real>(f), begins[static_cast<std::size_t>(slabs().rank())], begins.back());
     };
     for (std::size_t a = 0; a < D; ++a) put("x" + std::to_string(a), part.x[a]), put("v" + std::to_string(a), part.v[a]);
     put("id", part.id);

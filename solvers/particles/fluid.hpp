@@ -66,6 +66,8 @@ struct Fluid {
     }
     /// The particles of all ranks as one process has them, to all ranks or to the first alone; all call it together.
     void gather(Fluid& all, bool to_first) const;
+    /// Of the particles of all ranks as one process has them each rank as many as any other; all call it together.
+    void deal(Fluid& part) const;
     /// Takes out the particles for which gone(i) holds; the others keep their order.
     template <class F>
     void remove_if(F&& gone);
@@ -97,6 +99,8 @@ struct Fluid {
 private:
     void append(const Vec<D>& at, const Vec<D>& velocity, real h, real born, real stands);
     void save_part(Checkpoint& to) const;
+    /// All but the particles.
+    void take_setting(const Fluid& from);
 
     std::vector<real> scratch_;
 };

@@ -24,6 +24,7 @@ Compression compression_of(const Fluid<D>& fluid, real rest_density, const Vapou
 template <int D>
 FieldSet ParticleSolver<D>::fields() const {
     FieldSet set;
+    set.particles_in_parts = in_parts_;
     const Fluid<D>& fluid = state();
     fluid.show(set);
     show(fluid, set);
@@ -63,17 +64,16 @@ void ParticleSolver<D>::restore(const Checkpoint& from) {
     if (heat_) heat_->restore(from);
 }
 
-/// The first rank has all, and the others what they own, which nobody reads.
+/// Each has its part; or the first rank has all, and the others what they own, which nobody reads.
 template <int D>
 class HostSolver<D>::Brought final : public Solver::Brought {
 public:
-    explicit Brought(const HostSolver& solver) : solver_(solver) {
-        auto all = std::make_unique<Fluid<D>>();
-        solver.fluid_.gather(*all, true);
-        solver_.whole_ = std::move(all);
-        solver_.brought_ = true;
+    Brought(const HostSolver& solver, bool in_parts) : solver_(solver) {
+        solver_.whole_ = std::make_unique<Fluid<D>>();
+        in_parts ? solver.fluid_.deal(*solver_.whole_) : solver.fluid_.gather(*solver_.whole_, true);
+        solver_.in_parts_ = in_parts, solver_.brought_ = !in_parts;
     }
-    ~Brought() override { solver_.whole_.reset(), solver_.brought_ = false; }
+    ~Brought() override { solver_.whole_.reset(), solver_.in_parts_ = solver_.brought_ = false; }
     Brought(const Brought&) = delete;
     Brought& operator=(const Brought&) = delete;
 
@@ -82,9 +82,12 @@ private:
 };
 
 template <int D>
-std::unique_ptr<Solver::Brought> HostSolver<D>::bring_to_first(const std::vector<std::string>&) const {
-    if (!fluid_.shared) return nullptr;
-    return std::make_unique<Brought>(*this);
+std::unique_ptr<Solver::Brought> HostSolver<D>::show_in_parts() const {
+    return fluid_.shared ? std::make_unique<Brought>(*this, true) : nullptr;
+}
+template <int D>
+std::unique_ptr<Solver::Brought> HostSolver<D>::bring_to_first() const {
+    return fluid_.shared ? std::make_unique<Brought>(*this, false) : nullptr;
 }
 
 template <int D>

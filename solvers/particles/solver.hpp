@@ -76,6 +76,7 @@ protected:
     Vapour<D>* vapour() const { return heat_ ? heat_->vapour() : nullptr; }
 
     Passes passes_;
+    mutable bool in_parts_ = false;              // whether state() is this rank's part of what is shown
     std::shared_ptr<Heat<D>> heat_;              // where the scene names a substance
     std::unique_ptr<Ice<D>> ice_;                // where what is frozen moves
     std::shared_ptr<BodiesInLiquid<D>> bodies_;  // where it names bodies
@@ -94,7 +95,8 @@ public:
     }
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
-    std::unique_ptr<Solver::Brought> bring_to_first(const std::vector<std::string>& names) const final;
+    std::unique_ptr<Solver::Brought> show_in_parts() const final;
+    std::unique_ptr<Solver::Brought> bring_to_first() const final;
     bool checks_itself() const final { return fluid_.shared; }
     Hand* hand() const final { return hand_.get(); }
 

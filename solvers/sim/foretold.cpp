@@ -159,8 +159,11 @@ struct Held {
 };
 
 double particles_in(const FieldSet& fields) {
-    for (const FieldView& f : fields.fields)
-        if (f.where == Where::particle) return static_cast<double>(f.data[0].size());
+    for (const FieldView& f : fields.fields) {
+        if (f.where != Where::particle) continue;
+        const std::size_t here = f.data[0].size();
+        return static_cast<double>(fields.particles_in_parts ? begins_of_ranks(here).back() : here);
+    }
     return 0;
 }
 
@@ -341,7 +344,9 @@ ForetoldOutput foretell_output(const scene::Scene& scene, const Foretold& foreto
         const bool position = f.where == Where::particle && f.name == "position";
         if (!position && !names.empty() && std::find(names.begin(), names.end(), f.name) == names.end()) continue;
         const double places = f.where == Where::particle ? foretold.particles : foretold.cells;
-        output.bytes_of_frame += number * places * (f.components == 1 ? 1 : 3);  // vectors are written with three components
+        const double array = number * places * (f.components == 1 ? 1 : 3);  // vectors are written with three components
+        output.bytes_of_frame += array;
+        output.bytes_of_array = std::max(output.bytes_of_array, array);
         if (position) output.bytes_of_frame += 16 * places;  // the vertex that VTK draws of it: two numbers of eight bytes
         if (f.where == Where::face && scene.flag("output.faces")) output.bytes_of_frame += number * f.values;
     }
@@ -355,11 +360,9 @@ ForetoldOutput foretell_output(const scene::Scene& scene, const FieldSet& fields
 }
 
 double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool frames) {
-    constexpr double copies_of_frame = 3;
     double state = 0;
     for (const ForetoldField& f : foretold.fields) state += f.values * sizeof(real);
-    return foretold.bytes + state +
-           (frames ? copies_of_frame * foretell_output(scene, foretold).bytes_of_frame + foretold.surface_bytes : 0);
+    return foretold.bytes + state + (frames ? foretell_output(scene, foretold).bytes_of_array + foretold.surface_bytes : 0);
 }
 
 double bytes_of_rank(double bytes, const Cut& cut, int rank) {

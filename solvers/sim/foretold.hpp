@@ -48,16 +48,16 @@ double wet_part(const scene::Scene& scene);
 
 /// Memory that programs can have now without swapping [bytes].
 double available_memory();
-/// Frames of a scene, first and last included, and what one takes without compression [bytes].
+/// Frames of a scene, first and last included, and what one takes without compression, and the largest array in it [bytes].
 struct ForetoldOutput {
-    double frames = 0, bytes_of_frame = 0;
+    double frames = 0, bytes_of_frame = 0, bytes_of_array = 0;
     double bytes() const { return frames * bytes_of_frame; }
 };
 ForetoldOutput foretell_output(const scene::Scene& scene, const FieldSet& fields);
 ForetoldOutput foretell_output(const scene::Scene& scene, const Foretold& foretold);
 
-/// Memory of a run [bytes]: the solver's, the last good state that the loop keeps (its fields), and, where frames are written, one of them
-/// as arrays, as the encoder's text and as the copy of it that goes to the disk.
+/// Memory of a run [bytes]: the solver's, the last good state that the loop keeps (its fields), and, where frames are written, one array as
+/// it goes to the disk: compressed arrays are no larger than that.
 double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool frames);
 
 /// Planes that a rank holds of those that others own, where nothing crosses more than a cell in a step: 4 beyond either cut, and one.

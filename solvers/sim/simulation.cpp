@@ -100,7 +100,10 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
       changes_(changes_in(scene_)) {
     read_times();
-    if (scene_.has("output.fields")) check_output_fields(scene_, solver_->fields());
+    if (scene_.has("output.fields")) {
+        const auto parts = static_cast<const Solver&>(*solver_).show_in_parts();
+        check_output_fields(scene_, solver_->fields());
+    }
     refuse_ignored(scene_, kind_);
     probes_.sample(*solver_);
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());

@@ -9,7 +9,9 @@
 
 namespace weir::sim {
 
-/// 1 for each cell whose centre lies in a solid, or in a body, at a time, x fastest; no function where the scene has neither.
-std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t)> solid_cells(const scene::Scene& scene);
+/// 1 for each of the cells [begin, end), which are whole planes, whose centre lies in a solid, or in a body, at a time, x fastest; no
+/// function where the scene has neither.
+std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t, std::size_t begin, std::size_t end)> solid_cells(
+    const scene::Scene& scene);
 
 }  // namespace weir::sim

@@ -133,54 +133,37 @@ void Water<D>::gather_markers() const {
     markers_whole_ = true;
 }
 
-/// The arrays of a grid's field that is shown.
 template <int D>
-std::vector<Grid<real, D>*> Water<D>::shown(const std::string& field) const {
-    auto& own = const_cast<Water&>(*this);
-    std::vector<Grid<real, D>*> list;
-    if (field == "velocity")
-        for (int a = 0; a < D; ++a) list.push_back(&own.state_.u[a]);
-    if (field == "pressure") list.push_back(&own.state_.p);
-    if (field == level_set_name) list.push_back(&own.surface_.phi);
-    return list;
-}
-
-/// The level set always: the frame may show its surface.
-template <int D>
-std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std::string>& names) const {
+std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const {
     if (kept_ == 0) return nullptr;
     struct Lent final : Brought {
-        const Water& solver;
-        std::vector<Grid<real, D>*> grids{};
-        explicit Lent(const Water& s) : solver(s) {}
+        Water& solver;
+        explicit Lent(Water& s) : solver(s) { solver.brought_ = true; }
         ~Lent() override {
             const OwnPlanes mine = solver.own_planes();
-            for (auto* grid : grids) grid->store().close();
+            for (int a = 0; a < D; ++a) solver.state_.u[a].store().close();
+            solver.surface_.phi.store().close();
             solver.all_markers_.for_each_array([](std::vector<real>& array) { std::vector<real>().swap(array); });
+            solver.brought_ = false;
         }
     };
-    auto lent = std::make_unique<Lent>(*this);
+    auto& own = const_cast<Water&>(*this);  // the state stays the same
+    auto lent = std::make_unique<Lent>(own);
     make_whole();
     const OwnPlanes mine = own_planes();
-    const auto named = [&](const std::string& name) { return names.empty() || std::find(names.begin(), names.end(), name) != names.end(); };
-    for (const std::string name : {"velocity", "pressure", level_set_name}) {
-        if (name != level_set_name && !named(name)) continue;
-        for (auto* grid : shown(name)) {
-            gather_to_first(*grid);
-            lent->grids.push_back(grid);
-        }
-    }
+    for (int a = 0; a < D; ++a) gather_to_first(own.state_.u[a]);
+    gather_to_first(own.surface_.phi);
     markers_.gather_to_first(frame_, all_markers_);
     return lent;
 }
 
-#define WEIR_INSTANTIATE(D)                                                                                    \
-    template void Water<D>::bring_faces(real);                                                                 \
-    template std::array<std::int64_t, 2> Water<D>::let_depart();                                               \
-    template void Water<D>::rub(real);                                                                         \
-    template void Water<D>::check_own() const;                                                                 \
-    template void Water<D>::make_whole() const;                                                                \
-    template std::unique_ptr<Solver::Brought> Water<D>::bring_to_first(const std::vector<std::string>&) const; \
+#define WEIR_INSTANTIATE(D)                                                     \
+    template void Water<D>::bring_faces(real);                                  \
+    template std::array<std::int64_t, 2> Water<D>::let_depart();                \
+    template void Water<D>::rub(real);                                          \
+    template void Water<D>::check_own() const;                                  \
+    template void Water<D>::make_whole() const;                                 \
+    template std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const; \
     template void Water<D>::gather_markers() const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

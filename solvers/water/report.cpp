@@ -12,17 +12,23 @@ template <int D>
 FieldSet Water<D>::fields() const {
     make_whole();
     gather_markers();
-    const Markers<D>& markers = all_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
     if (kept_ > 0) set.cut = &cut_;
+    set.particles_in_parts = kept_ > 0 && !brought_;
+    const Markers<D>& markers = set.particles_in_parts ? markers_ : all_markers();
+    const auto own_markers = [&] {
+        const OwnPlanes mine = own_planes();
+        return markers_.own(frame_);
+    };
+    const auto [first, last] = set.particles_in_parts ? own_markers() : std::pair{std::size_t{0}, markers.count()};
     FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, marker_set_name, {}};
     FieldView carried{"velocity", "m/s", Where::particle, marker_set_name, {}};
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         velocity.data.push_back(state_.u[a].values());
-        position.data.push_back(markers.x[at]);
-        if (markers.carries_velocity()) carried.data.push_back(markers.v[at]);
+        position.data.push_back(std::span(markers.x[at]).subspan(first, last - first));
+        if (markers.carries_velocity()) carried.data.push_back(std::span(markers.v[at]).subspan(first, last - first));
     }
     set.fields.push_back(std::move(velocity));
     set.fields.push_back({"pressure", "Pa", Where::cell, "", {state_.p.values()}});

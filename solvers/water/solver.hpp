@@ -72,7 +72,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
+    std::unique_ptr<Brought> bring_to_first() const override;
     bool holds_own_planes() const override { return kept_ > 0; }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
@@ -139,7 +139,6 @@ private:
     void know_solids();
     void restore_markers(const Checkpoint& from);
     OwnPlanes own_planes() const { return OwnPlanes(cut_, 1, kept_, frame_.periodic(D - 1)); }
-    std::vector<Grid<real, D>*> shown(const std::string& field) const;
     const Markers<D>& all_markers() const { return cut_.empty() ? markers_ : all_markers_; }
     void rub(real dt);
 
@@ -193,6 +192,7 @@ private:
     mutable bool whole_ = true,
                  markers_whole_ = true;  // all planes stand here, or those that this rank looks at; all markers in all_markers_
     mutable Markers<D> all_markers_;     // over ranks, when somebody looks
+    bool brought_ = false;               // what they are to be on the first rank alone
 };
 
 }  // namespace weir::water

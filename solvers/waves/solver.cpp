@@ -202,26 +202,6 @@ FieldSet Waves::fields() const {
     return set;
 }
 
-/// Points of the surface always: a frame shows them.
-std::unique_ptr<Solver::Brought> Waves::bring_to_first(const std::vector<std::string>& names) const {
-    if (!held_.alone()) return nullptr;
-    bring();
-    auto& own = const_cast<Waves&>(*this);  // as above
-    std::vector<Values*> shown;
-    const auto add = [&](Values& values) {
-        if (values.store().windowed()) shown.push_back(&values);
-    };
-    const auto named = [&](const char* name) { return names.empty() || std::find(names.begin(), names.end(), name) != names.end(); };
-    for (Values& values : own.position_) add(values);
-    if (named(level_set_name)) add(own.level_set_);
-    for (auto* velocity : {&own.water_, &own.sheet_.velocity})
-        for (Values& values : *velocity)
-            if (named("velocity")) add(values);
-    if (named("jacobian")) add(own.sheet_.jacobian);
-    if (named("foam")) add(own.foam_);
-    return std::make_unique<BroughtPlanes<real, 2>>(held_.cut(), std::move(shown));
-}
-
 bool Waves::answer(std::string_view field, const Vec<3>& at, std::span<real> values) const {
     const auto whole = [&](const Vec<3>& v) {
         for (std::size_t a = 0; a < values.size(); ++a) values[a] = v[a];

@@ -25,7 +25,6 @@ public:
     bool checks_itself() const override { return true; }
     std::string concern() const override;
     FieldSet fields() const override;
-    std::unique_ptr<Brought> bring_to_first(const std::vector<std::string>& names) const override;
     bool holds_own_planes() const override { return held_.alone(); }
     /// "position" is that of the particle that rests at the point.
     bool answer(std::string_view field, const Vec<3>& at, std::span<real> values) const override;

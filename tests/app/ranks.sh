@@ -88,6 +88,8 @@ continues() {
         at_most "$(told "$folder" checkpoint_bytes "$rank")" $((2 * size / ranks + beside + 8192)) "read of $folder, rank $rank of $ranks"
     done
 }
+# pieces of a file between two ranks, and blocks that are being compressed
+handed=$((4 * 1048576 + 2 * 8 * 32768))
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
@@ -270,7 +272,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
 	time = { end = 0.003, max_dt = 0.001 }
 	effects = { buoyancy = { alpha = 0.1, beta = 0.2, ambient = 293.0 }, confinement = { epsilon = 0.2 } }
 	emitters = [ { shape = "sphere", centre = [0.25, 0.15, 1.24], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]
-	output = { every = 1.0, fields = ["smoke"] }
+	output = { every = 1.0 }
 	END
     ends 0 "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
@@ -286,11 +288,11 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
             # bytes a cell in rows twice as long as they are full.
             held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
             at_most "$held" $((one * (planes + 9) / 256 + 20000 * 8 / 7 * 128)) "rank $rank of $ranks"
-            # As the system sees it, beyond what a run of a few cells takes: that, the last good state (3 + 1 + 2 numbers and a flag a cell), a
-            # page at both ends of less than 128 arrays; the first rank may keep the room of a frame (the field, and 3 copies of a frame).
-            more=$(($(told parts-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
-            frame=$([ "$rank" -eq 0 ] && echo $((4 * 8 * cells * 256)) || echo 0)
-            at_most $more $((held + 49 * cells * planes + 128 * 2 * 4096 + frame)) "resident, rank $rank of $ranks"
+            # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
+            # beside it (3 + 1 + 2 numbers and a flag a cell, each), a page at both ends of less than 128 arrays; and of a frame the own part
+            # of its largest array, three numbers a cell, and what the first rank puts into the file at once. A whole frame has 48 bytes a cell.
+            more=$(($(told parts-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+            at_most $more $((held + (2 * 49 + 24) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
         done
     done
     # Particles: a column of 512 layers of 64. Cells are two spacings wide; the first of an axis holds 3. A rank knows at most 3 layers, a row
@@ -347,7 +349,7 @@ storage_water) # the same of liquid with markers, as much of it in every plane
 	solids = [ { shape = "cylinder", from = [0.16, 0.05, -0.1], to = [0.16, 0.05, 2.7], radius = 0.04 } ]
 	initial.velocity = { name = "random", speed = 0.1 }
 	effects = { surface_tension = { sigma = 0.07 }, volume_control = {} }
-	output = { every = 1.0, fields = ["pressure"] }
+	output = { every = 1.0 }
 	END
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
@@ -362,12 +364,12 @@ storage_water) # the same of liquid with markers, as much of it in every plane
             # more than that). The pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row.
             held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
             at_most "$held" $((one * (planes + 9) / 256 + 14 * 8 * cells + 20000 * 8 / 7 * 128 + 64 * 32 * 256)) "rank $rank of $ranks"
-            # As the system sees it, beyond what a run of a few cells takes: that, the last good state (3 + 1 + 1 numbers, a flag and a layer
-            # of a cell, 6 numbers of 8 markers in each of the lower half), a page at both ends of less than 128 arrays; the first rank may
-            # keep the room of a frame: its fields and all markers, and 3 copies.
-            more=$(($(told parts-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
-            frame=$([ "$rank" -eq 0 ] && echo $((4 * (2 * 8 + 4 * 6 * 8) * cells * 256)) || echo 0)
-            at_most $more $((held + (42 + 4 * 6 * 8) * cells * planes + 128 * 2 * 4096 + frame)) "resident, rank $rank of $ranks"
+            # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
+            # beside it (3 + 1 + 1 numbers, a flag and a layer of a cell, 6 numbers of 8 markers in each of the lower half, each), a page at
+            # both ends of less than 128 arrays; and of a frame the own part of its largest array, three numbers a marker, and what the
+            # first rank puts into the file at once. A whole frame has 40 bytes a cell and 48 a marker.
+            more=$(($(told parts-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+            at_most $more $((held + (2 * (42 + 4 * 6 * 8) + 4 * 3 * 8) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
         done
     done
     # continued by others

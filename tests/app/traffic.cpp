@@ -1,5 +1,6 @@
 // What ranks send, told before a run by the formulas of the solvers (SolverKind::sends), against what runs over ranks have counted: in the
-// steps by which one run is longer than another, so that neither beginning nor end counts.
+// steps by which one run is longer than another, so that neither beginning nor end counts. (Frames are not compressed: as many bytes at any
+// time.)
 #include "app/process.hpp"
 #include "core/slabs.hpp"
 #include "sim/registry.hpp"
@@ -100,7 +101,7 @@ void expect_as_told(const std::string& text, const std::vector<int>& ranks, cons
 
 const std::string stirred =
     "solver = \"mac\"\ndim = 2\ntime = { end = 0.01, max_dt = 1e-4 }\nsides.y_max = { kind = \"outflow\" }\n"
-    "initial.velocity = { name = \"random\", speed = 0.3 }\noutput = { every = 1.0 }\n";
+    "initial.velocity = { name = \"random\", speed = 0.3 }\noutput = { every = 1.0, compression = \"none\" }\n";
 
 }  // namespace
 
@@ -121,7 +122,7 @@ TEST("mac: a closed room in 3D with smoke, heat, buoyancy and confinement sends 
         "solver = \"mac\"\ndim = 3\ngrid = { cells = [28, 30, 26], size = [0.56, 0.6, 0.52] }\ntime = { end = 0.06, max_dt = 1e-3 }\n"
         "effects = { buoyancy = { alpha = 0.1, beta = 0.2, ambient = 293.0 }, confinement = { epsilon = 0.2 } }\n"
         "emitters = [ { shape = \"sphere\", centre = [0.25, 0.15, 0.24], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]\n"
-        "scheme.poisson = { fixed = true, max_iterations = 2 }\noutput = { every = 1.0 }\n",
+        "scheme.poisson = { fixed = true, max_iterations = 2 }\noutput = { every = 1.0, compression = \"none\" }\n",
         {2, 3}, {1e-3, 3, 8});
 }
 
@@ -129,11 +130,12 @@ TEST("mac: around a periodic cut axis, and by a method that every rank runs for 
     expect_as_told(
         "solver = \"mac\"\ndim = 2\ngrid = { cells = [40, 48], size = [0.4, 0.48] }\ntime = { end = 0.06, max_dt = 1e-3 }\n"
         "sides = { y_min = { kind = \"periodic\" }, y_max = { kind = \"periodic\" } }\n"
-        "initial.velocity = { name = \"random\", speed = 0.3 }\nscheme.poisson.method = \"cg_mic0\"\noutput = { every = 1.0 }\n",
+        "initial.velocity = { name = \"random\", speed = 0.3 }\nscheme.poisson.method = \"cg_mic0\"\noutput = { every = 1.0, compression = "
+        "\"none\" }\n",
         {2, 3}, {1e-3, 2, 6});
 }
 
-const std::string pool = "solver = \"mac_water\"\ntime = { end = 0.01, max_dt = 1e-4 }\noutput = { every = 1.0 }\n";
+const std::string pool = "solver = \"mac_water\"\ntime = { end = 0.01, max_dt = 1e-4 }\noutput = { every = 1.0, compression = \"none\" }\n";
 
 // At rest no marker crosses a cut: those that neighbours know are of the planes beside it, four or eight a cell.
 TEST("mac_water: a pool at rest sends what the formula says, where each rank solves for the pressure") {
@@ -155,7 +157,7 @@ TEST("mac_water: the same in 3D with a shared pressure, for every transfer") {
 
 const std::string still =
     "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\ntime = { end = 0.01, dt = 1e-4 }\n"
-    "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.34] } ]\noutput = { every = 1.0 }\n";
+    "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.34] } ]\noutput = { every = 1.0, compression = \"none\" }\n";
 
 // 34 rows of 16. Cells are two spacings wide and a hair more: the first of an axis holds 3, the others 2, the eighth along x 1. Rank 0
 // has 17 rows, 8 whole rows of cells; 1 reads the last of these and the cell before it, 0 the first row of 1's and the cell behind it.
@@ -175,7 +177,8 @@ TEST("pbf: particles at rest send as many messages as the formula says, and as m
 
 // At rest the surface is flat: all columns have the same knots, of which the formula knows how many there are.
 TEST("tallcell: deep water at rest sends what the formula says, around the cut axis too, and in 2D nothing but what the run does") {
-    const std::string deep = "solver = \"tallcell\"\ntime = { end = 0.01, max_dt = 1e-4 }\noutput = { every = 1.0 }\n";
+    const std::string deep =
+        "solver = \"tallcell\"\ntime = { end = 0.01, max_dt = 1e-4 }\noutput = { every = 1.0, compression = \"none\" }\n";
     const std::string box = deep +
                             "dim = 3\ngrid = { cells = [18, 48, 26], size = [0.36, 0.96, 0.52] }\n"
                             "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.36, 0.6, 0.52] } ]\n"
@@ -199,7 +202,7 @@ TEST("tallcell: deep water at rest sends what the formula says, around the cut a
 TEST("heightfield: both models send what the formula says, with open and periodic sides") {
     const std::string field =
         "solver = \"heightfield\"\ndim = 3\ngrid = { cells = [30, 1, 44], size = [3.0, 1.0, 4.4] }\ntime = { end = 0.3, max_dt = 1e-3 }\n"
-        "initial = { surface = \"0.4 + 0.05*sin(2*x)\" }\noutput = { every = 10.0 }\n";
+        "initial = { surface = \"0.4 + 0.05*sin(2*x)\" }\noutput = { every = 10.0, compression = \"none\" }\n";
     const std::string open = "sides = { x_min = { kind = \"open\" }, z_min = { kind = \"outflow\" }, z_max = { kind = \"open\" } }\n",
                       ring = "sides = { z_min = { kind = \"periodic\" }, z_max = { kind = \"periodic\" } }\n";
     const std::string down = "effects.gravity = { g = [0.0, -9.81, 0.0] }\n", slope = "effects.gravity = { g = [0.1, -9.81, 0.0] }\n";
@@ -213,13 +216,15 @@ TEST("heightfield: both models send what the formula says, with open and periodi
 TEST("heightfield in 2D, which every rank moves, sends what the loop of a run sends") {
     const std::string row =
         "solver = \"heightfield\"\ndim = 2\ngrid = { cells = [30, 1], size = [3.0, 1.0] }\ntime = { end = 0.3, max_dt = 1e-3 }\n"
-        "initial = { surface = \"0.4 + 0.05*sin(2*x)\" }\noutput = { every = 10.0 }\neffects.gravity = { g = [0.1, -9.81] }\n";
+        "initial = { surface = \"0.4 + 0.05*sin(2*x)\" }\noutput = { every = 10.0, compression = \"none\" }\neffects.gravity = { g = [0.1, "
+        "-9.81] }\n";
     expect_as_told(row, {2, 3}, {1e-3, 5, 15});
 }
 
 // A sum of waves is one transposition: of the surface's height, of what moves it sideways and its derivatives, of velocities.
 TEST("waves: seas with and without water below them send what the formula says, and other models what the loop sends") {
-    const std::string field = "solver = \"waves\"\ndim = 3\ntime = { end = 0.3, dt = 1e-3 }\noutput = { every = 10.0 }\n";
+    const std::string field =
+        "solver = \"waves\"\ndim = 3\ntime = { end = 0.3, dt = 1e-3 }\noutput = { every = 10.0, compression = \"none\" }\n";
     const std::string down = "effects = { gravity = { g = [0.0, -9.81, 0.0] } }\n",
                       foam = "effects = { gravity = { g = [0.0, -9.81, 0.0] }, foam = { below = 0.5 } }\n";
     const std::string sheet = "grid = { cells = [30, 1, 44], size = [90.0, 4.0, 132.0], origin = [0.0, -2.0, 0.0] }\n",
@@ -242,7 +247,7 @@ const std::string plume =
     "solver = \"mac\"\ndim = 3\ngrid = { cells = [48, 48, 128], size = [0.48, 0.48, 1.28] }\ntime = { end = 0.003, max_dt = 0.001 }\n"
     "effects = { buoyancy = { alpha = 0.1, beta = 0.2, ambient = 293.0 }, confinement = { epsilon = 0.2 } }\n"
     "emitters = [ { shape = \"sphere\", centre = [0.25, 0.15, 0.64], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]\n"
-    "output = { every = 1.0, fields = [\"smoke\"] }\n";
+    "output = { every = 1.0, fields = [\"smoke\"], compression = \"none\" }\n";
 
 /// What `weir` says and ends with.
 std::pair<int, std::string> said(std::vector<std::string> arguments) {
