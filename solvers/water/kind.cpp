@@ -103,7 +103,7 @@ scene::SolverKind kind() {
                              "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
                             over_ranks,
                             scene::Shared::by_planes,
-                            "the levels of the pressure of fewer than 20,000 cells, the level set's continuation into solids, viscosity"};
+                            "the levels of the pressure of fewer than 20,000 cells, the level set's continuation into solids"};
     water.holds_own_part = holds_own_planes;
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;

@@ -30,8 +30,8 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where friction is solved for by
-/// everybody, nor where markers that have escaped from flat cells are looked at one after the other.
+/// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where markers that have escaped from
+/// flat cells are looked at one after the other.
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 /// Where nobody but the scene asks for more.
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
@@ -124,6 +124,7 @@ private:
     void conduct(real dt);
     void slow(real dt);
     void momentum_to_faces(real dt);
+    void rub(real dt);
     void forces(real dt);
     poisson::Report project(real dt);
     void extend_velocity(real dt);
@@ -141,7 +142,6 @@ private:
     OwnPlanes own_planes() const { return OwnPlanes(cut_, 1, kept_, frame_.periodic(D - 1)); }
     std::vector<Grid<real, D>*> shown(const std::string& field) const;
     const Markers<D>& all_markers() const { return cut_.empty() ? markers_ : all_markers_; }
-    void rub(real dt);
 
     // Edits between steps (edit.cpp)
     void keep_faces();

@@ -55,6 +55,8 @@ sea=$scenes/ranks_waves.toml trains=$scenes/ranks_trains.toml below=$scenes/rank
 frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
     --set 'probes=[{name="sums",kind="integral",field="volume"},{name="wall",kind="point",field="pressure",at=[0.2,0.3]}]')
 even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
+# from rest, and without a jet into air: there friction takes hundreds of iterations
+viscous='--set fluid.viscosity=1e-4 --set effects.viscosity={} --set initial={} --set emitters=[]'
 water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
 # what rank number 0, 1, .. of a run tells of itself, and a bound for it
 told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
@@ -96,11 +98,16 @@ water)
     grep -q '"every_rank_does":"the levels of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
     compare sticky "2 1,3 2" "$water"
     grep -q '"storage":"every rank holds whole grids"' sticky-2-1/run.json || fail "run.json does not tell that grids are whole"
+    compare viscous "$every" "$water" --set probes=[]
+    grep -q '"storage":"every rank holds its own planes' viscous-3-2/run.json || fail "a rank held more than its own planes"
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
     compare flip "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep"
     grep -q '"storage":"every rank holds its own planes' flip-4-2/run.json || fail "a rank held more than its own planes"
+    compare viscous "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep" $viscous
+    grep -q '"storage":"every rank holds its own planes' viscous-4-2/run.json || fail "a rank held more than its own planes"
+    grep -q '"viscous_iterations"' viscous/run.json || fail "friction took no iterations"
     ;;
 water_schemes)
     compare grid "3 1" "$water" "${frictionless[@]}" --set scheme.transfer=grid --set scheme.trace=rk3
@@ -109,6 +116,9 @@ water_schemes)
     compare ring_apic "3 1" "$water_deep" $water_ring $even --set scheme.transfer=apic
     compare ring_own "2 1,4 1" "$water_deep" $water_ring $even --set time.cfl=2 --set time.max_dt=0.05
     grep -q '"storage":"every rank holds its own planes' ring_own-4-1/run.json || fail "a rank held more than its own planes"
+    compare ring_viscous "2 1,4 1" "$water_deep" $water_ring $even $viscous --set effects.viscosity.scheme=implicit
+    compare whole_viscous "3 1" "$water_deep" $viscous --set scheme.poisson.method=cg_mic0
+    grep -q '"storage":"every rank holds whole grids"' whole_viscous-3-1/run.json || fail "run.json does not tell that grids are whole"
     compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
     # saved on three, continued on two
     ends 0 over 3 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
@@ -345,19 +355,28 @@ storage_water) # the same of liquid with markers, as much of it in every plane
 	effects = { surface_tension = { sigma = 0.07 }, volume_control = {} }
 	output = { every = 1.0, fields = ["pressure"] }
 	END
-    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
-    one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
     cells=$((32 * 32)) # of a plane
-    for ranks in 2 4; do
-        ends 0 over $ranks "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
-        alike one parts-$ranks
-        grep -q '"storage":"every rank holds its own planes and those near its cuts"' parts-$ranks/run.json || fail "run.json tells of other storage"
-        ends 0 over $ranks "$weir" run pool.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,64]
+    # shared RANKS FOLDER OF PARTS [--set ...]: each holds its part of what one process has in the folder
+    shared() {
+        local ranks=$1 folder=$2 parts=$3 one rank
+        shift 3
+        one=$(grep -o '"solver_bytes": [0-9]*' "$folder/run.json" | cut -d' ' -f2)
+        ends 0 over "$ranks" "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out "$parts" "$@"
+        alike "$folder" "$parts"
+        grep -q '"storage":"every rank holds its own planes and those near its cuts"' "$parts/run.json" || fail "run.json tells of other storage"
         for rank in $(seq 0 $((ranks - 1))); do
             # Numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
             # more than that). The pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row.
+            at_most "$(told "$parts" solver_bytes "$rank")" \
+                $((one * (256 / ranks + 9) / 256 + 14 * 8 * cells + 20000 * 8 / 7 * 128 + 64 * 32 * 256)) "$folder, rank $rank of $ranks"
+        done
+    }
+    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
+    for ranks in 2 4; do
+        shared $ranks one parts-$ranks
+        ends 0 over $ranks "$weir" run pool.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,64]
+        for rank in $(seq 0 $((ranks - 1))); do
             held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
-            at_most "$held" $((one * (planes + 9) / 256 + 14 * 8 * cells + 20000 * 8 / 7 * 128 + 64 * 32 * 256)) "rank $rank of $ranks"
             # As the system sees it, beyond what a run of a few cells takes: that, the last good state (3 + 1 + 1 numbers, a flag and a layer
             # of a cell, 6 numbers of 8 markers in each of the lower half), a page at both ends of less than 128 arrays; the first rank may
             # keep the room of a frame: its fields and all markers, and 3 copies.
@@ -366,6 +385,10 @@ storage_water) # the same of liquid with markers, as much of it in every plane
             at_most $more $((held + (42 + 4 * 6 * 8) * cells * planes + 128 * 2 * 4096 + frame)) "resident, rank $rank of $ranks"
         done
     done
+    # of friction too: weights, vectors and lists of faces; of a pool that begins to slosh
+    slosh="$viscous --set effects.gravity.g=[1.0,-9.81,0.0]"
+    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out viscous $slosh
+    for ranks in 2 4; do shared $ranks viscous viscous-$ranks $slosh; done
     # continued by others
     # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more; and before anything is made, each looks
     # at its share of the level set, 8 bytes a cell, to find where planes are cut)
@@ -389,7 +412,7 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     ends 0 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
     alike liquid liquid_poisoned
-    for case in "" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
+    for case in "" "$viscous" "$viscous --set scheme.transfer=apic $water_ring $even" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
         rm -rf liquid_3d liquid_3d_poisoned
         ends 0 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
