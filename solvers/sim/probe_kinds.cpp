@@ -3,6 +3,7 @@
 #include "core/slabs.hpp"
 #include "geometry/solids.hpp"
 #include "rigid/bodies.hpp"
+#include "sim/owners.hpp"
 #include "sim/sampling.hpp"
 #include "sim/surface.hpp"
 #include "sim/wall_fit.hpp"
@@ -18,20 +19,6 @@ std::string column(const std::string& name, const std::string& unit) { return un
 
 std::string component_name(const std::string& field, int components, int component) {
     return components == 1 ? field : field + '_' + "xyz"[component];
-}
-
-/// Where each rank holds its own planes alone: of every number the one that its owner knows.
-std::vector<real> of_owners(const std::vector<real>& own, const std::vector<int>& owners) {
-    const std::vector<real> all = of_all_ranks(own);
-    std::vector<real> list;
-    for (std::size_t i = 0; i < owners.size(); ++i) list.push_back(all[static_cast<std::size_t>(owners[i]) * own.size() + i]);
-    return list;
-}
-
-int owner_of(const Cut& cut, int plane) {
-    int rank = 0;
-    while (rank + 1 < cut.ranks() && plane >= cut.begin(rank + 1)) ++rank;
-    return rank;
 }
 
 /// The values of a cell field, added one after another; where each rank holds its own planes alone, they add theirs in turn.

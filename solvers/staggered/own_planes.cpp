@@ -11,8 +11,6 @@ bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs
 
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
     if (cut.empty() || scene.root().number_or("time.stop_when_steady", 0) > 0) return false;
-    for (const auto& probe : scene.root().tables("probes"))
-        if (const auto& kind = probe.text("kind"); kind != "point" && kind != "line" && kind != "integral") return false;
     if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
     const auto shares = [&]<int D>() {
         const Lattice<D> lattice(scene);

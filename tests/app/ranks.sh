@@ -51,9 +51,13 @@ flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles
 tall=$scenes/ranks_tall.toml tall_deep=$scenes/ranks_tall_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml one_end=$scenes/ranks_one_end.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
 sea=$scenes/ranks_waves.toml trains=$scenes/ranks_trains.toml below=$scenes/ranks_waves_below.toml line=$scenes/ranks_line.toml
-# without what everybody finds of whole grids, friction and a gauge; and with cells that a periodic axis can halve
+# without friction and a gauge; with every probe, some beside cuts; and with cells that a periodic axis can halve
 frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
     --set 'probes=[{name="sums",kind="integral",field="volume"},{name="wall",kind="point",field="pressure",at=[0.2,0.3]}]')
+probes=(--set 'probes=[{name="gauge",kind="gauge",at=[0.6,0.0]},{name="along",kind="front",axis="x"},{name="up",kind="front",axis="y"},
+    {name="floor",kind="wall_pressure",at=[0.2,0.0]},{name="side",kind="wall_pressure",at=[0.0,0.475]},{name="ball",kind="wall_pressure",at=[0.42,0.3]}]')
+probes_deep=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},
+    {name="z",kind="front",axis="z"},{name="floor",kind="wall_pressure",at=[0.1,0.0,0.26]},{name="ball",kind="wall_pressure",at=[0.25,0.15,0.28]}]')
 even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
 # from rest, and without a jet into air: there friction takes hundreds of iterations
 viscous='--set fluid.viscosity=1e-4 --set effects.viscosity={} --set initial={} --set emitters=[]'
@@ -82,6 +86,8 @@ case $part in
     ;;
 3d)
     compare all "2 1,2 2,3 1,3 2,4 1,4 2" "$deep"
+    compare pressed "2 1,3 2,4 1" "$deep" --set 'probes=[{name="side",kind="wall_pressure",at=[0.0,0.3,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.24,0.28]}]'
+    grep -q '"storage":"every rank holds its own planes' pressed-3-2/run.json || fail "a rank held more than its own planes"
     ;;
 particles)
     compare pbf "$every" "$drops"
@@ -96,16 +102,14 @@ water)
     compare flip "$every" "$water" "${frictionless[@]}"
     grep -q '"storage":"every rank holds its own planes' flip-2-1/run.json || fail "a rank held more than its own planes"
     grep -q '"every_rank_does":"the levels of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
-    compare sticky "2 1,3 2" "$water"
-    grep -q '"storage":"every rank holds whole grids"' sticky-2-1/run.json || fail "run.json does not tell that grids are whole"
-    compare viscous "$every" "$water" --set probes=[]
-    grep -q '"storage":"every rank holds its own planes' viscous-3-2/run.json || fail "a rank held more than its own planes"
+    compare sticky "$every" "$water" "${probes[@]}"
+    grep -q '"storage":"every rank holds its own planes' sticky-2-1/run.json || fail "a rank held more than its own planes"
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
     compare flip "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep"
     grep -q '"storage":"every rank holds its own planes' flip-4-2/run.json || fail "a rank held more than its own planes"
-    compare viscous "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep" $viscous
+    compare viscous "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep" $viscous "${probes_deep[@]}"
     grep -q '"storage":"every rank holds its own planes' viscous-4-2/run.json || fail "a rank held more than its own planes"
     grep -q '"viscous_iterations"' viscous/run.json || fail "friction took no iterations"
     ;;
