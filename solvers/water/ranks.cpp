@@ -1,21 +1,9 @@
 // What several ranks that run one scene of liquid have of one another. Each owns the planes of cells between two cuts and the markers in
 // them, and knows the markers of one plane more beyond either cut.
 #include "core/error.hpp"
-#include "staggered/own_planes.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
-
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs().holds_whole() && could_hold_own_planes(scene, cut); }
-
-bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
-    if (!staggered::could_hold_own_planes(scene, cut)) return false;
-    const auto cubic = [&]<int D>() {
-        const Lattice<D> lattice(scene);
-        return *std::max_element(lattice.h.begin(), lattice.h.end()) <= *std::min_element(lattice.h.begin(), lattice.h.end()) * (1 + 1e-9);
-    };
-    return scene.dim() == 2 ? cubic.operator()<2>() : cubic.operator()<3>();
-}
 
 /// The velocity as far beyond the cuts as anything moves in the step, and reads there: a marker or a cell at the end of its path, and the
 /// markers of one plane beyond.

@@ -30,12 +30,6 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where markers that have escaped from
-/// flat cells are looked at one after the other.
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
-/// Where nobody but the scene asks for more.
-bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
-
 /// Nanoseconds that a step takes of each plane of cells: as the scene begins, or of a state; of one that each rank has its own part of all
 /// ranks ask together.
 std::vector<std::int64_t> work_of_planes(const scene::Scene& scene, const Checkpoint* state = nullptr);

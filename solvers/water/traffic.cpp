@@ -1,6 +1,7 @@
 // What a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of what stands in surface/, pass by pass.
 #include "poisson/traffic.hpp"
 #include "geometry/wet_part.hpp"
+#include "staggered/own_planes.hpp"
 #include "surface/traffic.hpp"
 #include "water/solver.hpp"
 
@@ -31,7 +32,7 @@ public:
           n_(lattice_.cells),
           transfer_(scene.text("scheme.transfer")),
           ring_(sides_.periodic(D - 1)),
-          windowed_(could_hold_own_planes(scene, of.cut)),
+          windowed_(staggered::could_hold_own_planes(scene, of.cut)),
           shape_(shape),
           reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
           surface_(n_, lattice_.h, scene.number("time.cfl"), ring_),

@@ -123,7 +123,9 @@ water_schemes)
     compare ring_viscous "2 1,4 1" "$water_deep" $water_ring $even $viscous --set effects.viscosity.scheme=implicit
     compare whole_viscous "3 1" "$water_deep" $viscous --set scheme.poisson.method=cg_mic0
     grep -q '"storage":"every rank holds whole grids"' whole_viscous-3-1/run.json || fail "run.json does not tell that grids are whole"
-    compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
+    compare flat_cells "2 2,3 1,4 1" "$water_deep" --set grid.cells=[28,40,26]
+    grep -q '"storage":"every rank holds its own planes' flat_cells-3-1/run.json || fail "a rank held more than its own planes"
+    compare flat_ring "3 1" "$water_deep" $water_ring $viscous --set grid.cells=[28,30,32]
     # saved on three, continued on two
     ends 0 over 3 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --out parts --set time.end=0.03
     ends 0 "$weir" run "$water_deep" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end=0.06
@@ -393,6 +395,9 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     slosh="$viscous --set effects.gravity.g=[1.0,-9.81,0.0]"
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out viscous $slosh
     for ranks in 2 4; do shared $ranks viscous viscous-$ranks $slosh; done
+    # in cells that are no cubes, half as many along x
+    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out flat --set grid.cells=[16,32,256]
+    for ranks in 2 4; do shared $ranks flat flat-$ranks --set grid.cells=[16,32,256]; done
     # continued by others
     # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more; and before anything is made, each looks
     # at its share of the level set, 8 bytes a cell, to find where planes are cut)
@@ -416,7 +421,7 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     ends 0 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
     alike liquid liquid_poisoned
-    for case in "" "$viscous" "$viscous --set scheme.transfer=apic $water_ring $even" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
+    for case in "" "--set grid.cells=[28,40,26]" "$viscous" "$viscous --set scheme.transfer=apic $water_ring $even" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
         rm -rf liquid_3d liquid_3d_poisoned
         ends 0 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
