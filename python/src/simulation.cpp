@@ -202,6 +202,7 @@ void add_simulation(py::module_& module) {
         .def_readonly("residual_max", &StepReport::residual_max)
         .def_readonly("density_error", &StepReport::density_error, "mean compression of particles")
         .def_readonly("max_density_error", &StepReport::max_density_error)
+        .def_readonly("viscous_iterations", &StepReport::viscous_iterations, "of friction with a free surface")
         .def("__repr__", [](const StepReport& r) {
             return fmt::format("StepReport(dt={:.6g}, cfl={:.3g}, iterations={})", r.dt, r.cfl, r.iterations);
         });

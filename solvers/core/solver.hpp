@@ -32,6 +32,7 @@ struct StepReport {
     real residual_max = not_applicable;       // true residual, max norm, in units of the right-hand side (so dt/rho times it bounds div u)
     real density_error = not_applicable;      // particle solvers: mean compression
     real max_density_error = not_applicable;  // particle solvers: max compression
+    int viscous_iterations = 0;               // of the solve for the friction of a liquid with a free surface
 };
 
 enum class Where { cell, face, particle };

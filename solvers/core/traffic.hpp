@@ -17,11 +17,12 @@ struct PlaneSize {
 
 /// What one step is like, as far as what is sent depends on it.
 struct StepShape {
-    int iterations = 1;     // of the solve for the pressure or the constraints
-    int cells_crossed = 1;  // by the fastest flow, rounded up
-    std::int64_t step = 1;  // its number: some things are looked at every few steps
-    double beside = 0;      // particles that a neighbour reads, where that is known; 0: as many as planes hold on the mean
-    double particles = 0;   // all there are, of solvers that consist of them
+    int iterations = 1;          // of the solve for the pressure or the constraints
+    int cells_crossed = 1;       // by the fastest flow, rounded up
+    std::int64_t step = 1;       // its number: some things are looked at every few steps
+    double beside = 0;           // particles that a neighbour reads, where that is known; 0: as many as planes hold on the mean
+    double particles = 0;        // all there are, of solvers that consist of them
+    int viscous_iterations = 1;  // of the solve for friction, where there is one
 };
 
 /// What a rank sends in a step: to those who read beside its cuts, and what everybody is to know.

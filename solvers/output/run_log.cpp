@@ -47,6 +47,7 @@ json step_json(std::int64_t step, real t, const StepReport& report, double secon
     put(j, "density_error", report.density_error);
     put(j, "max_density_error", report.max_density_error);
     j["iterations"] = report.iterations;
+    if (report.viscous_iterations > 0) j["viscous_iterations"] = report.viscous_iterations;
     put(j, "residual_before", report.residual_before);
     put(j, "residual_after", report.residual_after);
     put(j, "residual_max", report.residual_max);

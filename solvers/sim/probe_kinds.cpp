@@ -3,6 +3,7 @@
 #include "core/slabs.hpp"
 #include "geometry/solids.hpp"
 #include "rigid/bodies.hpp"
+#include "sim/owners.hpp"
 #include "sim/sampling.hpp"
 #include "sim/surface.hpp"
 #include "sim/wall_fit.hpp"
@@ -18,20 +19,6 @@ std::string column(const std::string& name, const std::string& unit) { return un
 
 std::string component_name(const std::string& field, int components, int component) {
     return components == 1 ? field : field + '_' + "xyz"[component];
-}
-
-/// Where each rank holds its own planes alone: of every number the one that its owner knows.
-std::vector<real> of_owners(const std::vector<real>& own, const std::vector<int>& owners) {
-    const std::vector<real> all = of_all_ranks(own);
-    std::vector<real> list;
-    for (std::size_t i = 0; i < owners.size(); ++i) list.push_back(all[static_cast<std::size_t>(owners[i]) * own.size() + i]);
-    return list;
-}
-
-int owner_of(const Cut& cut, int plane) {
-    int rank = 0;
-    while (rank + 1 < cut.ranks() && plane >= cut.begin(rank + 1)) ++rank;
-    return rank;
 }
 
 /// The values of a cell field, added one after another; where each rank holds its own planes alone, they add theirs in turn.
@@ -101,16 +88,10 @@ public:
     std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
         if (real height = 0; solver.answer(surface_height_name, at_, {&height, 1}))
             return {height - fields.grid.origin[1], std::max(0.0, height - fields.grid.origin[1])};
-        if (!fields.cut) return on_line(fields);
-        // ranks that hold their own planes alone are cut along z
-        const int owner = owner_of(*fields.cut, plane_below(Lattice::of_cells(fields.grid), fields.grid.dim - 1, at_));
-        return of_owners(owner == slabs().rank() ? on_line(fields) : std::vector<real>(2), {owner, owner});
+        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1], liquid_depth(fields, at_, 1)};
     }
 
 private:
-    std::vector<real> on_line(const FieldSet& fields) const {
-        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1], liquid_depth(fields, at_, 1)};
-    }
     Vec<3> at_;
 };
 

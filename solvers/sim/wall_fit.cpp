@@ -1,5 +1,6 @@
 #include "sim/wall_fit.hpp"
 
+#include "core/slabs.hpp"
 #include "sim/sampling.hpp"
 
 #include <Eigen/Dense>
@@ -40,7 +41,8 @@ void add(std::vector<Sample<D>>& list, const Vec<D>& offset, real value) {
     if (r2 < 1) list.push_back({offset, value, (1 - r2) * (1 - r2)});
 }
 
-/// Centres of cells within reach that hold liquid (all do, where there is no level set) and are outside solids.
+/// Centres of cells within reach that hold liquid (all do, where there is no level set) and are outside solids. Where each rank holds its
+/// own planes alone, each gives those of its planes: in the order of the ranks that is the order of the grid.
 template <int D>
 std::vector<Sample<D>> cells_beside(const FieldSet& fields, const geometry::Solids<D>& solids, const Vec<D>& wall) {
     const GridView& grid = fields.grid;
@@ -55,6 +57,10 @@ std::vector<Sample<D>> cells_beside(const FieldSet& fields, const geometry::Soli
         lo[a] = std::max(0, static_cast<int>(std::ceil(place - reach)));
         hi[a] = std::min(lattice.n[a], static_cast<int>(std::floor(place + reach)) + 1);
     }
+    if (fields.cut) {
+        lo[D - 1] = std::max(lo[D - 1], fields.cut->begin(slabs().rank()));
+        hi[D - 1] = std::min(hi[D - 1], fields.cut->end(slabs().rank(), lattice.n[D - 1]));
+    }
     for (I[2] = lo[2]; I[2] < hi[2]; ++I[2])
         for (I[1] = lo[1]; I[1] < hi[1]; ++I[1])
             for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) {
@@ -65,7 +71,7 @@ std::vector<Sample<D>> cells_beside(const FieldSet& fields, const geometry::Soli
                 for (int d = 0; d < D; ++d) x[d] = centre[d], offset[d] = (x[d] - wall[d]) / lattice.spacing[static_cast<std::size_t>(d)];
                 if (solids.empty() || solids.distance(x) > 0) add(list, offset, pressure[cell]);
             }
-    return list;
+    return fields.cut ? of_all_ranks(list) : list;
 }
 
 template <int D>

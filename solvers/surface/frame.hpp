@@ -116,12 +116,12 @@ struct Extent {
 /// Over ranks, the faces of the `deep` planes beyond this rank's cuts, all components in one message a neighbour. Around a periodic axis
 /// face n is face 0.
 template <int D>
-void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int deep) {
+void refresh_faces(std::array<Grid<real, D>, D>& u, const Frame<D>& frame, int deep) {
     if (!over_ranks()) return;
     std::array<Planes, D> all;
-    for (int a = 0; a < D; ++a) {
+    for (std::size_t a = 0; a < D; ++a) {
         u[a].store().open(deep, frame.periodic(D - 1));
-        all[static_cast<std::size_t>(a)] = planes_of(u[a]);
+        all[a] = planes_of(u[a]);
     }
     slabs().refresh(*detail::own_share.cut, all, deep, frame.periodic(D - 1));
     const int n = frame.cells[D - 1];
@@ -129,6 +129,10 @@ void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int deep) {
     Grid<real, D>& across = u[D - 1];
     if (!across.store().holds(0) || !across.store().holds(n)) return;
     std::copy_n(across.data(), across.stride(D - 1), across.data() + n * across.stride(D - 1));
+}
+template <int D>
+void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int deep) {
+    refresh_faces<D>(u.face, frame, deep);
 }
 
 /// f(I, at) for the first entry I of every line along x of a box, and its place in memory; threaded over the slowest axis.

@@ -262,6 +262,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
     const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
     refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
+    const auto [first, last] = markers.own(frame_);
     const auto find_escaped = [&](const Index<D>& I, std::size_t begin, std::size_t end) {
         if (phi(I) < -diagonal_) return;
         CellNodes<D> nodes;
@@ -273,47 +274,17 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
             for (int l = 0; l < count; ++l) escaped_[p + static_cast<std::size_t>(l)] = distance[l] > margin;
         }
     };
-    const auto [first, last] = markers.own(frame_);
-    if (over_ranks() && !frame_.cubic()) {
-        markers.for_each_occupied_cell(frame_, find_escaped);
-        rescue_in_order(markers, radius);
-        return static_cast<std::size_t>(std::count(escaped_.begin(), escaped_.end(), 1));
-    }
     {
         const AllPlanes all;  // those beyond the cuts too, whose spheres reach across
         markers.for_each_occupied_cell(frame_, find_escaped);
     }
+    if (!frame_.cubic()) for_each_escaped([&](std::size_t p) { escaped_[p] = escaped_across(markers.position(p)); });
     std::size_t count = 0;
     for_each_escaped([&, begin = first, end = last](std::size_t p) {
-        if (!frame_.cubic() && !escaped_across(markers.position(p))) {
-            escaped_[p] = 0;
-            return;
-        }
         if (p >= begin && p < end) ++count;
         join_sphere(markers.position(p), radius);
     });
     return count;
-}
-
-/// In cells that are no cubes, whether a marker has escaped depends on those before it, however far apart: every rank looks at all of
-/// them, in the order of one process.
-template <int D>
-void LevelSet<D>::rescue_in_order(const Markers<D>& markers, real radius) {
-    gather(phi);
-    std::vector<Vec<D>> found;
-    for_each_escaped([&](std::size_t p) { found.push_back(markers.position(p)); });
-    const std::vector<std::size_t> begins = begins_of_ranks(found.size());
-    std::vector<Vec<D>> list(begins.back());
-    const std::size_t begin = begins[static_cast<std::size_t>(slabs().rank())];
-    std::copy(found.begin(), found.end(), list.begin() + static_cast<std::ptrdiff_t>(begin));
-    slabs().gather_parts(list.data(), sizeof(Vec<D>), begins);
-    std::vector<std::uint8_t> rescued(list.size());
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        rescued[i] = escaped_across(list[i]);
-        if (rescued[i]) join_sphere(list[i], radius);
-    }
-    std::size_t next = begin;
-    for_each_escaped([&](std::size_t p) { escaped_[p] = rescued[next++]; });
 }
 
 /// f(p) for one after the other.

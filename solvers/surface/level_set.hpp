@@ -93,7 +93,6 @@ private:
     void collect_surface();
     void join_layers();
     void mark_changes_of_sign(const Index<D>& first, std::size_t at);
-    void rescue_in_order(const Markers<D>& markers, real radius);
     void find_own();
     /// f(place in the band) for those from `first` to before `last` that are of this rank's own planes.
     template <class F>

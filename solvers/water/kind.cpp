@@ -5,6 +5,7 @@
 #include "matter/heat.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
+#include "staggered/own_planes.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
 
@@ -99,8 +100,8 @@ scene::SolverKind kind() {
                              "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
                             over_ranks,
                             scene::Shared::by_planes,
-                            "the levels of the pressure of fewer than 20,000 cells, the level set's continuation into solids, viscosity"};
-    water.holds_own_part = holds_own_planes;
+                            "the levels of the pressure of fewer than 20,000 cells, the level set's continuation into solids"};
+    water.holds_own_part = staggered::holds_own_planes;
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
     return water;

@@ -1,21 +1,9 @@
 // What several ranks that run one scene of liquid have of one another. Each owns the planes of cells between two cuts and the markers in
 // them, and knows the markers of one plane more beyond either cut.
 #include "core/error.hpp"
-#include "staggered/own_planes.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
-
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs().holds_whole() && could_hold_own_planes(scene, cut); }
-
-bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
-    if (!staggered::could_hold_own_planes(scene, cut) || scene.effect("viscosity")) return false;
-    const auto cubic = [&]<int D>() {
-        const Lattice<D> lattice(scene);
-        return *std::max_element(lattice.h.begin(), lattice.h.end()) <= *std::min_element(lattice.h.begin(), lattice.h.end()) * (1 + 1e-9);
-    };
-    return scene.dim() == 2 ? cubic.operator()<2>() : cubic.operator()<3>();
-}
 
 /// The velocity as far beyond the cuts as anything moves in the step, and reads there: a marker or a cell at the end of its path, and the
 /// markers of one plane beyond.
@@ -54,17 +42,6 @@ std::array<std::int64_t, 2> Water<D>::let_depart() {
     const auto [own, left] = markers_.migrate(frame_, cut_, open);
     if (!open) return {own, 0};
     return {sum_of_ranks(own), sum_of_ranks(left)};
-}
-
-/// Friction is solved for by everybody.
-template <int D>
-void Water<D>::rub(real dt) {
-    const auto timed = passes_.time("effect viscosity");
-    for (int a = 0; a < D; ++a) gather(state_.u[a]);
-    surface_.make_whole();
-    const AllPlanes all;
-    if (state_.grip) bodies_->grip(state_, solids_, dt);
-    viscosity_->apply(state_, surface_, closed_, dt);
 }
 
 /// What is looked at in whole after each step of one process.
@@ -160,7 +137,6 @@ std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const {
 #define WEIR_INSTANTIATE(D)                                                     \
     template void Water<D>::bring_faces(real);                                  \
     template std::array<std::int64_t, 2> Water<D>::let_depart();                \
-    template void Water<D>::rub(real);                                          \
     template void Water<D>::check_own() const;                                  \
     template void Water<D>::make_whole() const;                                 \
     template std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const; \

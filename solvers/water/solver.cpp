@@ -32,7 +32,8 @@ StepReport Water<D>::step(real dt) {
             .iterations = poisson.iterations,
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
-            .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0])};
+            .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]),
+            .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
 }
 
 template <int D>
@@ -146,6 +147,13 @@ void Water<D>::momentum_to_faces(real dt) {
         sync_periodic(state_.u, state_.sides);
         if (!bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
     }
+}
+
+template <int D>
+void Water<D>::rub(real dt) {
+    const auto timed = passes_.time("effect viscosity");
+    if (state_.grip) bodies_->grip(state_, solids_, dt);
+    viscosity_->apply(state_, surface_, closed_, dt);
 }
 
 /// Friction acts on the motion as it was; forces come after it and meet the pressure that holds them, so that water at rest feels none.

@@ -30,12 +30,6 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Over ranks: may each hold its own planes of a scene alone? As staggered::holds_own_planes, and not where friction is solved for by
-/// everybody, nor where markers that have escaped from flat cells are looked at one after the other.
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
-/// Where nobody but the scene asks for more.
-bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
-
 /// Nanoseconds that a step takes of each plane of cells: as the scene begins, or of a state; of one that each rank has its own part of all
 /// ranks ask together.
 std::vector<std::int64_t> work_of_planes(const scene::Scene& scene, const Checkpoint* state = nullptr);
@@ -124,6 +118,7 @@ private:
     void conduct(real dt);
     void slow(real dt);
     void momentum_to_faces(real dt);
+    void rub(real dt);
     void forces(real dt);
     poisson::Report project(real dt);
     void extend_velocity(real dt);
@@ -140,7 +135,6 @@ private:
     void restore_markers(const Checkpoint& from);
     OwnPlanes own_planes() const { return OwnPlanes(cut_, 1, kept_, frame_.periodic(D - 1)); }
     const Markers<D>& all_markers() const { return cut_.empty() ? markers_ : all_markers_; }
-    void rub(real dt);
 
     // Edits between steps (edit.cpp)
     void keep_faces();

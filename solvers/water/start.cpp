@@ -3,6 +3,7 @@
 #include "geometry/hand.hpp"
 #include "scene/names.hpp"
 #include "staggered/initial.hpp"
+#include "staggered/own_planes.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
 
@@ -23,7 +24,7 @@ template <int D>
 Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
       cut_(cut_asked_for(scene.index<D>("grid.cells")[D - 1])),
-      kept_(water::holds_own_planes(scene, cut_) ? static_cast<int>(std::ceil(options_.cfl)) + 3 : 0),
+      kept_(staggered::holds_own_planes(scene, cut_) ? static_cast<int>(std::ceil(options_.cfl)) + 3 : 0),
       making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, 1, kept_, geometry::Sides<D>(scene).periodic(D - 1)) : nullptr),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),

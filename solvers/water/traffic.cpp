@@ -1,6 +1,7 @@
 // What a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of what stands in surface/, pass by pass.
 #include "poisson/traffic.hpp"
 #include "geometry/wet_part.hpp"
+#include "staggered/own_planes.hpp"
 #include "surface/traffic.hpp"
 #include "water/solver.hpp"
 
@@ -16,8 +17,7 @@ std::vector<std::string> not_counted(const scene::Scene& scene) {
     const auto lists = [&](const char* key) { return scene.has(key) && !scene.root().tables(key).empty(); };
     for (const char* list : {"solids", "emitters", "probes"})
         if (lists(list)) keys.emplace_back(list);
-    for (const char* effect : {"viscosity", "volume_control"})
-        if (scene.effect(effect)) keys.push_back(std::string("effects.") + effect);
+    if (scene.effect("volume_control")) keys.emplace_back("effects.volume_control");
     if (scene.root().number_or("time.stop_when_steady", 0) > 0) keys.emplace_back("time.stop_when_steady");
     return keys;
 }
@@ -32,7 +32,7 @@ public:
           n_(lattice_.cells),
           transfer_(scene.text("scheme.transfer")),
           ring_(sides_.periodic(D - 1)),
-          windowed_(could_hold_own_planes(scene, of.cut)),
+          windowed_(staggered::could_hold_own_planes(scene, of.cut)),
           shape_(shape),
           reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
           surface_(n_, lattice_.h, scene.number("time.cfl"), ring_),
@@ -46,6 +46,7 @@ public:
         sync();  // what the markers brought, beside walls
         surface_.continue_velocity(tally_, 2);
         if (transfer_ == "flip") sync();
+        if (scene_.effect("viscosity") && scene_.number("fluid.viscosity") > 0) rub();
         sync();  // what forces leave
         project();
         surface_.continue_velocity(tally_, surface_.layers - 1);
@@ -97,6 +98,14 @@ private:
         tally_.everywhere(sizeof(std::int64_t), 1, sizeof(std::int64_t) * ranks);  // is there liquid?
         tally_.refresh({plane_of<D>(n_, sizeof(poisson::Cell)), plane_of<D>(lines, sizeof(Extent))}, 2);
         sync();  // weights above the last cells
+    }
+    /// Velocity and the wet parts of cells beside the cuts; then in each iteration a direction, and two sums of products.
+    void rub() {
+        tally_.refresh(faces_, 1);
+        tally_.refresh({cells_}, 2);
+        tally_.refresh(faces_, 1, shape_.viscous_iterations);
+        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + 2 * shape_.viscous_iterations);
+        sync();
     }
     /// Wet rows of this rank, one run each, as the scene begins; and those of the plane below it.
     poisson::Runs runs() const {

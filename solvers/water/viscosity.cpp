@@ -3,6 +3,8 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 
+#include <numeric>
+
 namespace weir::water {
 
 template <int D>
@@ -11,7 +13,7 @@ SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& 
     for (int a = 0; a < D; ++a)
         for (Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_})
             (*faces)[static_cast<std::size_t>(a)] = Grid<real, D>(state.u[a].extent());
-    for (int a = 0; a < D; ++a) unknown_[static_cast<std::size_t>(a)].reserve(mass_[static_cast<std::size_t>(a)].size());
+    reserve_unknowns();
     for (int a = 0; a < D; ++a)
         for (int b = a + 1; b < D; ++b) edge_[static_cast<std::size_t>(a + b - 1)] = Grid<real, D>(frame.cells + e<D>(a) + e<D>(b));
 }
@@ -20,10 +22,11 @@ SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& 
 template <int D>
 template <class F>
 void SurfaceViscosity<D>::for_each_unknown(F&& f) const {
-    for (int a = 0; a < D; ++a) {
-        const auto& list = unknown_[static_cast<std::size_t>(a)];
-        parallel_for(0, static_cast<int>(list.size()), [&](int k) { f(a, list[static_cast<std::size_t>(k)]); });
-    }
+    parallel_for(0, static_cast<int>(blocks_.size()), [&](int i) {
+        const Block& block = blocks_[static_cast<std::size_t>(i)];
+        const auto& list = unknown_[static_cast<std::size_t>(block.axis)];
+        for (std::size_t k = block.begin; k < block.end; ++k) f(block.axis, list[k]);
+    });
 }
 
 /// ∂_b u_a + ∂_a u_b at the edge on the lower sides of cell I along a and b.
@@ -128,6 +131,21 @@ real SurfaceViscosity<D>::diagonal(int a, const Index<D>& I) const {
     return sum;
 }
 
+/// Room for all faces of this rank's planes, so that no step asks for more.
+template <int D>
+void SurfaceViscosity<D>::reserve_unknowns() {
+    const int planes = frame_.cells[D - 1] + 1, own = detail::own_share.upper(planes) - detail::own_share.lower(0);
+    std::size_t blocks = 0;
+    for (std::size_t a = 0; a < D; ++a) {
+        const auto plane = static_cast<std::size_t>(mass_[a].stride(D - 1));
+        unknown_[a].reserve(plane * static_cast<std::size_t>(own));
+        blocks += plane / Block::most + 1;
+    }
+    blocks_.reserve(blocks * static_cast<std::size_t>(own));
+    block_sum_.reserve(blocks_.capacity());
+    first_block_.resize(static_cast<std::size_t>(planes) + 1);
+}
+
 /// Air costs nothing: its faces have neither mass nor stress. Leaves the diagonal of K in diagonal_.
 template <int D>
 void SurfaceViscosity<D>::list_unknowns() {
@@ -136,25 +154,42 @@ void SurfaceViscosity<D>::list_unknowns() {
         const auto& mass = mass_[at];
         for_each_cell(mass.extent(), [&](const Index<D>& I) { diagonal_[at](I) = mass(I) < 0 ? 0 : diagonal(a, I); });
         unknown_[at].clear();
-        for (std::size_t i = 0; i < mass.size(); ++i)
-            if (mass[i] > 0 || diagonal_[at][i] > 0) unknown_[at].push_back(index_of<D>(mass.extent(), i));
     }
+    blocks_.clear();
+    const int planes = frame_.cells[D - 1] + 1;
+    for (int k = 0; k < planes; ++k) {
+        first_block_[static_cast<std::size_t>(k)] = blocks_.size();
+        for (int a = 0; a < D && is_own_plane(k); ++a) {
+            const auto at = static_cast<std::size_t>(a);
+            const auto& mass = mass_[at];
+            if (k >= mass.extent()[D - 1]) continue;
+            auto& list = unknown_[at];
+            const std::size_t plane = static_cast<std::size_t>(mass.stride(D - 1)), first = plane * static_cast<std::size_t>(k);
+            std::size_t begin = list.size();
+            for (std::size_t i = first; i < first + plane; ++i)
+                if (mass[i] > 0 || diagonal_[at][i] > 0) list.push_back(index_of<D>(mass.extent(), i));
+            for (; begin < list.size(); begin += Block::most) blocks_.push_back({a, begin, std::min(list.size(), begin + Block::most)});
+        }
+    }
+    first_block_.back() = blocks_.size();
+    block_sum_.resize(blocks_.size());
 }
 
+/// Block by block, those of a plane, and the planes' in order: whatever the threads, and whoever owns the planes.
 template <int D>
 real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
-    constexpr std::size_t block = 4096;  // added in order, whatever the threads
-    real sum = 0;
-    for (std::size_t a = 0; a < D; ++a) {
-        const auto& list = unknown_[a];
-        sum += ordered_sum(static_cast<int>((list.size() + block - 1) / block), [&](int k) {
-            const std::size_t begin = static_cast<std::size_t>(k) * block, end = std::min(list.size(), begin + block);
-            real part = 0;
-            for (std::size_t i = begin; i < end; ++i) part += p[a](list[i]) * q[a](list[i]);
-            return part;
-        });
-    }
-    return sum;
+    parallel_for(0, static_cast<int>(blocks_.size()), [&](int i) {
+        const Block& block = blocks_[static_cast<std::size_t>(i)];
+        const auto a = static_cast<std::size_t>(block.axis);
+        real part = 0;
+        for (std::size_t k = block.begin; k < block.end; ++k) part += p[a](unknown_[a][k]) * q[a](unknown_[a][k]);
+        block_sum_[static_cast<std::size_t>(i)] = part;
+    });
+    return plane_sum(frame_.cells[D - 1] + 1, [&](int k) {
+        const auto first = block_sum_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(k)]);
+        const auto last = block_sum_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(k) + 1]);
+        return std::accumulate(first, last, real{0});
+    });
 }
 
 /// Conjugate gradients with the diagonal as preconditioner: ν dt/h² is moderate, a few iterations do.
@@ -176,6 +211,7 @@ void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu) {
     iterations_ = 0;
     while (rz > target && rz > 0) {
         if (++iterations_ > 1000) throw NumericalFailure("velocity", "the viscous solve missed its tolerance after 1000 iterations");
+        refresh_faces<D>(p_, frame_, 1);
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
             ap_[at](I) = mass_[at](I) * p_[at](I) + s * stress_divergence(p_, a, I, 0);
@@ -239,6 +275,7 @@ template <int D>
 void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt) {
     const real dt_nu = dt * state.nu;
     if (bodies_) bodies_->find(state, closed);
+    refresh_faces(state.u, frame_, 1);
     set_weights(state, surface, closed);
     list_unknowns();
     if (bodies_) {
@@ -270,11 +307,12 @@ void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, 
 
 template <int D>
 std::size_t SurfaceViscosity<D>::bytes() const {
-    std::size_t total = cell_.size();
-    for (const auto& grid : edge_) total += grid.size();
-    for (const auto& grid : mass_) total += 6 * grid.size();
-    total *= sizeof(real);
+    std::size_t total = cell_.bytes();
+    for (const auto& grid : edge_) total += grid.bytes();
+    for (const Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_})
+        for (const auto& grid : *faces) total += grid.bytes();
     for (const auto& list : unknown_) total += list.capacity() * sizeof(Index<D>);
+    total += blocks_.capacity() * sizeof(Block) + first_block_.capacity() * sizeof(std::size_t) + block_sum_.capacity() * sizeof(real);
     return total + (bodies_ ? bodies_->bytes() : 0);
 }
 

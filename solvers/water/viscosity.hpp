@@ -5,6 +5,7 @@
 // Free-slip walls and solids exert no shear; no-slip ones hold the velocity half a cell (walls) or a face away (solids). Bodies that the
 // liquid sticks to are rows of the solve (body_rows.hpp). Beside them, θ = 1, the pressure of before acts inside it, and is taken off again
 // (van Kan 1986): a body at a steady speed is then rubbed at the speed that it has.
+// Over ranks each solves for the faces of its own planes, and reads those of one plane beyond its cuts.
 #pragma once
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
@@ -43,6 +44,7 @@ private:
     real shear(const Faces& u, int a, int b, const Index<D>& I, real fixed) const;
     const Grid<real, D>& edge(int a, int b) const { return edge_[static_cast<std::size_t>(a + b - 1)]; }
     real diagonal(int a, const Index<D>& I) const;
+    void reserve_unknowns();
     void list_unknowns();
     void list_walls(const MacState<D>& state);
     void push(MacState<D>& state, const LevelSet<D>& surface, real dt) const;
@@ -51,6 +53,13 @@ private:
     real dot(const Faces& p, const Faces& q) const;
     template <class F>
     void for_each_unknown(F&& f) const;
+
+    /// Unknown faces along an axis in one plane, entries [begin, end) of unknown_: what threads share, and sums are taken of.
+    struct Block {
+        int axis;
+        std::size_t begin, end;
+        static constexpr std::size_t most = 1024;
+    };
 
     Frame<D> frame_;
     const geometry::Sides<D>* sides_;
@@ -63,7 +72,10 @@ private:
     Grid<real, D> cell_;                            // liquid fraction of cells
     std::array<Grid<real, D>, edges> edge_;         // ... of the boxes about edges, 0 where no shear acts
     Faces mass_, x_, r_, p_, ap_, diagonal_;        // mass_ < 0: not an unknown
-    std::array<std::vector<Index<D>>, D> unknown_;  // faces that liquid or its stress reaches
+    std::array<std::vector<Index<D>>, D> unknown_;  // faces that liquid or its stress reaches, in the order of the grid
+    std::vector<Block> blocks_;                     // plane after plane, in each axis after axis
+    std::vector<std::size_t> first_block_;          // of each plane of faces, and where those of the last one end
+    mutable std::vector<real> block_sum_;
 };
 
 }  // namespace weir::water

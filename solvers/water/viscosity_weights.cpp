@@ -41,8 +41,10 @@ real SurfaceViscosity<D>::edge_weight(int a, int b, const Index<D>& I, const Gri
 template <int D>
 void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
     for_each_cell(frame_.cells, [&](const Index<D>& I) { cell_(I) = !closed.empty() && closed(I) ? 0 : surface.fraction(I); });
+    refresh(cell_, frame_.periodic(D - 1), 2);
     for (int a = 0; a < D; ++a)
         for (int b = a + 1; b < D; ++b) {
+            const WiderPlanes beside(1);  // the next rank's first edges are beside this one's last faces
             auto& weight = edge_[static_cast<std::size_t>(a + b - 1)];
             for_each_cell(weight.extent(), [&](const Index<D>& I) { weight(I) = edge_weight(a, b, I, closed); });
         }

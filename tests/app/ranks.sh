@@ -62,10 +62,16 @@ flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles
 tall=$scenes/ranks_tall.toml tall_deep=$scenes/ranks_tall_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml one_end=$scenes/ranks_one_end.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
 sea=$scenes/ranks_waves.toml trains=$scenes/ranks_trains.toml below=$scenes/ranks_waves_below.toml line=$scenes/ranks_line.toml
-# without what everybody finds of whole grids, friction and a gauge; and with cells that a periodic axis can halve
+# without friction and a gauge; with every probe, some beside cuts; and with cells that a periodic axis can halve
 frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
     --set 'probes=[{name="sums",kind="integral",field="volume"},{name="wall",kind="point",field="pressure",at=[0.2,0.3]}]')
+probes=(--set 'probes=[{name="gauge",kind="gauge",at=[0.6,0.0]},{name="along",kind="front",axis="x"},{name="up",kind="front",axis="y"},
+    {name="floor",kind="wall_pressure",at=[0.2,0.0]},{name="side",kind="wall_pressure",at=[0.0,0.475]},{name="ball",kind="wall_pressure",at=[0.42,0.3]}]')
+probes_deep=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},
+    {name="z",kind="front",axis="z"},{name="floor",kind="wall_pressure",at=[0.1,0.0,0.26]},{name="ball",kind="wall_pressure",at=[0.25,0.15,0.28]}]')
 even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
+# from rest, and without a jet into air: there friction takes hundreds of iterations
+viscous='--set fluid.viscosity=1e-4 --set effects.viscosity={} --set initial={} --set emitters=[]'
 water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
 # what rank number 0, 1, .. of a run tells of itself, and a bound for it
 told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
@@ -99,6 +105,8 @@ case $part in
     ;;
 3d)
     compare all "2 1,2 2,3 1,3 2,4 1,4 2" "$deep"
+    compare pressed "2 1,3 2,4 1" "$deep" --set 'probes=[{name="side",kind="wall_pressure",at=[0.0,0.3,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.24,0.28]}]'
+    grep -q '"storage":"every rank holds its own planes' pressed-3-2/run.json || fail "a rank held more than its own planes"
     ;;
 particles)
     compare pbf "$every" "$drops"
@@ -113,13 +121,16 @@ water)
     compare flip "$every" "$water" "${frictionless[@]}"
     grep -q '"storage":"every rank holds its own planes' flip-2-1/run.json || fail "a rank held more than its own planes"
     grep -q '"every_rank_does":"the levels of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
-    compare sticky "2 1,3 2" "$water"
-    grep -q '"storage":"every rank holds whole grids"' sticky-2-1/run.json || fail "run.json does not tell that grids are whole"
+    compare sticky "$every" "$water" "${probes[@]}"
+    grep -q '"storage":"every rank holds its own planes' sticky-2-1/run.json || fail "a rank held more than its own planes"
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
     compare flip "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep"
     grep -q '"storage":"every rank holds its own planes' flip-4-2/run.json || fail "a rank held more than its own planes"
+    compare viscous "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep" $viscous "${probes_deep[@]}"
+    grep -q '"storage":"every rank holds its own planes' viscous-4-2/run.json || fail "a rank held more than its own planes"
+    grep -q '"viscous_iterations"' viscous/run.json || fail "friction took no iterations"
     ;;
 water_schemes)
     compare grid "3 1" "$water" "${frictionless[@]}" --set scheme.transfer=grid --set scheme.trace=rk3
@@ -128,7 +139,12 @@ water_schemes)
     compare ring_apic "3 1" "$water_deep" $water_ring $even --set scheme.transfer=apic
     compare ring_own "2 1,4 1" "$water_deep" $water_ring $even --set time.cfl=2 --set time.max_dt=0.05
     grep -q '"storage":"every rank holds its own planes' ring_own-4-1/run.json || fail "a rank held more than its own planes"
-    compare flat_cells "3 1" "$water_deep" --set grid.cells=[28,40,26]
+    compare ring_viscous "2 1,4 1" "$water_deep" $water_ring $even $viscous --set effects.viscosity.scheme=implicit
+    compare whole_viscous "3 1" "$water_deep" $viscous --set scheme.poisson.method=cg_mic0
+    grep -q '"storage":"every rank holds whole grids"' whole_viscous-3-1/run.json || fail "run.json does not tell that grids are whole"
+    compare flat_cells "2 2,3 1,4 1" "$water_deep" --set grid.cells=[28,40,26]
+    grep -q '"storage":"every rank holds its own planes' flat_cells-3-1/run.json || fail "a rank held more than its own planes"
+    compare flat_ring "3 1" "$water_deep" $water_ring $viscous --set grid.cells=[28,30,32]
     in_two_parts 0.03 0.06 "$water_deep"
     ;;
 water_cut) # planes are cut by what they hold: as the scene begins, as a restart finds it, and anew at checkpoints
@@ -351,19 +367,28 @@ storage_water) # the same of liquid with markers, as much of it in every plane
 	effects = { surface_tension = { sigma = 0.07 }, volume_control = {} }
 	output = { every = 1.0 }
 	END
-    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
-    one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
     cells=$((32 * 32)) # of a plane
-    for ranks in 2 4; do
-        ends 0 over $ranks "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
-        alike one parts-$ranks
-        grep -q '"storage":"every rank holds its own planes and those near its cuts"' parts-$ranks/run.json || fail "run.json tells of other storage"
-        ends 0 over $ranks "$weir" run pool.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,64]
+    # shared RANKS FOLDER OF PARTS [--set ...]: each holds its part of what one process has in the folder
+    shared() {
+        local ranks=$1 folder=$2 parts=$3 one rank
+        shift 3
+        one=$(grep -o '"solver_bytes": [0-9]*' "$folder/run.json" | cut -d' ' -f2)
+        ends 0 over "$ranks" "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out "$parts" "$@"
+        alike "$folder" "$parts"
+        grep -q '"storage":"every rank holds its own planes and those near its cuts"' "$parts/run.json" || fail "run.json tells of other storage"
         for rank in $(seq 0 $((ranks - 1))); do
             # Numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
             # more than that). The pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row.
+            at_most "$(told "$parts" solver_bytes "$rank")" \
+                $((one * (256 / ranks + 9) / 256 + 14 * 8 * cells + 20000 * 8 / 7 * 128 + 64 * 32 * 256)) "$folder, rank $rank of $ranks"
+        done
+    }
+    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
+    for ranks in 2 4; do
+        shared $ranks one parts-$ranks
+        ends 0 over $ranks "$weir" run pool.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,64]
+        for rank in $(seq 0 $((ranks - 1))); do
             held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
-            at_most "$held" $((one * (planes + 9) / 256 + 14 * 8 * cells + 20000 * 8 / 7 * 128 + 64 * 32 * 256)) "rank $rank of $ranks"
             # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
             # beside it (3 + 1 + 1 numbers, a flag and a layer of a cell, 6 numbers of 8 markers in each of the lower half, each), a page at
             # both ends of less than 128 arrays; and of a frame the own part of its largest array, three numbers a marker, and what the
@@ -372,6 +397,13 @@ storage_water) # the same of liquid with markers, as much of it in every plane
             at_most $more $((held + (2 * (42 + 4 * 6 * 8) + 4 * 3 * 8) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
         done
     done
+    # of friction too: weights, vectors and lists of faces; of a pool that begins to slosh
+    slosh="$viscous --set effects.gravity.g=[1.0,-9.81,0.0]"
+    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out viscous $slosh
+    for ranks in 2 4; do shared $ranks viscous viscous-$ranks $slosh; done
+    # in cells that are no cubes, half as many along x
+    ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out flat --set grid.cells=[16,32,256]
+    for ranks in 2 4; do shared $ranks flat flat-$ranks --set grid.cells=[16,32,256]; done
     # continued by others
     # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more; and before anything is made, each looks
     # at its share of the level set, 8 bytes a cell, to find where planes are cut)
@@ -472,7 +504,7 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
     ends 0 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
     alike liquid liquid_poisoned
-    for case in "" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
+    for case in "" "--set grid.cells=[28,40,26]" "$viscous" "$viscous --set scheme.transfer=apic $water_ring $even" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
         rm -rf liquid_3d liquid_3d_poisoned
         ends 0 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned

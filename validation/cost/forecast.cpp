@@ -119,13 +119,13 @@ Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKi
         seconds.push_back(took);
         r.least_dt = seconds.size() == 1 ? dt : std::min(r.least_dt, dt), r.most_dt = std::max(r.most_dt, dt);
         spent += took, simulated += dt;
-        r.iterations += step.iterations;
+        r.iterations += step.iterations, r.viscous_iterations += step.viscous_iterations;
         if (step.cfl > r.most_cfl) r.most_cfl = step.cfl;
     }
     if (seconds.empty()) throw NumericalFailure("time", "the scene ends before a step can be measured");
     r.ms = 1e3 * median(seconds);
     r.dt = simulated / static_cast<double>(seconds.size());
-    r.iterations /= static_cast<double>(seconds.size());
+    r.iterations /= static_cast<double>(seconds.size()), r.viscous_iterations /= static_cast<double>(seconds.size());
     r.passes = simulation.solver().passes().list();
     double inside = 0;
     for (const Pass& p : r.passes) inside += p.seconds;
@@ -146,7 +146,7 @@ Forecast forecast(const scene::Scene& scene, const std::vector<scene::SolverKind
     f.ms = scaled(f.count, at, fine.ms, coarse.ms, 0.5, 1.4);
     f.dt = scaled(f.count, at, fine.dt, coarse.dt, -2.0 / f.dim, 0);
     f.least_dt = f.dt * fine.least_dt / fine.dt, f.most_dt = f.dt * fine.most_dt / fine.dt;
-    f.iterations = fine.iterations, f.most_cfl = fine.most_cfl;
+    f.iterations = fine.iterations, f.viscous_iterations = fine.viscous_iterations, f.most_cfl = fine.most_cfl;
     double total = 0;
     for (const Pass& p : fine.passes) {
         f.passes.push_back({p.name, 0, scaled(f.count, at, p.seconds, seconds_of(coarse, p.name), 0.3, 1.6)});

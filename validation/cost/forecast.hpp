@@ -19,7 +19,8 @@ struct Rates {
     double dt = 0;               // [s] the mean
     double least_dt = 0, most_dt = 0;
     double iterations = 0;  // of a step's solve: the mean
-    double most_cfl = 0;    // cells that anything crosses in a step; 0 where nobody says
+    double viscous_iterations = 0;
+    double most_cfl = 0;  // cells that anything crosses in a step; 0 where nobody says
 };
 
 struct Forecast {
@@ -33,8 +34,8 @@ struct Forecast {
     double ms = 0;                             // a step
     double dt = 0, least_dt = 0, most_dt = 0;  // a step: mean, shortest and longest of the small runs, on this scene's cells
     std::vector<Pass> passes{};                // seconds a step
-    double iterations = 0, most_cfl = 0;       // of the larger copy
-    std::vector<Rates> measured{};             // at which sizes
+    double iterations = 0, viscous_iterations = 0, most_cfl = 0;  // of the larger copy
+    std::vector<Rates> measured{};                                // at which sizes
 };
 
 /// The first steps of a scene, timed.

@@ -152,7 +152,8 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
                 .seconds_each = 1e-3 * f.ms / f.count};
     o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
                .cells_crossed = std::max(1, static_cast<int>(std::ceil(f.most_cfl))),
-               .particles = f.particles ? f.count : 0};
+               .particles = f.particles ? f.count : 0,
+               .viscous_iterations = static_cast<int>(std::lround(f.viscous_iterations))};
     o.cut = shares.cut;
     {
         const Pretended several(0, ranks);

@@ -135,6 +135,21 @@ TEST_IN_2D_AND_3D("a marker that leaves the liquid takes a drop with it; one tha
     EXPECT_EQ(s.level_set.count_airborne(markers), 0u);
 }
 
+// Both are in the air, and within each other's drop: the first that joins puts the second inside.
+TEST_IN_2D_AND_3D("whether a marker has escaped does not depend on other markers, in flat cells neither") {
+    for (const int flat : {1, 4}) {
+        Index<D> n = Index<D>::constant(16), up = Index<D>::constant(4);
+        n[1] *= flat, up[1] = 12 * flat;
+        Surface<D> s(n, *geometry::plane<D>(Vec<D>::constant(0.5), Vec<D>::unit(1)));
+        Markers<D> markers(false, false);
+        const Vec<D> x = s.frame.centre(up);
+        markers.add(x, Vec<D>{});
+        markers.add(x + 0.05 * s.frame.h_min() * Vec<D>::unit(1), Vec<D>{});
+        markers.sort(s.frame);
+        EXPECT_EQ(s.level_set.rescue_escaped(markers), 2u) << "cells " << flat << " times as wide as high";
+    }
+}
+
 TEST_IN_2D_AND_3D("extrapolation continues a velocity without change along the normal") {
     Surface<D> s(20, *geometry::plane<D>(Vec<D>::constant(0.5), Vec<D>::unit(1)));
     FaceMarks<D> known;
