@@ -1,11 +1,11 @@
 // What a scene may say to the solver "mac".
-#include "scene/one_process.hpp"
 #include "staggered/kind.hpp"
 #include "core/traffic.hpp"
 #include "flow/effects.hpp"
 #include "flow/solver.hpp"
 #include "geometry/hand.hpp"
 #include "matter/heat.hpp"
+#include "scene/one_process.hpp"
 #include "staggered/inflow.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/own_planes.hpp"

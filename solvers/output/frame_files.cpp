@@ -213,10 +213,10 @@ VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, con
     const std::size_t here = position.data[0].size();
     const auto sheet = std::find_if(fields.sheets.begin(), fields.sheets.end(), [&](const SheetView& s) { return s.set == set; });
     const bool has_rows = sheet != fields.sheets.end() && sheet->points[1] > 1;
-    const Parts all = fields.particles_in_parts ? Parts{begins_of_ranks(here)}
-                      : has_rows                ? parts_of_rows(fields, here / static_cast<std::size_t>(sheet->points[1]),
-                                                                static_cast<std::size_t>(sheet->points[1]))
-                                                : Parts::of_first(here);
+    const Parts all =
+        fields.particles_in_parts ? Parts{begins_of_ranks(here)}
+        : has_rows ? parts_of_rows(fields, here / static_cast<std::size_t>(sheet->points[1]), static_cast<std::size_t>(sheet->points[1]))
+                   : Parts::of_first(here);
     const std::size_t first = fields.particles_in_parts ? all.begin(slabs().rank()) : 0;
     std::vector<DataArray> data;
     for (const auto& field : fields.fields)

@@ -1,8 +1,8 @@
 // What a scene may say to the solver "mac_water".
-#include "scene/one_process.hpp"
 #include "staggered/kind.hpp"
 #include "core/traffic.hpp"
 #include "matter/heat.hpp"
+#include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/own_planes.hpp"

@@ -48,8 +48,8 @@ struct Stress {
     std::string floor_why{};
     std::optional<real> asked{};  // more than the floor, and not reached: listed, and an error once it holds
     std::string not_reached{};    // why
-    bool nested = false;     // a run at one value contains those at all lesser ones: the end is tried first
-    std::int64_t steps = 0;  // a run ends here if its scene has not ended before
+    bool nested = false;          // a run at one value contains those at all lesser ones: the end is tried first
+    std::int64_t steps = 0;       // a run ends here if its scene has not ended before
     Variant base{};
     std::vector<Invariant> watch{};
     std::vector<Proof> proof{};  // that the hardship is there, at each value

@@ -172,7 +172,8 @@ TEST("the README's results are written between its markers, the rest stays, and 
     const weir::test::TemporaryFolder folder;
     results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2"), claim(false, 3, 2, "<= 2")}));
     fs::create_directories(folder.path() / "stability/svg");  // beside the studies
-    std::ofstream(folder.path() / "stability/s.json") << R"({"limits": [{"guarded": true}, {"guarded": false, "first_unstable": 2, "asked": 3}]})";
+    std::ofstream(folder.path() / "stability/s.json")
+        << R"({"limits": [{"guarded": true}, {"guarded": false, "first_unstable": 2, "asked": 3}]})";
     const fs::path readme = folder.path() / "README.md";
     std::ofstream(readme) << "before\n" << readme_begins << "\nold\n" << readme_ends << "\nafter\n";
     update_readme(readme, folder.path());
