@@ -25,6 +25,7 @@ class StepReport:
     residual_max: float
     density_error: float
     max_density_error: float
+    viscous_iterations: int
 
 class Core:
     time: float

@@ -12,8 +12,8 @@ from ._weir import StepReport
 from .fields import Edit, Field
 
 _reported = ("dt", "cfl", "max_divergence", "iterations", "residual_before", "residual_after", "residual_max", "density_error",
-             "max_density_error")
-_report_dtype = np.dtype([("step", np.int64), ("time", float)] + [(name, np.int64 if name == "iterations" else float) for name in _reported])
+             "max_density_error", "viscous_iterations")
+_report_dtype = np.dtype([("step", np.int64), ("time", float)] + [(name, np.int64 if name.endswith("iterations") else float) for name in _reported])
 
 
 @dataclass(frozen=True)
