@@ -439,11 +439,11 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
                 # Two rows beyond either cut, and one. Whole are what a stage says of each row, 4 numbers, and its scratch of less than 40 rows.
                 held=$(told $model-$ranks solver_bytes $rank) rows=$((1024 / ranks))
                 at_most "$held" $((one * (rows + 5) / 1024 + 4 * 8 * 1024 + 40 * 8 * (512 + 24))) "$model, rank $rank of $ranks"
-                # As the system sees it, beyond what a run of a few columns takes: that, the last good state (4 numbers a column), a page at both
-                # ends of less than 32 arrays; the first rank may keep the room of a frame (the field, and 3 copies).
-                more_held=$(($(told $model-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
-                frame=$([ "$rank" -eq 0 ] && echo $((4 * 8 * 512 * 1024)) || echo 0)
-                at_most $more_held $((held + 4 * 8 * 512 * rows + 32 * 2 * 4096 + frame)) "$model resident, rank $rank of $ranks"
+                # As the system sees it, at any time of the run, beyond what a run of a few columns takes: that, the last good state and a
+                # checkpoint beside it (4 numbers a column, each), a page at both ends of less than 32 arrays; and of a frame the own part
+                # of its array, a number a column, and what the first rank puts into the file at once.
+                more_held=$(($(told $model-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+                at_most $more_held $((held + (2 * 4 + 1) * 8 * 512 * rows + 32 * 2 * 4096 + handed)) "$model peak, rank $rank of $ranks"
             done
         done
         # continued by others
@@ -481,11 +481,11 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
                 held=$(told $name-$ranks solver_bytes $rank) rows=$((512 / ranks))
                 waves=$(((points / 2 + 1) * 512))
                 at_most "$held" $((one * (rows + 3) / 512 + (5 * 16 + 2 * 8) * 512 + 2 * 16 * (waves / ranks + 512))) "$name, rank $rank of $ranks"
-                # As the system sees it: that, a page at both ends of less than 32 arrays; the first rank may keep the room of a frame: of cells and
-                # of points 3 numbers, of points their places and the vertices that are drawn of them, 5, and 3 copies.
-                more_held=$(($(told $name-$ranks resident_bytes $rank) - $(told tiny-$ranks resident_bytes $rank)))
-                frame=$([ "$rank" -eq 0 ] && echo $((4 * 8 * 512 * (3 * cells + 8 * points))) || echo 0)
-                at_most $more_held $((held + 32 * 2 * 4096 + frame)) "$name resident, rank $rank of $ranks"
+                # As the system sees it, at any time of the run: that, a page at both ends of less than 32 arrays; and of a frame the own part of
+                # its largest array, 3 numbers a cell or 4 corners between points, and what the first rank puts into the file at once.
+                more_held=$(($(told $name-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+                array=$((3 * cells > 4 * points ? 3 * cells : 4 * points))
+                at_most $more_held $((held + 8 * array * rows + 32 * 2 * 4096 + handed)) "$name peak, rank $rank of $ranks"
             done
         done
     done

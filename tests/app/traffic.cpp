@@ -20,8 +20,11 @@ namespace {
 
 using nlohmann::json;
 
-/// As ctest takes a test that could not be made: no MPI here.
-bool there_are_ranks() { return WEIR_HAS_MPI && std::system("command -v mpirun >/dev/null") == 0; }
+/// Why there are no ranks, as tests/skipped.sh knows reasons; nothing where there are.
+std::string no_ranks() {
+    if (!WEIR_HAS_MPI) return WEIR_WANTS_MPI ? "built without MPI (Debian: apt-get install libopenmpi-dev)" : "WEIR_MPI is off";
+    return std::system("command -v mpirun >/dev/null") == 0 ? "" : "no mpirun (Debian: apt-get install openmpi-bin)";
+}
 
 struct Run {
     json log;
@@ -80,7 +83,7 @@ struct Steps {
 /// Messages and bytes of every rank, exactly; `wrong` of the bytes, where the formula only estimates how many particles are beside a cut.
 void expect_as_told(const std::string& text, const std::vector<int>& ranks, const Steps& steps,
                     const std::vector<double>& beside = {0, 0, 0}, double wrong = 0) {
-    if (!there_are_ranks()) GTEST_SKIP() << "no MPI";
+    if (const std::string why = no_ranks(); !why.empty()) GTEST_SKIP() << why;
     const Runs runs(text);
     for (const int n : ranks) {
         const Run few = runs.run(n, steps.few * steps.dt), many = runs.run(n, steps.many * steps.dt);
@@ -278,7 +281,7 @@ std::pair<int, std::string> said(std::vector<std::string> arguments) {
 TEST(
     "what each rank of mac will hold is foretold within a fifth, and of mac_water within a third, of heightfield and waves within a "
     "fifth") {
-    if (!there_are_ranks()) GTEST_SKIP() << "no MPI";
+    if (const std::string why = no_ranks(); !why.empty()) GTEST_SKIP() << why;
     const auto compare = [](const std::string& text, double end, double wrong) {
         const Runs runs(text);
         const auto scene = runs.scene();
