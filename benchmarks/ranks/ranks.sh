@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ranks.sh [ROUNDS]: what two processes take for what two threads of one take: four scenes and the four pressure problems, one after the
+# ranks.sh [ROUNDS]: what two processes take for what two threads of one take: five scenes and the four pressure problems, one after the
 # other in turns, ROUNDS (5) times, on two processors with nothing beside. A line a pair: the medians, and the median of the rounds' ratios.
 set -euo pipefail
 root=$(realpath "$(dirname "$0")/../..")
@@ -47,6 +47,7 @@ compare "\`mac\`, a step of plume_3d, 64 x 96 x 64" scene plume_3d $(steps 0.5)
 if "$weir" list solvers 2>/dev/null | grep -q mac_water && over 2 "$weir" run dam_break_3d $(steps 0.001) --quiet --out probe >log 2>&1; then
     compare "\`mac_water\`, a step of dam_break_3d, 96 x 64 x 48" scene dam_break_3d $(steps 0.2)
 fi
+compare "\`tallcell\`, a step of the same" scene dam_break_3d --set solver=tallcell --set "scheme={}" $(steps 0.2)
 compare "\`pbf\`, a step of dam_break_particles, 32,768" scene dam_break_particles $(steps 0.1)
-compare "\`sph\`, a step of the same" scene dam_break_particles --set solver=sph --set "scheme={support=2.0}" --set "time={end=0.02}" --set output.every=0.02
+compare "\`sph\`, a step of those" scene dam_break_particles --set solver=sph --set "scheme={support=2.0}" --set "time={end=0.02}" --set output.every=0.02
 for name in box wavy box_weights wavy_weights; do compare "pressure alone, \`$name\`, 128 x 128 x 128" problem $name; done
