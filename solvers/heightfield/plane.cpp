@@ -6,7 +6,7 @@
 namespace weir::heightfield {
 
 bool holds_own_rows(const scene::Scene& scene, const Cut& cut) {
-    return !cut.empty() && !slabs().holds_whole() && !scene::looks_at_whole_fields(scene, {"point", "line", "integral", "gauge"});
+    return !cut.empty() && !slabs().holds_whole() && !scene::looks_at_whole_fields(scene);
 }
 
 HeldPlanes held_rows(const scene::Scene& scene) {

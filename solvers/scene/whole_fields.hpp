@@ -1,13 +1,11 @@
-// Over ranks that hold their own planes alone, who looks at more than those.
+// What makes every rank of a run hold whole fields.
 #pragma once
 #include "scene/scene.hpp"
 
-#include <initializer_list>
-#include <string_view>
-
 namespace weir::scene {
 
-/// Does a scene look at whole fields: to see whether they are steady, or by a probe of another kind than these?
-bool looks_at_whole_fields(const Scene& scene, std::initializer_list<std::string_view> local_probes);
+/// Whether all ranks are to look at all of a field: how much it has changed everywhere since the last step. Probes ask those who own their
+/// places.
+inline bool looks_at_whole_fields(const Scene& scene) { return scene.root().number_or("time.stop_when_steady", 0) > 0; }
 
 }  // namespace weir::scene

@@ -131,6 +131,13 @@ struct OwnCells {
     }
 };
 
+/// What those of all ranks come to.
+real largest_of_owners(const FieldSet& fields, real own) {
+    if (!fields.cut) return own;
+    const std::vector<real> all = of_ranks(own);
+    return *std::max_element(all.begin(), all.end());
+}
+
 /// Of lines through cell centres.
 real front_of_level_set(const FieldSet& fields, std::span<const real> phi, int axis) {
     const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
@@ -147,9 +154,7 @@ real front_of_level_set(const FieldSet& fields, std::span<const real> phi, int a
             });
             if (zero >= 0) farthest = std::max(farthest, coordinate(lattice, axis, zero));
         }
-    if (!fields.cut) return farthest;
-    const std::vector<real> all = of_ranks(farthest);
-    return *std::max_element(all.begin(), all.end());
+    return largest_of_owners(fields, farthest);
 }
 
 /// Columns of water, each with one depth and one surface.
@@ -159,23 +164,37 @@ struct WaterColumns {
 };
 WaterColumns columns_of(const FieldSet& fields) { return {fields.find(column_depth_name), fields.find(surface_height_name)}; }
 
+/// f(I) for the columns that this rank is to look at.
+template <class F>
+void for_each_own_column(const FieldSet& fields, F&& f) {
+    const OwnCells cells(fields);
+    std::array<int, 3> I{};
+    for (I[2] = cells.begin[2]; I[2] < cells.end[2]; ++I[2])
+        for (I[0] = cells.begin[0]; I[0] < cells.end[0]; ++I[0]) f(I);
+}
+
+/// Of those columns, and `least`.
+real largest(const FieldSet& fields, std::span<const real> values, real least) {
+    const Lattice lattice = Lattice::of_cells(fields.grid);
+    for_each_own_column(fields, [&](const std::array<int, 3>& I) { least = std::max(least, values[lattice.linear(I)]); });
+    return largest_of_owners(fields, least);
+}
+
 /// Films thinner than this part of the deepest water are no front: a scheme that keeps depths positive lets traces run ahead.
 constexpr real film = 1e-3;
 
 real front_of_columns(const FieldSet& fields, const WaterColumns& water, int axis) {
     const Lattice lattice = Lattice::of_cells(fields.grid);
     const auto& depth = water.depth->data[0];
-    const real least = film * *std::max_element(depth.begin(), depth.end());
+    const real least = film * largest(fields, depth, -infinity);
     real farthest = fields.grid.origin[static_cast<std::size_t>(axis)];
-    std::array<int, 3> I{};
-    for (I[2] = 0; I[2] < lattice.n[2]; ++I[2])
-        for (I[0] = 0; I[0] < lattice.n[0]; ++I[0]) {
-            const std::size_t c = lattice.linear(I);
-            if (depth[c] <= least) continue;
-            const real reaches = axis == 1 ? water.surface->data[0][c] : coordinate(lattice, axis, I[static_cast<std::size_t>(axis)] + 0.5);
-            farthest = std::max(farthest, reaches);
-        }
-    return farthest;
+    for_each_own_column(fields, [&](const std::array<int, 3>& I) {
+        const std::size_t c = lattice.linear(I);
+        if (depth[c] <= least) return;
+        const real reaches = axis == 1 ? water.surface->data[0][c] : coordinate(lattice, axis, I[static_cast<std::size_t>(axis)] + 0.5);
+        farthest = std::max(farthest, reaches);
+    });
+    return largest_of_owners(fields, farthest);
 }
 
 }  // namespace
@@ -221,8 +240,7 @@ real front(const FieldSet& fields, int axis) {
     real farthest = fields.grid.origin[a];
     if (const FieldView* height = fields.find("", surface_height_name)) {  // there is liquid below every point
         if (axis != 1) return upper_corner(fields.grid)[axis];
-        for (const real y : height->data[0]) farthest = std::max(farthest, y);
-        return farthest;
+        return largest(fields, height->data[0], farthest);
     }
     if (const FieldView* level_set = fields.find(level_set_name)) return front_of_level_set(fields, level_set->data[0], axis);
     const Wet wet = wet_points(fields);

@@ -3,6 +3,7 @@
 #include "core/slabs.hpp"
 #include "geometry/sides.hpp"
 #include "poisson/poisson.hpp"
+#include "scene/whole_fields.hpp"
 #include "staggered/state.hpp"
 
 namespace weir::staggered {
@@ -10,7 +11,7 @@ namespace weir::staggered {
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs().holds_whole() && could_hold_own_planes(scene, cut); }
 
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
-    if (cut.empty() || scene.root().number_or("time.stop_when_steady", 0) > 0) return false;
+    if (cut.empty() || scene::looks_at_whole_fields(scene)) return false;
     if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
     const auto shares = [&]<int D>() {
         const Lattice<D> lattice(scene);

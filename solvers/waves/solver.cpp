@@ -12,7 +12,7 @@ namespace weir::waves {
 
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut) {
     if (cut.empty() || slabs().holds_whole() || (scene.dim() == 3 && scene.text("waves.model") == "basin")) return false;
-    return !scene::looks_at_whole_fields(scene, {"point", "line", "integral", "gauge"});
+    return !scene::looks_at_whole_fields(scene);
 }
 
 namespace {
