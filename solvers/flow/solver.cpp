@@ -18,8 +18,8 @@ namespace weir::flow {
 /// scheme. Enters and leaves with ∇·u = 0 to the projection's tolerance.
 template <int D>
 StepReport FlowSolver<D>::step(real dt) {
-    const OwnPlanes mine = own_planes();
-    whole_ = cut_.empty();
+    const OwnPlanes mine = held_.own();
+    whole_ = held_.cut().empty();
     real t = state_.time;
     apply(Stage::source, dt);  // emitters
     for (const Substep& stage : substeps(options_.scheme)) {
@@ -133,10 +133,7 @@ bool lists(const scene::Scene& scene, const std::string& field) {
 
 template <int D>
 FlowSolver<D>::FlowSolver(const scene::Scene& scene)
-    : cut_(cut_asked_for(scene.index<D>("grid.cells")[D - 1])),
-      ring_(geometry::Sides<D>(scene).periodic(D - 1)),
-      kept_(staggered::holds_own_planes(scene, cut_) ? planes_beside : 0),
-      making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, ghost_layers, kept_, ring_) : nullptr),
+    : held_(held_planes<D>(scene, planes_beside, ghost_layers)),
       effects_(make_effects<D>(effect_kinds(), scene)),
       state_(scene, field_plan(effects_, scene)),
       bodies_(BodiesInFlow<D>::make(scene)),
@@ -199,8 +196,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     }
     apply(Stage::source, 0);  // what is emitted from the start is there at the start: the first step knows its forces
     passes_.reset();
-    making_.reset();
-    whole_ = kept_ == 0;
+    held_.made();
+    whole_ = !held_.alone();
 }
 
 template <int D>
@@ -254,7 +251,7 @@ void FlowSolver<D>::refresh_fields() {
     if (!over_ranks() || state_.fields.empty()) return;
     shared_.clear();
     for (auto& field : state_.fields) shared_.push_back(planes_of(field.values));
-    slabs().refresh(cut_, shared_, 1, state_.sides.periodic(D - 1));
+    slabs().refresh(held_.cut(), shared_, 1, state_.sides.periodic(D - 1));
 }
 
 /// Friction is felt where bodies will be: they move before it.
@@ -457,7 +454,7 @@ template <int D>
 StepReport FlowSolver<D>::report(real dt) {
     const real fastest = fastest_ = max_rate(state_.u);
     if (!std::isfinite(fastest)) throw NumericalFailure("velocity", "the velocity is not finite");
-    if (!cut_.empty()) check_own_planes();
+    if (!held_.cut().empty()) check_own_planes();
     return {.dt = dt,
             .cfl = dt * fastest,
             .max_divergence = max_divergence(state_),
@@ -482,8 +479,8 @@ void FlowSolver<D>::check_own_planes() const {
 template <int D>
 void FlowSolver<D>::make_whole() const {
     if (whole_) return;
-    if (kept_ > 0) return bring_beside();
-    const OwnPlanes mine(cut_);
+    if (held_.alone()) return bring_beside();
+    const OwnPlanes mine(held_.cut());
     auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
@@ -493,19 +490,19 @@ void FlowSolver<D>::make_whole() const {
 
 template <int D>
 void FlowSolver<D>::bring_beside() const {
-    const OwnPlanes mine = own_planes();
+    const OwnPlanes mine = held_.own();
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all;
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
     all.push_back(planes_of(state.p));
     for (auto& field : state.fields) all.push_back(planes_of(field.values));
-    slabs().refresh(cut_, all, planes_beside, ring_);
+    slabs().refresh(held_.cut(), all, planes_beside, held_.ring());
     whole_ = true;
 }
 
 template <int D>
 real FlowSolver<D>::advised_dt() const {
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine(held_.cut());
     const real fastest = last_rate();
     return std::min({fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_), heat_ ? heat_->max_dt(state_) : infinity});
 }
@@ -516,7 +513,7 @@ StepLimit FlowSolver<D>::stable_dt() const {
     if (const real most = heat_ ? heat_->stable_dt(state_) : infinity; most < infinity)
         return {most, "explicit conduction of heat is stable up to it"};
     if (options_.scheme != Scheme::conservative) return {};
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine(held_.cut());
     const real fastest = last_rate();
     return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
 }
@@ -524,9 +521,9 @@ StepLimit FlowSolver<D>::stable_dt() const {
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
     make_whole();
-    const OwnPlanes mine = looking_at_own();
+    const OwnPlanes mine = held_.looking();
     FieldSet set = field_set(state_);
-    if (kept_ > 0) set.cut = &cut_;
+    if (held_.alone()) set.cut = &held_.cut();
     if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
         vorticity(state_, vorticity_);
@@ -548,7 +545,7 @@ FieldSet FlowSolver<D>::fields() const {
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
     make_whole();
-    const OwnPlanes mine = looking_at_own();
+    const OwnPlanes mine = held_.looking();
     auto list = flow::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
@@ -571,8 +568,8 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
 
 template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
-    if (kept_ == 0) make_whole();
-    const OwnPlanes mine = looking_at_own();
+    if (!held_.alone()) make_whole();
+    const OwnPlanes mine = held_.looking();
     state_.save(to);
     if (bodies_) bodies_->save(to);
     to.put_value("impulse", impulse_);
@@ -584,13 +581,13 @@ void FlowSolver<D>::save(Checkpoint& to) const {
 template <int D>
 void FlowSolver<D>::restore(const Checkpoint& from) {
     {
-        const OwnPlanes mine = looking_at_own();
+        const OwnPlanes mine = held_.looking();
         state_.restore(from);
     }
     if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
     if (hand_ && from.has("hand")) hand_->restore(from);
-    whole_ = kept_ == 0;
+    whole_ = !held_.alone();
     make_whole();
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");

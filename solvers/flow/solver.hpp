@@ -1,5 +1,6 @@
 // Solver "mac": one incompressible fluid that fills the domain, on a staggered grid, with what effects add to it: smoke, heat, forces.
 #pragma once
+#include "core/held_planes.hpp"
 #include "core/passes.hpp"
 #include "core/solver.hpp"
 #include "flow/effects.hpp"
@@ -39,7 +40,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return kept_ > 0; }
+    bool holds_own_planes() const override { return held_.alone(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     Hand* hand() const override { return hand_.get(); }
@@ -50,7 +51,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     /// Over ranks, of the planes that each has computed.
-    bool checks_itself() const override { return !cut_.empty(); }
+    bool checks_itself() const override { return !held_.cut().empty(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
@@ -91,19 +92,9 @@ private:
     void check_own_planes() const;
     void make_whole() const;
 
-    OwnPlanes own_planes() const { return OwnPlanes(cut_, ghost_layers, kept_, ring_); }
-    /// For whoever looks: this rank's alone where it holds no more, else everything.
-    OwnPlanes looking_at_own() const { return OwnPlanes(kept_ > 0 ? cut_ : nowhere(), ghost_layers, kept_, ring_); }
-    static const Cut& nowhere() {
-        static const Cut none;
-        return none;
-    }
     void bring_beside() const;
 
-    Cut cut_;                            // none in one process
-    bool ring_;                          // the cut axis is periodic
-    int kept_;                           // where each rank holds its own planes alone, so many beyond its cuts at least; else 0
-    std::unique_ptr<OwnPlanes> making_;  // until all is made
+    HeldPlanes held_;
     Effects<MacState<D>> effects_;
     MacState<D> state_;
     std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none

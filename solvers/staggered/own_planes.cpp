@@ -1,6 +1,6 @@
 #include "staggered/own_planes.hpp"
 
-#include "core/slabs.hpp"
+#include "core/cut_by_work.hpp"
 #include "geometry/sides.hpp"
 #include "poisson/poisson.hpp"
 #include "scene/whole_fields.hpp"
@@ -26,5 +26,14 @@ bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
     };
     return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
 }
+
+template <int D>
+HeldPlanes held_planes(const scene::Scene& scene, int deep, int reach) {
+    const Cut cut = cut_asked_for(scene.index<D>("grid.cells")[D - 1]);
+    return HeldPlanes(cut, holds_own_planes(scene, cut), deep, geometry::Sides<D>(scene).periodic(D - 1), reach);
+}
+
+template HeldPlanes held_planes<2>(const scene::Scene& scene, int deep, int reach);
+template HeldPlanes held_planes<3>(const scene::Scene& scene, int deep, int reach);
 
 }  // namespace weir::staggered

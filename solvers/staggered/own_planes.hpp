@@ -1,6 +1,7 @@
-// Over ranks: may each hold its own planes of a scene on a staggered grid alone?
+// Over ranks: may each hold its own planes of a scene on a staggered grid alone, and how?
 #pragma once
 #include "core/halo.hpp"
+#include "core/held_planes.hpp"
 #include "scene/scene.hpp"
 
 namespace weir::staggered {
@@ -9,5 +10,8 @@ namespace weir::staggered {
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 /// Where nobody but the scene asks for more.
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
+/// As a solver of the scene holds them, where alone with `deep` planes beyond its cuts.
+template <int D>
+HeldPlanes held_planes(const scene::Scene& scene, int deep, int reach = 1);
 
 }  // namespace weir::staggered

@@ -9,7 +9,7 @@ namespace weir::water {
 /// markers of one plane beyond.
 template <int D>
 void Water<D>::bring_faces(real dt) {
-    whole_ = cut_.empty(), markers_whole_ = false;
+    whole_ = held_.cut().empty(), markers_whole_ = false;
     if (!over_ranks()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
@@ -24,7 +24,7 @@ void Water<D>::bring_faces(real dt) {
 /// Solids as far as liquid moves, where this rank holds no more than its own planes.
 template <int D>
 void Water<D>::know_solids() {
-    if (kept_ == 0 || !solids_.any() || near_solid_.store().reaches(reach_)) return;
+    if (!held_.alone() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
     solids_.know(state_, reach_);
     for (auto* bytes : {&closed_, &near_solid_}) bytes->store().open(reach_, frame_.periodic(D - 1));
     mark_closed();
@@ -39,7 +39,7 @@ std::array<std::int64_t, 2> Water<D>::let_depart() {
     }
     bool open = false;
     for (int a = 0; a < D; ++a) open = open || state_.sides.open(a, 0) || state_.sides.open(a, 1);
-    const auto [own, left] = markers_.migrate(frame_, cut_, open);
+    const auto [own, left] = markers_.migrate(frame_, held_.cut(), open);
     if (!open) return {own, 0};
     return {sum_of_ranks(own), sum_of_ranks(left)};
 }
@@ -82,8 +82,8 @@ void Water<D>::check_own() const {
 template <int D>
 void Water<D>::make_whole() const {
     if (whole_) return;
-    if (kept_ > 0) return bring_beside();
-    const OwnPlanes mine(cut_);
+    if (held_.alone()) return bring_beside();
+    const OwnPlanes mine(held_.cut());
     auto& own = const_cast<Water&>(*this);  // what is written is what was not here: the state stays the same
     for (int a = 0; a < D; ++a) gather(own.state_.u[a]);
     gather(own.state_.p);
@@ -94,30 +94,30 @@ void Water<D>::make_whole() const {
 /// Where each holds its own planes alone, what it looks at beside them. The level set is known there since it is a distance.
 template <int D>
 void Water<D>::bring_beside() const {
-    const OwnPlanes mine = own_planes();
+    const OwnPlanes mine = held_.own();
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all{planes_of(state.p)};
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    slabs().refresh(cut_, all, 2, frame_.periodic(D - 1));
+    slabs().refresh(held_.cut(), all, 2, frame_.periodic(D - 1));
     whole_ = true;
 }
 
 template <int D>
 void Water<D>::gather_markers() const {
-    if (cut_.empty() || markers_whole_ || kept_ > 0) return;
-    const OwnPlanes mine(cut_);
+    if (held_.cut().empty() || markers_whole_ || held_.alone()) return;
+    const OwnPlanes mine(held_.cut());
     markers_.gather(frame_, all_markers_);
     markers_whole_ = true;
 }
 
 template <int D>
 std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const {
-    if (kept_ == 0) return nullptr;
+    if (!held_.alone()) return nullptr;
     struct Lent final : Brought {
         Water& solver;
         explicit Lent(Water& s) : solver(s) { solver.brought_ = true; }
         ~Lent() override {
-            const OwnPlanes mine = solver.own_planes();
+            const OwnPlanes mine = solver.held_.own();
             for (int a = 0; a < D; ++a) solver.state_.u[a].store().close();
             solver.surface_.phi.store().close();
             solver.all_markers_.for_each_array([](std::vector<real>& array) { std::vector<real>().swap(array); });
@@ -127,7 +127,7 @@ std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const {
     auto& own = const_cast<Water&>(*this);  // the state stays the same
     auto lent = std::make_unique<Lent>(own);
     make_whole();
-    const OwnPlanes mine = own_planes();
+    const OwnPlanes mine = held_.own();
     for (int a = 0; a < D; ++a) gather_to_first(own.state_.u[a]);
     gather_to_first(own.surface_.phi);
     markers_.gather_to_first(frame_, all_markers_);

@@ -14,11 +14,11 @@ FieldSet Water<D>::fields() const {
     gather_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
-    if (kept_ > 0) set.cut = &cut_;
-    set.particles_in_parts = kept_ > 0 && !brought_;
+    if (held_.alone()) set.cut = &held_.cut();
+    set.particles_in_parts = held_.alone() && !brought_;
     const Markers<D>& markers = set.particles_in_parts ? markers_ : all_markers();
     const auto own_markers = [&] {
-        const OwnPlanes mine = own_planes();
+        const OwnPlanes mine = held_.own();
         return markers_.own(frame_);
     };
     const auto [first, last] = set.particles_in_parts ? own_markers() : std::pair{std::size_t{0}, markers.count()};
@@ -43,7 +43,7 @@ FieldSet Water<D>::fields() const {
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
     make_whole();
-    const OwnPlanes mine = own_planes();
+    const OwnPlanes mine = held_.own();
     const auto [first, last] = markers_.own(frame_);
     const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
     const std::int64_t escaped = sum_of_ranks(escaped_), reseeded = sum_of_ranks(reseeded_);
@@ -64,8 +64,8 @@ std::vector<Integral> Water<D>::integrals() const {
 template <int D>
 void Water<D>::save(Checkpoint& to) const {
     make_whole();
-    const OwnPlanes mine = own_planes();
-    if (kept_ == 0) const_cast<LevelSet<D>&>(surface_).make_layers_whole();
+    const OwnPlanes mine = held_.own();
+    if (!held_.alone()) const_cast<LevelSet<D>&>(surface_).make_layers_whole();
     const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(escaped_), sum_of_ranks(reseeded_)};
     state_.save(to);
     if (bodies_) bodies_->save(to);
@@ -96,16 +96,15 @@ void Water<D>::restore_markers(const Checkpoint& from) {
         array.resize(held.end - held.begin);
         from.get_part(name, std::span<real>(array), held.begin, held.all);
     });
-    if (cut_.empty())
+    if (held_.cut().empty())
         markers_.sort(frame_);
     else
-        markers_.deal(frame_, cut_);
+        markers_.deal(frame_, held_.cut());
 }
 
 template <int D>
 void Water<D>::restore(const Checkpoint& from) {
-    const Cut whole;
-    const OwnPlanes mine(kept_ > 0 ? cut_ : whole, 1, kept_, frame_.periodic(D - 1));
+    const OwnPlanes mine = held_.looking();
     state_.time = from.get_value<real>("time");
     if (bodies_ || solids_.moving() || state_.time == 0) state_.restore(from);  // where solids are placed anew
     if (bodies_) bodies_->restore(from, solids_);
@@ -118,7 +117,7 @@ void Water<D>::restore(const Checkpoint& from) {
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
     if (hand_ && from.has("hand")) hand_->restore(from);
-    whole_ = kept_ == 0, markers_whole_ = false;
+    whole_ = !held_.alone(), markers_whole_ = false;
     make_whole();
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
@@ -131,7 +130,7 @@ std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
                         (viscosity_ ? viscosity_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.bytes() + near_solid_.bytes() +
                         not_solved_for_.bytes() + curvature_.bytes() + in_solids_.bytes();
-    if (!cut_.empty()) total += all_markers_.bytes();
+    if (!held_.cut().empty()) total += all_markers_.bytes();
     if (bodies_) total += bodies_->bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();
     for (const auto& sum : sums_.sum) total += sum.bytes();

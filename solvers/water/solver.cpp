@@ -8,7 +8,7 @@ namespace weir::water {
 /// the level set and free of divergence in the liquid, to the tolerance of the pressure.
 template <int D>
 StepReport Water<D>::step(real dt) {
-    const OwnPlanes mine = own_planes();
+    const OwnPlanes mine = held_.own();
     bring_faces(dt);
     move_bodies(dt);
     move_solids(state_.time + dt);
@@ -25,7 +25,7 @@ StepReport Water<D>::step(real dt) {
     momentum_to_markers(dt);
     state_.time += dt;
     ++steps_;
-    if (!cut_.empty()) check_own();
+    if (!held_.cut().empty()) check_own();
     return {.dt = dt,
             .cfl = dt * rate_,
             .max_divergence = divergence,
@@ -91,7 +91,7 @@ void Water<D>::correct_surface(real dt) {
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
-    if (kept_ == 0) surface_.make_whole();
+    if (!held_.alone()) surface_.make_whole();
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 

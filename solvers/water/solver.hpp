@@ -3,6 +3,7 @@
 // Batty et al. 2007; Bridson 2015.
 #pragma once
 #include "core/effects.hpp"
+#include "core/held_planes.hpp"
 #include "core/solver.hpp"
 #include "geometry/solids.hpp"
 #include "scene/solver_kind.hpp"
@@ -67,7 +68,7 @@ public:
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
     std::unique_ptr<Brought> bring_to_first() const override;
-    bool holds_own_planes() const override { return kept_ > 0; }
+    bool holds_own_planes() const override { return held_.alone(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     Hand* hand() const override { return hand_.get(); }
@@ -80,7 +81,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     /// Over ranks, of what each has computed.
-    bool checks_itself() const override { return !cut_.empty(); }
+    bool checks_itself() const override { return !held_.cut().empty(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
@@ -133,8 +134,7 @@ private:
     void gather_markers() const;
     void know_solids();
     void restore_markers(const Checkpoint& from);
-    OwnPlanes own_planes() const { return OwnPlanes(cut_, 1, kept_, frame_.periodic(D - 1)); }
-    const Markers<D>& all_markers() const { return cut_.empty() ? markers_ : all_markers_; }
+    const Markers<D>& all_markers() const { return held_.cut().empty() ? markers_ : all_markers_; }
 
     // Edits between steps (edit.cpp)
     void keep_faces();
@@ -150,9 +150,7 @@ private:
     real max_speed_rate() const;
 
     WaterOptions options_;
-    Cut cut_;                            // none in one process
-    int kept_;                           // where each rank holds its own planes alone, so many beyond its cuts at least; else 0
-    std::unique_ptr<OwnPlanes> making_;  // until all is made
+    HeldPlanes held_;
     MacState<D> state_;
     Frame<D> frame_;
     std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none

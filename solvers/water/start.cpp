@@ -23,9 +23,7 @@ bool all_stick(const geometry::Solids<D>& solids) {
 template <int D>
 Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
-      cut_(cut_asked_for(scene.index<D>("grid.cells")[D - 1])),
-      kept_(staggered::holds_own_planes(scene, cut_) ? static_cast<int>(std::ceil(options_.cfl)) + 3 : 0),
-      making_(kept_ > 0 ? std::make_unique<OwnPlanes>(cut_, 1, kept_, geometry::Sides<D>(scene).periodic(D - 1)) : nullptr),
+      held_(staggered::held_planes<D>(scene, static_cast<int>(std::ceil(options_.cfl)) + 3)),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       bodies_(BodiesInFlow<D>::make(scene)),
@@ -69,8 +67,8 @@ Water<D>::Water(const scene::Scene& scene)
     set_fixed_faces();
     extend_velocity(0);
     seed_markers();
-    making_.reset();
-    whole_ = kept_ == 0;
+    held_.made();
+    whole_ = !held_.alone();
 }
 
 /// Friction takes the pressure of before: of liquid at rest under its weight, zero in its highest cell.
@@ -156,7 +154,7 @@ void Water<D>::seed_markers() {
     if (!over_ranks()) markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);
-        if (over_ranks() && !markers_.holds(frame_, cut_, slabs().rank(), I[D - 1])) continue;
+        if (over_ranks() && !markers_.holds(frame_, held_.cut(), slabs().rank(), I[D - 1])) continue;
         if (surface_.phi(I) > norm(frame_.h)) continue;
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);
@@ -172,7 +170,7 @@ void Water<D>::seed_markers() {
         markers_.volume = volume_target_ / static_cast<real>(count);
     else
         markers_.volume = frame_.cell_volume() / Markers<D>::per_cell;
-    markers_.keep_held(frame_, cut_);
+    markers_.keep_held(frame_, held_.cut());
     markers_whole_ = false;
 }
 
