@@ -41,17 +41,21 @@ DataArray at_centres(const FieldView& field, const GridView& grid, const Parts& 
     });
 }
 
-/// Whose the entries of an array of so many along each axis are.
+/// Whose the planes of an array are, of so many entries each; the first rank's, where all hold whole fields.
+Parts parts_of_planes(const FieldSet& fields, std::size_t entries, int planes) {
+    if (fields.cut == nullptr) return Parts::of_first(entries * static_cast<std::size_t>(planes));
+    Parts parts{{0}};
+    for (int rank = 0; rank < fields.cut->ranks(); ++rank)
+        parts.begins.push_back(entries * static_cast<std::size_t>(fields.cut->end(rank, planes)));
+    return parts;
+}
+
+/// The same of an array of so many entries along each axis.
 Parts parts_of_grid(const FieldSet& fields, const std::array<int, 3>& n) {
     const auto slowest = static_cast<std::size_t>(std::max(1, fields.grid.dim) - 1);
     std::size_t plane = 1;
     for (std::size_t a = 0; a < slowest; ++a) plane *= static_cast<std::size_t>(n[a]);
-    const int planes = n[slowest];
-    if (fields.cut == nullptr) return Parts::of_first(plane * static_cast<std::size_t>(planes));
-    Parts parts{{0}};
-    for (int rank = 0; rank < fields.cut->ranks(); ++rank)
-        parts.begins.push_back(plane * static_cast<std::size_t>(fields.cut->end(rank, planes)));
-    return parts;
+    return parts_of_planes(fields, plane, n[slowest]);
 }
 
 /// What is hidden from VTK's filters: cells in solids.
@@ -122,19 +126,10 @@ Cells all_on_first(std::size_t cells, std::size_t corners, std::function<std::in
     return cells_of(Parts::of_first(cells), corners, std::move(corner));
 }
 
-/// Whose the rows of a sheet are, of so many entries each: cut as planes are, where ranks hold their own alone; else the first rank's.
-Parts parts_of_rows(const FieldSet& fields, std::size_t entries, std::size_t rows) {
-    if (fields.cut == nullptr) return Parts::of_first(entries * rows);
-    Parts parts{{0}};
-    for (int rank = 0; rank < fields.cut->ranks(); ++rank)
-        parts.begins.push_back(entries * std::min(rows, static_cast<std::size_t>(fields.cut->end(rank, fields.cut->planes()))));
-    return parts;
-}
-
 /// Rows of points as the corners of quadrilaterals.
 Cells quadrilaterals(const SheetView& sheet, const FieldSet& fields) {
-    const auto nx = static_cast<std::size_t>(sheet.points[0]), nz = static_cast<std::size_t>(sheet.points[1]);
-    return cells_of(parts_of_rows(fields, nx - 1, nz - 1), 4, [nx](std::size_t at) {
+    const auto nx = static_cast<std::size_t>(sheet.points[0]);
+    return cells_of(parts_of_planes(fields, nx - 1, sheet.points[1] - 1), 4, [nx](std::size_t at) {
         const std::size_t cell = at / 4, i = cell % (nx - 1), k = cell / (nx - 1);
         const std::array<std::size_t, 4> corners{i + nx * k, i + nx * (k + 1), i + 1 + nx * (k + 1), i + 1 + nx * k};
         return static_cast<std::int64_t>(corners[at % 4]);
@@ -213,10 +208,9 @@ VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, con
     const std::size_t here = position.data[0].size();
     const auto sheet = std::find_if(fields.sheets.begin(), fields.sheets.end(), [&](const SheetView& s) { return s.set == set; });
     const bool has_rows = sheet != fields.sheets.end() && sheet->points[1] > 1;
-    const Parts all =
-        fields.particles_in_parts ? Parts{begins_of_ranks(here)}
-        : has_rows ? parts_of_rows(fields, here / static_cast<std::size_t>(sheet->points[1]), static_cast<std::size_t>(sheet->points[1]))
-                   : Parts::of_first(here);
+    const Parts all = fields.particles_in_parts ? Parts{begins_of_ranks(here)}
+                      : has_rows                ? parts_of_planes(fields, static_cast<std::size_t>(sheet->points[0]), sheet->points[1])
+                                                : Parts::of_first(here);
     const std::size_t first = fields.particles_in_parts ? all.begin(slabs().rank()) : 0;
     std::vector<DataArray> data;
     for (const auto& field : fields.fields)

@@ -34,12 +34,6 @@ bool has_grid_fields(const FieldSet& fields, const FrameOptions& options, bool f
            });
 }
 
-#ifdef WEIR_HAS_VTK
-void require_vtk() {}
-#else
-void require_vtk() { throw BadInput("this weir was built without VTK (WEIR_VTK=OFF) and writes no frames"); }
-#endif
-
 }  // namespace
 
 #ifdef WEIR_HAS_VTK
@@ -87,7 +81,7 @@ void Frames::take_up(std::int64_t kept) {
 }
 
 void Frames::write(const FieldSet& fields, real t) {
-    require_vtk();
+    if (!can_write_frames()) throw BadInput("this weir was built without VTK (WEIR_VTK=OFF) and writes no frames");
     if (has_grid_fields(fields, options_, false)) write_piece("grid", ".vti", image_of(fields, t, options_));
     if (options_.faces && has_grid_fields(fields, options_, true))
         for (int axis = 0; axis < fields.grid.dim; ++axis)
