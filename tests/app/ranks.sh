@@ -106,7 +106,7 @@ case $part in
 3d)
     compare all "2 1,2 2,3 1,3 2,4 1,4 2" "$deep"
     compare pressed "2 1,3 2,4 1" "$deep" --set 'probes=[{name="side",kind="wall_pressure",at=[0.0,0.3,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.24,0.28]}]'
-    grep -q '"storage":"every rank holds its own planes' pressed-3-2/run.json || fail "a rank held more than its own planes"
+    holds_own pressed-3-2
     ;;
 particles)
     compare pbf "$every" "$drops"
@@ -119,17 +119,17 @@ particles_3d)
     ;;
 water)
     compare flip "$every" "$water" "${frictionless[@]}"
-    grep -q '"storage":"every rank holds its own planes' flip-2-1/run.json || fail "a rank held more than its own planes"
+    holds_own flip-2-1
     grep -q '"every_rank_does":"the levels of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
     compare sticky "$every" "$water" "${probes[@]}"
-    grep -q '"storage":"every rank holds its own planes' sticky-2-1/run.json || fail "a rank held more than its own planes"
+    holds_own sticky-2-1
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
     compare flip "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep"
-    grep -q '"storage":"every rank holds its own planes' flip-4-2/run.json || fail "a rank held more than its own planes"
+    holds_own flip-4-2
     compare viscous "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep" $viscous "${probes_deep[@]}"
-    grep -q '"storage":"every rank holds its own planes' viscous-4-2/run.json || fail "a rank held more than its own planes"
+    holds_own viscous-4-2
     grep -q '"viscous_iterations"' viscous/run.json || fail "friction took no iterations"
     ;;
 water_schemes)
@@ -138,12 +138,12 @@ water_schemes)
     compare ring "2 1,3 2" "$water_deep" $water_ring --set time.cfl=2 --set time.max_dt=0.05
     compare ring_apic "3 1" "$water_deep" $water_ring $even --set scheme.transfer=apic
     compare ring_own "2 1,4 1" "$water_deep" $water_ring $even --set time.cfl=2 --set time.max_dt=0.05
-    grep -q '"storage":"every rank holds its own planes' ring_own-4-1/run.json || fail "a rank held more than its own planes"
+    holds_own ring_own-4-1
     compare ring_viscous "2 1,4 1" "$water_deep" $water_ring $even $viscous --set effects.viscosity.scheme=implicit
     compare whole_viscous "3 1" "$water_deep" $viscous --set scheme.poisson.method=cg_mic0
-    grep -q '"storage":"every rank holds whole grids"' whole_viscous-3-1/run.json || fail "run.json does not tell that grids are whole"
+    holds_whole whole_viscous-3-1
     compare flat_cells "2 2,3 1,4 1" "$water_deep" --set grid.cells=[28,40,26]
-    grep -q '"storage":"every rank holds its own planes' flat_cells-3-1/run.json || fail "a rank held more than its own planes"
+    holds_own flat_cells-3-1
     compare flat_ring "3 1" "$water_deep" $water_ring $viscous --set grid.cells=[28,30,32]
     in_two_parts 0.03 0.06 "$water_deep"
     ;;
@@ -153,7 +153,7 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     compare begun "2 1,2 2,3 1,3 2,4 1,4 2" "$one_end"
     is_cut begun-2-1 '[0,16,80]' # 20 planes of liquid
     is_cut begun-4-2 '[0,8,16,24,80]'
-    grep -q '"storage":"every rank holds its own planes' begun-4-2/run.json || fail "a rank held more than its own planes"
+    holds_own begun-4-2
     ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$one_end" --checkpoint-every 1000 --quiet --threads 1 --out poisoned
     alike begun poisoned
     in_two_parts 0.06 0.07 "$one_end"
@@ -180,6 +180,11 @@ heightfield)
     compare ring_columns "2 1,3 2" "$columns" $around
     compare thin "4 1" "$shallow" --set grid.cells=[37,1,6]
     compare thin_columns "4 1" "$columns" --set grid.cells=[37,1,5]
+    for scene in "$shallow" "$columns"; do
+        rm -rf fronts*
+        compare fronts "2 1,3 2" "$scene" --set 'probes=[{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},{name="z",kind="front",axis="z"}]'
+        holds_own fronts-3-2
+    done
     # whole where somebody looks at all of it
     for scene in "$shallow" "$columns"; do
         rm -rf watched*
@@ -209,8 +214,8 @@ waves)
     holds_own trains-2-1 trains-4-2
     compare below "2 1,3 2,4 1" "$below"
     holds_own below-4-1
-    compare watched "2 1,3 2" "$sea" --set 'probes=[{name="crest",kind="front",axis="y"}]' --set waves.choppiness=0
-    holds_whole watched-2-1
+    compare crest "2 1,3 2" "$sea" --set 'probes=[{name="crest",kind="front",axis="y"}]' --set waves.choppiness=0
+    holds_own crest-2-1
     compare stokes "2 2,3 1" "$below" --set 'waves={model="stokes",height=1.0,wavelength=40.0,heading=0.5}'
     compare sines "3 1" "$below" --set 'waves={model="sines",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
     compare gerstner "2 1,3 2" "$below" --set 'waves={model="gerstner",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
@@ -230,7 +235,7 @@ waves)
     ;;
 tallcell)
     compare deep "1 2,2 1,2 2,3 1,4 2" "$tall_deep"
-    grep -q '"storage":"every rank holds whole grids"' deep-2-1/run.json || fail "run.json does not tell that grids are whole"
+    holds_whole deep-2-1
     grep -q '"every_rank_does":"the levels of the pressure of fewer than 20,000 unknowns' deep-2-1/run.json || fail "run.json does not tell what is not shared"
     compare flat "2 1,3 2,4 1" "$tall"
     tall_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
@@ -274,7 +279,7 @@ schemes)
     # paths of several cells around the ends of the cut axis, beside a ball
     compare ring_3d "3 1" "$deep" --set 'sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}' \
         --set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64] --set 'initial.velocity={name="random",speed=3.0}' --set time.cfl=8
-    grep -q '"storage":"every rank holds its own planes' ring_3d-3-1/run.json || fail "a rank held more than its own planes"
+    holds_own ring_3d-3-1
     compare fluxes "3 1" "$flat" --set scheme.advection=conservative
     compare paths "3 1" "$flat" --set scheme.advection=semi_lagrangian --set effects.viscosity.scheme=implicit
     compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
@@ -296,7 +301,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
     for ranks in 2 4; do
         ends 0 over $ranks "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
         alike one parts-$ranks
-        grep -q '"storage":"every rank holds its own planes and those near its cuts"' parts-$ranks/run.json || fail "run.json tells of other storage"
+        holds_own parts-$ranks
         ends 0 over $ranks "$weir" run plume.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,32]
         for rank in $(seq 0 $((ranks - 1))); do
             # Nothing crosses a cell in a step: 4 planes beyond either cut, and one. Whole are the pressure's levels of fewer than 20,000 cells,
@@ -353,7 +358,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
     alike one parts-2
     alike one parts-4
     ends 0 over 2 "$weir" run "$flat" --quiet --threads 1 --out watched --set time.stop_when_steady=1e-9 --set time.end=0.04
-    grep -q '"storage":"every rank holds whole grids"' watched/run.json || fail "run.json does not tell that grids are whole"
+    holds_whole watched
     ;;
 storage_water) # the same of liquid with markers, as much of it in every plane
     cat >pool.toml <<-END
@@ -375,7 +380,7 @@ storage_water) # the same of liquid with markers, as much of it in every plane
         one=$(grep -o '"solver_bytes": [0-9]*' "$folder/run.json" | cut -d' ' -f2)
         ends 0 over "$ranks" "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out "$parts" "$@"
         alike "$folder" "$parts"
-        grep -q '"storage":"every rank holds its own planes and those near its cuts"' "$parts/run.json" || fail "run.json tells of other storage"
+        holds_own "$parts"
         for rank in $(seq 0 $((ranks - 1))); do
             # Numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
             # more than that). The pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row.
