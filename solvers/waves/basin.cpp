@@ -1,91 +1,54 @@
 #include "waves/basin.hpp"
 
-#include <fftw3.h>
+#include "core/in_turn.hpp"
 
 #include <cmath>
 
 namespace weir::waves {
 
-/// Cosine and sine series of values at the middles of cells (DCT-II there; DCT-III and DST-III back), one plan for each axis that may
-/// carry sines: 0 none, 1 x, 2 z.
-struct Basin::Plans {
-    std::vector<real> values;
-    fftw_plan forward = nullptr;
-    std::array<fftw_plan, 3> back{};
-    Plans(int nx, int nz) : values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz)) {
-        const auto plan = [&](fftw_r2r_kind x, fftw_r2r_kind z) {
-            if (nz == 1) return fftw_plan_r2r_1d(nx, values.data(), values.data(), x, FFTW_ESTIMATE);
-            return fftw_plan_r2r_2d(nz, nx, values.data(), values.data(), z, x, FFTW_ESTIMATE);
-        };
-        forward = plan(FFTW_REDFT10, FFTW_REDFT10);
-        back = {plan(FFTW_REDFT01, FFTW_REDFT01), plan(FFTW_RODFT01, FFTW_REDFT01), plan(FFTW_REDFT01, FFTW_RODFT01)};
-    }
-    ~Plans() {
-        fftw_destroy_plan(forward);
-        for (fftw_plan p : back) fftw_destroy_plan(p);
-    }
-};
+using SinesAlong = Cosines::SinesAlong;
 
-Basin::Basin(const Restoring& by, real depth, const Box& box, const std::vector<real>& heights)
+Basin::Basin(const Restoring& by, real level, real depth, const Box& box, Values heights)
     : nx_(box.nx()),
       nz_(box.nz()),
       x0_(box.origin[0]),
       z0_(box.origin[2]),
       length_(nx_ * box.spacing[0]),
       width_(nz_ * box.spacing[2]),
+      level_(level),
       depth_(depth),
-      mode_(heights.size()),
-      omega_(heights.size()),
-      now_(heights.size()),
-      rate_(heights.size()),
-      plans_(std::make_unique<Plans>(box.nx(), box.nz())) {
-    std::copy(heights.begin(), heights.end(), plans_->values.begin());
-    fftw_execute(plans_->forward);
-    const real scale = 1.0 / (nx_ * (nz_ > 1 ? nz_ : 1));
-    for (int n = 0; n < nz_; ++n)
-        for (int m = 0; m < nx_; ++m) {
-            // FFTW's DCT-II is twice the sum over points; a mode's amplitude is twice its mean, but that of a constant
-            const real halves = (m == 0 ? 0.5 : 1) * (nz_ > 1 ? (n == 0 ? 0.5 : 1) : 1);
-            mode_[at(m, n)] = m + n == 0 ? 0 : halves * scale * plans_->values[at(m, n)];
-            omega_[at(m, n)] = m + n == 0 ? 0 : frequency(by, std::hypot(kx(m), kz(n)), depth);
+      series_(nx_, nz_),
+      mode_(series_.analyse(heights)),
+      omega_(mode_.size(), 0),
+      now_(mode_.size()),
+      rate_(mode_.size()) {
+    const PlaneRange held = series_.held();
+    parallel_for(held.begin, held.end, [&](int m) {
+        for (int n = 0; n < nz_; ++n) {
+            const std::size_t j = series_.at(m, n);
+            if (m + n == 0)
+                mode_[j] = 0;  // what stands there is the error of the mean
+            else
+                omega_[j] = frequency(by, std::hypot(kx(m), kz(n)), depth);
         }
+    });
     set_time(0);
 }
 
-Basin::~Basin() = default;
-
 void Basin::set_time(real t) {
-    t_ = t;
-    parallel_for(0, nz_, [&](int n) {
-        for (std::size_t j = at(0, n), end = at(0, n + 1); j < end; ++j) {
+    const PlaneRange held = series_.held();
+    parallel_for(held.begin, held.end, [&](int m) {
+        for (std::size_t j = series_.at(m, 0), end = series_.at(m + 1, 0); j < end; ++j) {
             now_[j] = mode_[j] * std::cos(omega_[j] * t);
             rate_[j] = -mode_[j] * omega_[j] * std::sin(omega_[j] * t);
         }
     });
 }
 
-/// DCT-III doubles every cosine but the constant one; DST-III every sine, whose first is number 1 and stands at 0.
-template <class F>
-void Basin::sum_of(int sine_axis, const F& coefficient, real* out, std::size_t stride) {
-    auto& c = plans_->values;
-    for (int n = 0; n < nz_; ++n)
-        for (int m = 0; m < nx_; ++m) {
-            const int sine_m = sine_axis == 1 ? m + 1 : m, sine_n = sine_axis == 2 ? n + 1 : n;
-            if (sine_m >= nx_ || sine_n >= nz_) {  // the last sine, of the shortest wave, has no cosine to come from
-                c[at(m, n)] = 0;
-                continue;
-            }
-            const real whole_x = sine_axis != 1 && m == 0 ? 1 : 0.5, whole_z = nz_ == 1 || (sine_axis != 2 && n == 0) ? 1 : 0.5;
-            c[at(m, n)] = sine_m + sine_n == 0 ? 0 : whole_x * whole_z * coefficient(sine_m, sine_n);
-        }
-    fftw_execute(plans_->back[static_cast<std::size_t>(sine_axis)]);
-    for (int n = 0; n < nz_; ++n) std::copy_n(c.data() + at(0, n), nx_, out + static_cast<std::size_t>(n) * stride);
-}
-
 void Basin::fill(const Box& box, Sheet& sheet) {
     const auto stride = static_cast<std::size_t>(box.nx());
-    sum_of(
-        0, [&](int m, int n) { return now_[at(m, n)]; }, sheet.height.data(), stride);
+    series_(
+        SinesAlong::none, [&](int m, int n) { return now_[series_.at(m, n)]; }, sheet.height.data(), stride);
     std::array<real*, 3> out{};
     for (std::size_t a = 0; a < 3; ++a)
         if (!sheet.velocity[a].empty()) out[a] = sheet.velocity[a].data();
@@ -106,41 +69,54 @@ void Basin::fill_water(const Box& box, real level, std::array<Values, 3>& veloci
 /// The potential is sum of rate cos cos cosh k(y + d) / (k sinh k d).
 void Basin::fill_layer(real y, std::array<real*, 3> out, std::size_t stride) {
     const auto k = [&](int m, int n) { return std::hypot(kx(m), kz(n)); };
-    const auto along = [&](int m, int n) { return rate_[at(m, n)] * reach(k(m, n), y, depth_).along / k(m, n); };
+    const auto rate = [&](int m, int n) { return rate_[series_.at(m, n)]; };
+    const auto along = [&](int m, int n) { return rate(m, n) * reach(k(m, n), y, depth_).along / k(m, n); };
     if (out[0])
-        sum_of(
-            1, [&](int m, int n) { return -kx(m) * along(m, n); }, out[0], stride);
+        series_(
+            SinesAlong::x, [&](int m, int n) { return -kx(m) * along(m, n); }, out[0], stride);
     if (out[1])
-        sum_of(
-            0, [&](int m, int n) { return rate_[at(m, n)] * reach(k(m, n), y, depth_).up; }, out[1], stride);
+        series_(
+            SinesAlong::none, [&](int m, int n) { return rate(m, n) * reach(k(m, n), y, depth_).up; }, out[1], stride);
     if (out[2] && nz_ > 1)
-        sum_of(
-            2, [&](int m, int n) { return -kz(n) * along(m, n); }, out[2], stride);
+        series_(
+            SinesAlong::z, [&](int m, int n) { return -kz(n) * along(m, n); }, out[2], stride);
 }
 
-real Basin::height(real x, real z) const {
-    real sum = 0;
-    for (int n = 0; n < nz_; ++n)
-        for (int m = 0; m < nx_; ++m) sum += now_[at(m, n)] * std::cos(kx(m) * (x - x0_)) * std::cos(kz(n) * (z - z0_));
+/// add(sum, m, n) of each mode but the constant one, column by column. Ranks that store their own modes alone are asked together, and each
+/// adds to the sum of those before it.
+template <class Sum, class F>
+Sum Basin::sum_at(const F& add) const {
+    const auto add_held = [&](Sum& sum) {
+        for (int m = series_.held().begin; m < series_.held().end; ++m)
+            for (int n = m == 0 ? 1 : 0; n < nz_; ++n) add(sum, m, n);
+    };
+    if (series_.in_parts()) return in_turn(Sum{}, add_held);
+    Sum sum{};
+    add_held(sum);
     return sum;
 }
 
-Vec<3> Basin::velocity(const Vec<3>& where) const {
-    Vec<3> sum{};
-    for (int n = 0; n < nz_; ++n)
-        for (int m = 0; m < nx_; ++m) {
-            if (m + n == 0) continue;
-            const real k = std::hypot(kx(m), kz(n)), ax = kx(m) * (where[0] - x0_), az = kz(n) * (where[2] - z0_);
-            const Reach r = reach(k, where[1], depth_);
-            const real along = r.along / k * rate_[at(m, n)];
-            sum += Vec<3>{{-kx(m) * along * std::sin(ax) * std::cos(az), r.up * rate_[at(m, n)] * std::cos(ax) * std::cos(az),
-                           -kz(n) * along * std::cos(ax) * std::sin(az)}};
-        }
-    return sum;
+Vec<3> Basin::velocity_of(int m, int n, const Vec<3>& at) const {
+    const real k = std::hypot(kx(m), kz(n)), ax = kx(m) * (at[0] - x0_), az = kz(n) * (at[2] - z0_), rate = rate_[series_.at(m, n)];
+    const Reach r = reach(k, at[1], depth_);
+    const real along = r.along / k * rate;
+    return {{-kx(m) * along * std::sin(ax) * std::cos(az), r.up * rate * std::cos(ax) * std::cos(az),
+             -kz(n) * along * std::cos(ax) * std::sin(az)}};
+}
+
+Motion Basin::motion(real x, real z) const {
+    return sum_at<Motion>([&](Motion& sum, int m, int n) {
+        sum.moved[1] += now_[series_.at(m, n)] * std::cos(kx(m) * (x - x0_)) * std::cos(kz(n) * (z - z0_));
+        sum.velocity += velocity_of(m, n, {{x, 0, z}});
+    });
+}
+
+Vec<3> Basin::velocity(const Vec<3>& at) const {
+    return sum_at<Vec<3>>([&](Vec<3>& sum, int m, int n) { sum += velocity_of(m, n, at); });
 }
 
 std::size_t Basin::bytes() const {
-    return (mode_.capacity() + omega_.capacity() + now_.capacity() + rate_.capacity() + plans_->values.capacity()) * sizeof(real);
+    return (mode_.capacity() + omega_.capacity() + now_.capacity() + rate_.capacity()) * sizeof(real) + series_.bytes();
 }
 
 }  // namespace weir::waves

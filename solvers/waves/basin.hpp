@@ -3,6 +3,7 @@
 //
 //     y(x, z, t) = sum c cos(m pi x / L) cos(n pi z / W) cos(omega t),     omega^2 = (g k + sigma k^3/rho) tanh(k d)
 #pragma once
+#include "waves/cosines.hpp"
 #include "waves/dispersion.hpp"
 #include "waves/model.hpp"
 
@@ -10,31 +11,29 @@ namespace weir::waves {
 
 class Basin final : public Model {
 public:
-    /// `heights`: of the surface at t = 0 over the mean level, at the sheet's points.
-    Basin(const Restoring& by, real depth, const Box& box, const std::vector<real>& heights);
-    ~Basin() override;
+    /// `level`: of the water at rest, so deep; `heights`: of the surface at t = 0 over that, at the sheet's points.
+    Basin(const Restoring& by, real level, real depth, const Box& box, Values heights);
     void set_time(real t) override;
-    Motion motion(real x, real z) const override { return {.moved = {{0, height(x, z), 0}}, .velocity = velocity({{x, 0, z}})}; }
+    std::optional<real> level() const override { return level_; }
+    Motion motion(real x, real z) const override;
     Vec<3> velocity(const Vec<3>& at) const override;
     void fill(const Box& box, Sheet& sheet) override;
     void fill_water(const Box& box, real level, std::array<Values, 3>& velocity) override;
     std::size_t bytes() const override;
 
 private:
-    struct Plans;
-    real height(real x, real z) const;
-    std::size_t at(int m, int n) const { return static_cast<std::size_t>(m) + static_cast<std::size_t>(n) * static_cast<std::size_t>(nx_); }
     real kx(int m) const { return pi * m / length_; }
     real kz(int n) const { return nz_ > 1 ? pi * n / width_ : 0; }
-    template <class F>
-    void sum_of(int sine_axis, const F& coefficient, real* out, std::size_t stride);
     void fill_layer(real y, std::array<real*, 3> out, std::size_t stride);
+    template <class Sum, class F>
+    Sum sum_at(const F& add) const;
+    Vec<3> velocity_of(int m, int n, const Vec<3>& at) const;
 
     int nx_, nz_;
-    real x0_, z0_, length_, width_, depth_, t_ = 0;
-    std::vector<real> mode_, omega_;  // amplitudes at t = 0 [m]
+    real x0_, z0_, length_, width_, level_, depth_;
+    Cosines series_;
+    std::vector<real> mode_, omega_;  // amplitudes at t = 0 [m]; of the stored modes
     std::vector<real> now_, rate_;    // amplitudes, and their rates [m/s]
-    std::unique_ptr<Plans> plans_;
 };
 
 }  // namespace weir::waves

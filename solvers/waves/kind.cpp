@@ -191,8 +191,8 @@ std::vector<Variant> effects() {
 /// Everything is cut.
 void over_ranks(const scene::Scene&) {}
 
-/// Of a step over ranks: each sum of a sea's waves in 3D is transposed once, and while the surface is not folded all look for its least
-/// Jacobian.
+/// Of a step over ranks: each sum of a sea's or a basin's waves in 3D is transposed once, and while the surface is not folded all look for
+/// its least Jacobian.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape&) {
     const Box box(scene);
     Tally tally(of.cut, of.rank);
@@ -200,18 +200,18 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     if (scene.has("probes") && !scene.root().tables("probes").empty()) tally.sent().besides.emplace_back("probes");
     if (of.cut.empty() || box.dim == 2) return tally.sent();
     const scene::Table& waves = scene.root().table("waves");
-    const bool sea = waves.text("model") == "spectrum";
+    const bool sea = waves.text("model") == "spectrum", basin = waves.text("model") == "basin";
     const bool sideways = sea ? waves.number("choppiness") > 0 : waves.text("model") == "gerstner";
     if (sideways && !scene.effect("foam")) tally.gather({sizeof(real), box.nz()});
-    if (!sea) return tally.sent();
+    if (!sea && !basin) return tally.sent();
     // heights; where points stand and how their neighbours were moved; velocities of the surface and, below it, of every layer
     const int sums = 1 + (sideways ? 5 : 0) + (waves.flag("velocity") ? 3 * (box.ny() > 1 ? 1 + box.ny() : 1) : 0);
-    const HalfPlane plane{box.nx(), box.nz()};
-    const Cut columns = Synthesis::cut_of_columns(plane, of.ranks);
-    const auto own = static_cast<std::size_t>(columns.end(of.rank, plane.columns()) - columns.begin(of.rank));
+    const int count = sea ? HalfPlane{box.nx(), box.nz()}.columns() : box.nx();
+    const std::size_t each = sea ? sizeof(Complex) : sizeof(real);
+    const Cut columns = cut_of_columns(count, of.ranks);
+    const auto own = static_cast<std::size_t>(columns.end(of.rank, count) - columns.begin(of.rank));
     for (int peer = 0; peer < of.ranks; ++peer)
-        if (peer != of.rank)
-            tally.parcel(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * sizeof(Complex), sums);
+        if (peer != of.rank) tally.parcel(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * each, sums);
     tally.sent().rounds += sums;
     return tally.sent();
 }
@@ -235,10 +235,12 @@ scene::SolverKind kind() {
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
             over_ranks,
             scene::Shared::by_planes,
-            "the transforms of a basin, and in 2D the surface's one row",
+            {},
             holds_own_planes,
             traffic_of_step,
-            [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }};
+            [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); },
+            {},
+            "the surface's one row"};
 }
 
 }  // namespace weir::waves

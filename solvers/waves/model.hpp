@@ -3,6 +3,7 @@
 #include "waves/sheet.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace weir::waves {
@@ -14,6 +15,8 @@ public:
     virtual void set_time(real t) = 0;
     /// Whether points of the surface move sideways too, so that it can fold.
     virtual bool sideways() const { return false; }
+    /// Height of the surface at rest [m], where the scene does not say it.
+    virtual std::optional<real> level() const { return std::nullopt; }
     /// The point of the surface that rests at (x, z), at the mean level.
     virtual Motion motion(real x, real z) const = 0;
     /// The same of a particle that rests anywhere, y counted from the mean level; false: the model follows no particles.

@@ -1,5 +1,6 @@
 #include "waves/ocean.hpp"
 
+#include "core/in_turn.hpp"
 #include "waves/random.hpp"
 
 #include <cmath>
@@ -115,7 +116,7 @@ void Ocean::set_amplitudes() {
             if (!along_.empty()) along_[at] = reach(w.k, 0, sea_.spectrum.depth).along;
         }
     });
-    const Cut cut = plane_.whole() ? Cut{} : Synthesis::cut_of_columns(plane_, slabs().ranks());
+    const Cut cut = plane_.whole() ? Cut{} : cut_of_columns(plane_.columns(), slabs().ranks());
     const AllPlanes no_rows;
     const OwnPlanes mine(cut);
     const real variance = 2 * plane_sum(plane_.columns(), [&](int m) {  // a^2/2 = 2 |a/2|^2
@@ -215,23 +216,17 @@ template <class Sum, class F>
 Sum Ocean::sum_at(real x, real z, const F& add) const {
     std::vector<Complex> along_z(static_cast<std::size_t>(plane_.nz));
     for (int n = 0; n < plane_.nz; ++n) along_z[static_cast<std::size_t>(n)] = std::exp(i * (plane_.signed_n(n) * dkz_ * (z - first_z_)));
-    Sum sum{};
-    const auto add_held = [&] {
+    const auto add_held = [&](Sum& sum) {
         for (int m = plane_.held.begin; m < plane_.held.end; ++m) {
             const Complex along_x = (m == 0 ? 1.0 : 2.0) * std::exp(i * (m * dkx_ * (x - first_x_)));
             for (int n = 0; n < plane_.nz; ++n)
                 if (const Wave w = wave(m, n); w.k > 0) add(sum, w, plane_.at(m, n), along_x * along_z[static_cast<std::size_t>(n)]);
         }
     };
-    if (plane_.whole()) {
-        turn_all();
-        add_held();
-        return sum;
-    }
-    for (int rank = 0; rank < slabs().ranks(); ++rank) {
-        if (rank == slabs().rank()) add_held();
-        sum = of_ranks(sum)[static_cast<std::size_t>(rank)];
-    }
+    if (!plane_.whole()) return in_turn(Sum{}, add_held);
+    turn_all();
+    Sum sum{};
+    add_held(sum);
     return sum;
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace weir::waves {
 
@@ -210,53 +211,74 @@ std::unique_ptr<Model> Reader::stokes() const {
     return std::make_unique<Stokes>(wave);
 }
 
-/// The top of the liquid over each of the sheet's points; it must be one piece from the floor up.
+/// The top of the liquid from the floor up at a place [m]; NaN where there is liquid over air.
 template <int D>
-std::vector<real> tops_of_liquid(const scene::Scene& scene, const Box& box) {
-    const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
-    if (shapes.empty())
-        scene.refuse("waves.model", "a basin needs the liquid whose surface is let go", "liquid = [ { shape = \"wave\", ... } ]");
-    const real floor = box.origin[1], height = box.ny() * box.spacing[1];
-    const int layers = std::max(box.ny(), 256);
-    std::vector<real> tops;
-    for (int k = 0; k < box.nz(); ++k)
-        for (int i = 0; i < box.nx(); ++i) {
-            const auto wet = [&](real y) {
-                Vec<D> x{};
-                x[0] = box.x(i), x[1] = y;
-                if constexpr (D == 3) x[2] = box.z(k);
-                return std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s->contains(x); });
-            };
-            const auto middle = [&](int j) { return floor + (j + 0.5) * height / layers; };
-            int top = -1;
-            for (int j = 0; j < layers; ++j) {
-                if (!wet(middle(j))) continue;
-                if (j != top + 1)
-                    scene.refuse("liquid",
-                                 fmt::format("there is liquid over air at x = {:.4g} m: the surface of a basin has one height over each "
-                                             "point, and these waves do not overturn",
-                                             box.x(i)),
-                                 "solver \"mac_water\" can do that");
-                top = j;
-            }
-            real low = top < 0 ? floor : middle(top), high = top < 0 ? floor : std::min(middle(top + 1), floor + height);
-            for (int turn = 0; turn < 60 && low < high; ++turn) (wet(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
-            tops.push_back(low);
+class Tops {
+public:
+    Tops(const scene::Scene& scene, const Box& box)
+        : shapes_(geometry::make_shapes<D>(scene.root().tables("liquid"))),
+          floor_(box.origin[1]),
+          height_(box.ny() * box.spacing[1]),
+          layers_(std::max(box.ny(), 256)) {}
+    bool empty() const { return shapes_.empty(); }
+    real operator()(real x, real z) const {
+        const auto wet = [&](real y) {
+            Vec<D> at{};
+            at[0] = x, at[1] = y;
+            if constexpr (D == 3) at[2] = z;
+            return std::any_of(shapes_.begin(), shapes_.end(), [&](const auto& s) { return s->contains(at); });
+        };
+        const auto middle = [&](int j) { return floor_ + (j + 0.5) * height_ / layers_; };
+        int top = -1;
+        for (int j = 0; j < layers_; ++j) {
+            if (!wet(middle(j))) continue;
+            if (j != top + 1) return std::numeric_limits<real>::quiet_NaN();
+            top = j;
         }
-    return tops;
-}
+        real low = top < 0 ? floor_ : middle(top), high = top < 0 ? floor_ : std::min(middle(top + 1), floor_ + height_);
+        for (int turn = 0; turn < 60 && low < high; ++turn) (wet(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+        return low;
+    }
+
+private:
+    std::vector<geometry::ShapePtr<D>> shapes_;
+    real floor_, height_;
+    int layers_;
+};
 
 template <int D>
 std::unique_ptr<Model> Reader::basin() const {
     needs_gravity();
     for (const char* key : {"level", "depth"})
         if (table.has(key)) refuse(key, fmt::format("a basin's {} is that of its liquid", key));
-    std::vector<real> tops = tops_of_liquid<D>(scene, box);
-    real mean = 0;
-    for (const real top : tops) mean += top / static_cast<real>(tops.size());
+    const Tops<D> tops(scene, box);
+    if (tops.empty()) refuse("model", "a basin needs the liquid whose surface is let go", "liquid = [ { shape = \"wave\", ... } ]");
+    Values heights(box.of_sheet());
+    const auto row = [&](int k) { return heights.data() + static_cast<std::ptrdiff_t>(k) * box.nx(); };
+    for_own_rows(box, [&](int k) {
+        for (int i = 0; i < box.nx(); ++i) row(k)[i] = tops(box.x(i), box.z(k));
+    });
+    const real torn = -most_of_rows(box, [&](int k) {  // the first such point of the sheet
+        for (int i = 0; i < box.nx(); ++i)
+            if (std::isnan(row(k)[i])) return -(static_cast<real>(k) * box.nx() + i);
+        return -infinity;
+    });
+    if (torn < infinity)
+        scene.refuse("liquid",
+                     fmt::format("there is liquid over air at x = {:.4g} m: the surface of a basin has one height over each point, and "
+                                 "these waves do not overturn",
+                                 box.x(static_cast<int>(std::fmod(torn, box.nx())))),
+                     "solver \"mac_water\" can do that");
+    const real mean = sum_of_rows(box, [&](int k) {
+        real sum = 0;
+        for (int i = 0; i < box.nx(); ++i) sum += row(k)[i] / static_cast<real>(box.points());
+        return sum;
+    });
     if (!(mean > box.origin[1])) scene.refuse("liquid", "there is no liquid in the basin");
-    for (real& top : tops) top -= mean;
-    return std::make_unique<Basin>(by, mean - box.origin[1], box, tops);
+    for_own_rows(box, [&](int k) {
+        for (int i = 0; i < box.nx(); ++i) row(k)[i] -= mean;
+    });
+    return std::make_unique<Basin>(by, mean, mean - box.origin[1], box, std::move(heights));
 }
 
 }  // namespace
@@ -278,12 +300,6 @@ Restoring restoring(const scene::Scene& scene) {
 }
 
 real mean_level(const scene::Scene& scene, const Box& box) {
-    if (scene.text("waves.model") == "basin") {
-        const std::vector<real> tops = box.dim == 2 ? tops_of_liquid<2>(scene, box) : tops_of_liquid<3>(scene, box);
-        real mean = 0;
-        for (const real top : tops) mean += top / static_cast<real>(tops.size());
-        return mean;
-    }
     const real level = scene.root().number_or("waves.level", 0), top = box.origin[1] + box.ny() * box.spacing[1];
     if (level < box.origin[1] || level > top)
         scene.refuse(scene.has("waves.level") ? "waves.level" : "waves",

@@ -53,6 +53,16 @@ void for_own_rows(const Box& box, F&& f) {
     parallel_for(rows.begin, rows.end, f);
 }
 
+/// f of every row of the sheet: their sum in their order, and the largest.
+template <class F>
+real sum_of_rows(const Box& box, F&& f) {
+    return box.dim == 2 ? ordered_sum(1, f) : plane_sum(box.nz(), f);
+}
+template <class F>
+real most_of_rows(const Box& box, F&& f) {
+    return box.dim == 2 ? ordered_max(1, f) : plane_max(box.nz(), f);
+}
+
 /// Over ranks that hold their own planes alone, those (core/plane_store.hpp): rows of the sheet in 3D, layers of cells in 2D.
 using Values = Grid<real, 2>;
 

@@ -1,6 +1,5 @@
 #include "waves/solver.hpp"
 
-#include "scene/whole_fields.hpp"
 #include "waves/read.hpp"
 
 #include <fmt/format.h>
@@ -10,10 +9,7 @@
 
 namespace weir::waves {
 
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut) {
-    if (cut.empty() || slabs().holds_whole() || (scene.dim() == 3 && scene.text("waves.model") == "basin")) return false;
-    return !scene::looks_at_whole_fields(scene);
-}
+bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !slabs().holds_whole(); }
 
 namespace {
 
@@ -28,7 +24,7 @@ Waves::Waves(const scene::Scene& scene)
     : box_(scene),
       held_(held_planes(scene, box_)),
       model_(make_model(scene, box_)),
-      level_(mean_level(scene, box_)),
+      level_(model_->level() ? *model_->level() : mean_level(scene, box_)),
       density_(scene.number("fluid.density")),
       g_(restoring(scene).g),
       end_(scene.number("time.end")),
@@ -108,14 +104,6 @@ void Waves::bring() const {
         for (Values* values : own.shared()) gather(*values);
     }
     brought_ = true;
-}
-
-/// f of every row of the sheet, added in their order.
-template <class F>
-real Waves::sum_of_rows(F&& f) const {
-    if (box_.dim == 2) return ordered_sum(1, f);
-    const OwnPlanes mine = held_.own();
-    return plane_sum(box_.nz(), f);
 }
 
 void Waves::place_surface() {
@@ -224,14 +212,14 @@ real Waves::least_jacobian() const {
         const real* row = sheet_.jacobian.data() + static_cast<std::ptrdiff_t>(k) * box_.nx();
         return -*std::min_element(row, row + box_.nx());
     };
-    if (box_.dim == 2) return -least_of_row(0);
     const OwnPlanes mine = held_.own();
-    return -plane_max(box_.nz(), least_of_row);
+    return -most_of_rows(box_, least_of_row);
 }
 
 /// The part of the sheet's patches that have any.
 real Waves::foam_cover() const {
-    const real covered = sum_of_rows([&](int k) {
+    const OwnPlanes mine = held_.own();
+    const real covered = sum_of_rows(box_, [&](int k) {
         const real* row = foam_.data() + static_cast<std::ptrdiff_t>(k) * box_.nx();
         return static_cast<real>(std::count_if(row, row + box_.nx(), [](real f) { return f > 0; }));
     });
@@ -251,8 +239,9 @@ std::string Waves::concern() const {
 /// Means over the area above which the surface stands: a point counts as much as its patch has been stretched.
 std::vector<Integral> Waves::integrals() const {
     const auto nx = static_cast<std::size_t>(box_.nx());
+    const OwnPlanes mine = held_.own();
     const auto mean = [&](const auto& f) {
-        return sum_of_rows([&](int k) {
+        return sum_of_rows(box_, [&](int k) {
             real sum = 0;
             for (std::size_t at = static_cast<std::size_t>(k) * nx, end = at + nx; at < end; ++at)
                 sum += f(sheet_.height[at]) * (sheet_.jacobian.empty() ? 1 : sheet_.jacobian[at]);

@@ -11,8 +11,7 @@
 
 namespace weir::waves {
 
-/// Over ranks: would each hold its own planes of a scene alone? Not where somebody looks at whole fields on all ranks, nor in a basin in
-/// 3D, whose modes every rank sums up.
+/// Over ranks: would each hold its own planes of a scene alone? Not where somebody looks at whole fields on all ranks.
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 
 class Waves final : public Solver {
@@ -44,8 +43,6 @@ private:
     void compute();
     void bring() const;
     std::vector<Values*> shared();
-    template <class F>
-    real sum_of_rows(F&& f) const;
     void place_surface();
     void fill_water();
     void make_foam();

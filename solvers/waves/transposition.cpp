@@ -1,0 +1,115 @@
+#include "waves/transposition.hpp"
+
+#include <fftw3.h>
+
+#include <algorithm>
+
+namespace weir::waves {
+
+namespace {
+
+int count(const PlaneRange& range) { return range.end - range.begin; }
+std::size_t area(const PlaneRange& a, const PlaneRange& b) {
+    return static_cast<std::size_t>(count(a)) * static_cast<std::size_t>(count(b));
+}
+
+}  // namespace
+
+void FreeAligned::operator()(void* at) const { fftw_free(at); }
+
+template <class T>
+Aligned<T> aligned(std::size_t count) {
+    Aligned<T> made(static_cast<T*>(fftw_malloc(count * sizeof(T))));
+    std::fill_n(made.get(), count, T{});
+    return made;
+}
+
+PlaneRange held_columns(int columns, int rows) {
+    if (!parts_columns(rows)) return {0, columns};
+    const Cut cut = cut_of_columns(columns, slabs().ranks());
+    return {cut.begin(slabs().rank()), cut.end(slabs().rank(), columns)};
+}
+
+template <class T>
+Transposition<T>::Transposition(int columns, int rows, const PlaneRange& held)
+    : column_count_(columns),
+      row_count_(rows),
+      held_(held),
+      length_(padded(rows)),
+      by_column_(cut_of_columns(columns, slabs().ranks())),
+      columns_(aligned<T>(length_ * static_cast<std::size_t>(std::max(1, count(held))))) {}
+
+template <class T>
+void Transposition<T>::make_room() {
+    const PlaneRange columns = own_columns(), rows = own_rows();
+    turned_.resize(area(columns, {0, row_count_}) - area(columns, rows));
+    others_.resize(area({0, column_count_}, rows) - area(columns, rows));
+}
+
+template <class T>
+std::vector<typename Transposition<T>::Block> Transposition<T>::blocks() {
+    const PlaneRange columns = own_columns(), rows = own_rows();
+    std::vector<Block> list;
+    std::size_t turned = 0, others = 0;
+    for (int peer = 0; peer < slabs().ranks(); ++peer) {
+        if (peer == slabs().rank()) continue;
+        const std::size_t of_columns = area(columns, rows_of(peer)), of_rows = area(columns_of(peer), rows);
+        list.push_back(
+            {peer, rows_of(peer), turned_.data() + turned, others_.data() + others, of_columns * sizeof(T), of_rows * sizeof(T)});
+        turned += of_columns, others += of_rows;
+    }
+    return list;
+}
+
+/// f(part of a column, its place in the block, length): a column after the other.
+template <class T>
+template <class F>
+void Transposition<T>::each_part(const Block& block, const F& f) {
+    const PlaneRange columns = own_columns();
+    const auto each = static_cast<std::size_t>(count(block.rows));
+    parallel_for(columns.begin, columns.end, [&](int m) {
+        f(column(m) + block.rows.begin, block.of_columns + each * static_cast<std::size_t>(m - columns.begin), each);
+    });
+}
+
+/// To each rank goes the part of its rows in this rank's columns.
+template <class T>
+void Transposition<T>::transpose() {
+    make_room();
+    std::vector<Parcel> parcels;
+    for (const Block& block : blocks()) {
+        each_part(block, [](const T* part, T* place, std::size_t length) { std::copy_n(part, length, place); });
+        parcels.push_back({block.peer, block.of_columns, block.columns_bytes, block.of_rows, block.rows_bytes});
+    }
+    slabs().trade(parcels);
+}
+
+template <class T>
+void Transposition<T>::transpose_back() {
+    const std::vector<Block> list = blocks();
+    std::vector<Parcel> parcels;
+    for (const Block& block : list) parcels.push_back({block.peer, block.of_rows, block.rows_bytes, block.of_columns, block.columns_bytes});
+    slabs().trade(parcels);
+    for (const Block& block : list) each_part(block, [](T* part, const T* place, std::size_t length) { std::copy_n(place, length, part); });
+}
+
+/// Of column m this rank's rows: its own columns are here, those of others stand in blocks, in their order.
+template <class T>
+T* Transposition<T>::own_rows_of(int m) {
+    const PlaneRange rows = own_rows(), columns = own_columns();
+    if (m >= columns.begin && m < columns.end) return column(m) + rows.begin;
+    const int before = m < columns.begin ? m : m - count(columns);
+    return others_.data() + static_cast<std::size_t>(before) * static_cast<std::size_t>(count(rows));
+}
+
+template <class T>
+std::size_t Transposition<T>::bytes() const {
+    return (length_ * static_cast<std::size_t>(count(held_)) + turned_.capacity() + others_.capacity()) * sizeof(T);
+}
+
+template Aligned<real> aligned<real>(std::size_t);
+template Aligned<Complex> aligned<Complex>(std::size_t);
+template class Transposition<real>;
+template class Transposition<Complex>;
+
+}  // namespace weir::waves

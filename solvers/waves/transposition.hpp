@@ -1,0 +1,106 @@
+// Columns of coefficients, along z, and rows of a field, along x, that are transformed one after the other (FFTW): over ranks that share
+// the field's rows (OwnPlanes over them) each has its share of the columns too, and between the two directions the ranks transpose. A
+// field of one row is everybody's.
+#pragma once
+#include "core/parallel.hpp"
+#include "core/slabs.hpp"
+#include "core/types.hpp"
+
+#include <algorithm>
+#include <complex>
+#include <memory>
+#include <vector>
+
+namespace weir::waves {
+
+using Complex = std::complex<real>;
+
+struct FreeAligned {
+    void operator()(void* at) const;
+};
+template <class T>
+using Aligned = std::unique_ptr<T[], FreeAligned>;
+/// As FFTW wants memory; zero.
+template <class T>
+Aligned<T> aligned(std::size_t count);
+/// A column or row of n entries is padded to whole cache lines, so that all are aligned as the one that was planned with.
+inline std::size_t padded(int n) { return (static_cast<std::size_t>(n) + 3) / 4 * 4; }
+
+/// Of how many columns each of so many ranks takes care.
+inline Cut cut_of_columns(int columns, int ranks) { return cut_of(columns, ranks); }
+/// Whether each stores those alone: where ranks hold their own rows alone.
+inline bool parts_columns(int rows) { return over_ranks() && detail::own_share.kept > 0 && rows > 1; }
+/// Which this rank stores.
+PlaneRange held_columns(int columns, int rows);
+
+/// T: real or Complex.
+template <class T>
+class Transposition {
+public:
+    Transposition(int columns, int rows, const PlaneRange& held);
+
+    /// The entries of a stored column.
+    T* column(int m) const { return columns_.get() + static_cast<std::size_t>(m - held_.begin) * length_; }
+    /// Those for which this rank is asked.
+    PlaneRange own_columns() const { return transposes() ? columns_of(slabs().rank()) : PlaneRange{0, column_count_}; }
+    PlaneRange own_rows() const { return transposes() ? rows_of(slabs().rank()) : PlaneRange{0, row_count_}; }
+
+    /// Own rows of all columns, from own columns of all rows: row_at(n) gets the entries of row n, and transform(n) follows.
+    template <class At, class F>
+    void to_rows(const At& row_at, const F& transform) {
+        if (transposes()) transpose();
+        const PlaneRange own = own_rows();
+        constexpr int block = 8;  // rows that are gathered from the columns together
+        parallel_for(0, (own.end - own.begin + block - 1) / block, [&](int b) {
+            const int first = own.begin + b * block, last = std::min(own.end, first + block);
+            for (int m = 0; m < column_count_; ++m) {
+                const T* from = own_rows_of(m);
+                for (int n = first; n < last; ++n) row_at(n)[m] = from[n - own.begin];
+            }
+            for (int n = first; n < last; ++n) transform(n);
+        });
+    }
+    /// The way back: row_at(n) gives the entries of an own row.
+    template <class At>
+    void to_columns(const At& row_at) {
+        if (transposes()) make_room();
+        const PlaneRange own = own_rows();
+        parallel_for(0, column_count_, [&](int m) {
+            T* to = own_rows_of(m);
+            for (int n = own.begin; n < own.end; ++n) to[n - own.begin] = row_at(n)[m];
+        });
+        if (transposes()) transpose_back();
+    }
+    std::size_t bytes() const;
+
+private:
+    /// What is for one other rank: its rows of own columns, and own rows of its columns.
+    struct Block {
+        int peer;
+        PlaneRange rows;
+        T *of_columns, *of_rows;  // where they stand in turned_ and in others_
+        std::size_t columns_bytes, rows_bytes;
+    };
+    bool transposes() const { return over_ranks() && row_count_ > 1; }
+    PlaneRange columns_of(int rank) const { return {by_column_.begin(rank), by_column_.end(rank, column_count_)}; }
+    PlaneRange rows_of(int rank) const {
+        const Cut& by_row = *detail::own_share.cut;
+        return {by_row.begin(rank), by_row.end(rank, row_count_)};
+    }
+    void make_room();
+    std::vector<Block> blocks();
+    template <class F>
+    void each_part(const Block& block, const F& f);
+    void transpose();
+    void transpose_back();
+    T* own_rows_of(int m);
+
+    int column_count_, row_count_;
+    PlaneRange held_;
+    std::size_t length_;              // of a column
+    Cut by_column_;                   // over ranks: whose columns
+    std::vector<T> turned_, others_;  // a block for each other rank: of own columns, and of own rows
+    Aligned<T> columns_;
+};
+
+}  // namespace weir::waves
