@@ -16,15 +16,18 @@ std::size_t page() {
 
 }  // namespace
 
+/// With a page of zeros before and after, which can be read: where eight entries are loaded at once from one beside the first, as stencils
+/// do at the ends of rows, the one that nobody uses may lie there.
 Reserved::Reserved(std::size_t bytes) : mapped_((bytes + page() - 1) / page() * page()) {
     if (mapped_ == 0) return;
-    void* const at = mmap(nullptr, mapped_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    void* const at = mmap(nullptr, mapped_ + 2 * page(), PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (at == MAP_FAILED) throw std::bad_alloc();
-    data_ = static_cast<unsigned char*>(at);
+    data_ = static_cast<unsigned char*>(at) + page();
+    if (mprotect(at, page(), PROT_READ) != 0 || mprotect(data_ + mapped_, page(), PROT_READ) != 0) throw std::bad_alloc();
 }
 
 Reserved::~Reserved() {
-    if (data_ != nullptr) munmap(data_, mapped_);
+    if (data_ != nullptr) munmap(data_ - page(), mapped_ + 2 * page());
 }
 
 void Reserved::open(std::size_t begin, std::size_t end) {

@@ -2,6 +2,7 @@
 // array, and memory behind this rank's planes and those beyond its cuts that it reads, so that every index means the same on all ranks, and
 // whoever looks farther faults (as sparse grids do: Setaluri, Aanjaneya, Bauer & Sifakis 2014).
 #pragma once
+#include "core/scratch.hpp"
 #include "core/slabs.hpp"
 
 #include <algorithm>
@@ -66,10 +67,12 @@ public:
 
     T* data() { return data_; }
     const T* data() const { return data_; }
+    T& operator[](std::size_t i) { return data_[i]; }
+    const T& operator[](std::size_t i) const { return data_[i]; }
     std::size_t size() const { return size_; }
     /// What has memory behind it.
     std::size_t bytes() const {
-        if (!window_) return size_ * sizeof(T);
+        if (!window_) return whole_.capacity() * sizeof(T);
         const auto planes = static_cast<std::size_t>(std::count(window_->held.begin(), window_->held.end(), char{1}));
         return (window_->head + planes * window_->plane) * sizeof(T);
     }
@@ -120,7 +123,7 @@ public:
             return;
         }
         window_.reset();
-        whole_.resize(size);
+        resize_scratch(whole_, size);
         data_ = whole_.data(), size_ = size;
     }
 

@@ -97,7 +97,7 @@ void TallPressure<D>::add_horizontal(const Grid<real, D>& phi, const MacState<D>
     face.weight = 1 / (frame_.h[face.axis] * frame_.h[face.axis]);
     face.cell_stride = static_cast<std::size_t>(state.cells.stride(layout_.up));
     face.face_stride = static_cast<std::size_t>(state.u[face.axis].stride(layout_.up));
-    std::vector<real>& W = A_.beside[at(h)];
+    LineStore<real>& W = A_.beside[at(h)];
     const bool solids = state.solid.any();
     for (int x = 0; x < n; ++x) {
         const int c = x + z * n, beside = face.lower ? layout_.lower(c, h) : layout_.upper(c, h);

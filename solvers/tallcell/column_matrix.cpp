@@ -7,18 +7,19 @@
 
 namespace weir::tallcell {
 
-void ColumnMatrix::resize() {
+void ColumnMatrix::resize(bool everybodys) {
     rows = static_cast<int>(row.size());
-    resize_scratch(state, size());
-    for (auto* list : lists()) resize_scratch(*list, size());
+    ColumnPlaces held = *this;
+    if (everybodys) held.cut = {};
+    resize_lines(held, state);
+    for (auto* list : lists()) resize_lines(held, *list);
     const auto clear = [&](int z) {
-        const auto from = static_cast<std::ptrdiff_t>(z) * line_stride();
-        std::fill(state.begin() + from, state.begin() + from + line_stride(), std::uint8_t{0});
-        for (auto* list : lists()) std::fill(list->begin() + from, list->begin() + from + line_stride(), 0.0);
+        std::fill_n(state.data() + line(z), line_stride(), std::uint8_t{0});
+        for (auto* list : lists()) std::fill_n(list->data() + line(z), line_stride(), 0.0);
     };
     for_each_line_near(*this, 1, clear);
     if (cleared_ == *this) return;
-    clear(n[1]);
+    clear(no_line);
     cleared_ = *this;
 }
 
@@ -110,10 +111,11 @@ void ColumnMatrix::find_shares(int x, int z) {
 }
 
 std::size_t ColumnMatrix::bytes() const {
-    std::size_t reals = share.capacity() + vertical.capacity() + lid.capacity() + sink.capacity() + sink_next.capacity();
-    for (const std::size_t h : {0, 1}) reals += beside[h].capacity() + beside_next[h].capacity();
-    return reals * sizeof(real) + row.capacity() * sizeof(int) + state.capacity() + mixed.capacity() + tall.capacity() +
-           alike.capacity() * sizeof(Alike) + looks_.capacity() * sizeof(Look);
+    std::size_t total = state.bytes() + row.capacity() * sizeof(int) + mixed.capacity() + tall.capacity() +
+                        alike.capacity() * sizeof(Alike) + looks_.capacity() * sizeof(Look);
+    for (const auto* list : {&share, &vertical, &lid, &sink, &sink_next}) total += list->bytes();
+    for (const std::size_t h : {0, 1}) total += beside[h].bytes() + beside_next[h].bytes();
+    return total;
 }
 
 }  // namespace weir::tallcell

@@ -6,6 +6,7 @@
 // with T and W tridiagonal, and nothing in it is searched for. Coarser columns keep the shared rows, so that theirs are plain sums.
 #pragma once
 #include "core/parallel.hpp"
+#include "core/plane_store.hpp"
 #include "core/slabs.hpp"
 #include "tallcell/columns.hpp"
 
@@ -22,6 +23,7 @@ struct LineRange {
 /// Where the entries of columns lie in memory: line by line along the first horizontal axis, in a line row by row, and in a row the columns
 /// of even number before those of odd number. So columns of one colour of a checkerboard lie beside one another, and so do their
 /// neighbours along either axis. Lines begin and end with a row, and rows of either parity with an entry, that no column has.
+/// Before the first line stands one of zeros: the neighbour of those that have none.
 struct ColumnPlaces {
     std::array<int, 2> n{1, 1};      // columns along the horizontal axes
     std::array<bool, 2> periodic{};  // they
@@ -29,6 +31,7 @@ struct ColumnPlaces {
     Cut cut;                         // over ranks, whose lines are whose; empty where everybody does all
 
     static constexpr int block = 8192;  // entries of a line that are added up together
+    static constexpr int no_line = -1;  // that of zeros
 
     bool operator==(const ColumnPlaces&) const = default;
     int blocks_of_line() const { return (static_cast<int>(line_stride()) + block - 1) / block; }
@@ -45,10 +48,10 @@ struct ColumnPlaces {
     std::ptrdiff_t width() const { return even() + 2; }
     std::ptrdiff_t row_stride() const { return 2 * width(); }
     std::ptrdiff_t line_stride() const { return (rows + 2) * row_stride(); }
-    /// With a line of zeros at the end: the neighbour of those that have none.
-    std::size_t size() const { return static_cast<std::size_t>((n[1] + 1) * line_stride()); }
+    /// Where a line begins.
+    std::size_t line(int z) const { return static_cast<std::size_t>((z + 1) * line_stride()); }
     std::size_t first(int z, int k, int parity) const {
-        return static_cast<std::size_t>(z * line_stride() + (k + 1) * row_stride() + parity * width() + 1);
+        return line(z) + static_cast<std::size_t>((k + 1) * row_stride() + parity * width() + 1);
     }
     std::size_t at(int x, int z, int k) const { return first(z, k, x % 2) + static_cast<std::size_t>(x / 2); }
     /// An axis along which the first and the last column have one colour and are neighbours.
@@ -79,12 +82,37 @@ void for_each_column_near(const ColumnPlaces& places, int beyond, F&& f) {
     for_each_near(places, beyond, places.n[0], f);
 }
 
+/// What has an entry for each column in a row: of all lines, or, where a rank holds its own alone, of those and one beyond either cut.
+template <class T>
+using LineStore = PlaneStore<T>;
+
+/// Room for entries of lines; what fits is kept, with what stands in it.
+template <class T>
+void resize_lines(const ColumnPlaces& places, LineStore<T>& values) {
+    const auto line = static_cast<std::size_t>(places.line_stride());
+    if (places.cut.empty()) {
+        const AllPlanes all;
+        return values.resize(line, line, places.n[1], 0);
+    }
+    const OwnPlanes own(places.cut, 1, detail::own_share.kept > 0 ? 1 : 0, places.periodic[1]);
+    values.resize(line, line, places.n[1], 0);
+}
+template <class T>
+void refill_lines(const ColumnPlaces& places, LineStore<T>& values) {
+    resize_lines(places, values);
+    values.fill(T{});
+}
+
+/// As planes, for whoever brings them.
+template <class T>
+Planes lines_of(const ColumnPlaces& places, LineStore<T>& values) {
+    return {values.data() + places.line(0), sizeof(T) * static_cast<std::size_t>(places.line_stride()), places.n[1], 0, values.held()};
+}
+
 /// Over ranks, brings the line beyond either cut.
 template <class T>
-void refresh_lines(const ColumnPlaces& places, std::vector<T>& values) {
-    if (places.cut.empty()) return;
-    slabs().refresh(places.cut, {values.data(), sizeof(T) * static_cast<std::size_t>(places.line_stride()), places.n[1]}, 1,
-                    places.periodic[1]);
+void refresh_lines(const ColumnPlaces& places, LineStore<T>& values) {
+    if (!places.cut.empty()) slabs().refresh(places.cut, lines_of(places, values), 1, places.periodic[1]);
 }
 
 /// From the entry of a column to those of the columns beside it.
@@ -94,7 +122,8 @@ struct Beside {
         : x_lower(parity == 0 ? places.width() - 1 : -places.width()), x_upper(x_lower + 1) {
         const int last = places.n[1] - 1;
         const bool around = places.periodic[1] && last > 0;
-        const int lower = z > 0 ? z - 1 : around ? last : last + 1, upper = z < last ? z + 1 : around ? 0 : last + 1;
+        const int lower = z > 0 ? z - 1 : around ? last : ColumnPlaces::no_line;
+        const int upper = z < last ? z + 1 : around ? 0 : ColumnPlaces::no_line;
         z_lower = (lower - z) * places.line_stride(), z_upper = (upper - z) * places.line_stride();
     }
 };
@@ -102,15 +131,15 @@ struct Beside {
 struct ColumnMatrix : ColumnPlaces {
     enum State : std::uint8_t { wet = 1, inside = 2, goes_on = 4 };  // inside: of an element, no knot; goes_on: up to the next shared row
     std::vector<int> row;                                            // of the lattice
-    std::vector<std::uint8_t> state;                                 // of a column in a row
-    std::vector<real> share;                                         // inside: the weight of the knot above
-    std::vector<real> vertical;                                      // T: between a row and the next
-    std::vector<real> lid;                                           // faces of air above and below
-    std::vector<real> sink, sink_next;                     // faces of air beside: the diagonal, and the entry between a row and the next
-    std::array<std::vector<real>, 2> beside, beside_next;  // W of the face on the lower side along either axis
-    std::vector<std::uint8_t> mixed;                       // rows inside an element of any column
-    int mixed_end = 0;                                     // none at or above this row, nor in the one below
-    std::vector<std::uint8_t> tall;                        // rows at an end of an element longer than one
+    LineStore<std::uint8_t> state;                                   // of a column in a row
+    LineStore<real> share;                                           // inside: the weight of the knot above
+    LineStore<real> vertical;                                        // T: between a row and the next
+    LineStore<real> lid;                                             // faces of air above and below
+    LineStore<real> sink, sink_next;                     // faces of air beside: the diagonal, and the entry between a row and the next
+    std::array<LineStore<real>, 2> beside, beside_next;  // W of the face on the lower side along either axis
+    std::vector<std::uint8_t> mixed;                     // rows inside an element of any column
+    int mixed_end = 0;                                   // none at or above this row, nor in the one below
+    std::vector<std::uint8_t> tall;                      // rows at an end of an element longer than one
 
     /// A row in which W is the same for all faces along an axis, but for sides of the domain, where it is nothing.
     struct Alike {
@@ -120,8 +149,8 @@ struct ColumnMatrix : ColumnPlaces {
     };
     std::vector<Alike> alike;
 
-    /// Room for `row`, filled with nothing.
-    void resize();
+    /// Room for `row`, filled with nothing; `everybodys`: all ranks are to have all of it.
+    void resize(bool everybodys = false);
     /// What lies beyond the ends of lines around a periodic axis; and which rows are mixed, tall and alike.
     void finish();
     /// All that has an entry for each column in a row.

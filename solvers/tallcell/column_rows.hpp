@@ -27,7 +27,7 @@ void for_each_block(const ColumnPlaces& places, int z_begin, int z_end, Parity&&
 
 /// to[i] += Σ W x of the four columns beside one another's, in one shared row; all pointers are at the first column.
 template <class T, bool Tall>
-inline void add_beside(const std::array<std::vector<T>, 2>& W, const std::array<std::vector<T>, 2>& W_next, const T* x, std::size_t first,
+inline void add_beside(const std::array<LineStore<T>, 2>& W, const std::array<LineStore<T>, 2>& W_next, const T* x, std::size_t first,
                        const Beside& to, std::ptrdiff_t row, int count, T* sum) {
     const T *w0 = W[0].data() + first, *w1 = W[1].data() + first, *n0 = W_next[0].data() + first, *n1 = W_next[1].data() + first;
     const T* v = x + first;
@@ -64,7 +64,7 @@ inline void add_alike(const ColumnMatrix::Alike& W, const ColumnMatrix::Alike& b
 }
 
 /// sum += Σ W x of the columns beside, in row k, whichever kind it is.
-inline void add_row(const ColumnMatrix& A, const std::array<std::vector<float>, 2>& W, const std::array<std::vector<float>, 2>& W_next,
+inline void add_row(const ColumnMatrix& A, const std::array<LineStore<float>, 2>& W, const std::array<LineStore<float>, 2>& W_next,
                     const float* x, int k, std::size_t first, const Beside& to, int count, float* sum) {
     const std::ptrdiff_t row = A.row_stride();
     const bool tall = A.tall[at(k)] != 0;
@@ -141,7 +141,7 @@ void interpolate(const ColumnMatrix& A, int z, int parity, int begin, int end, T
 }
 
 template <class T>
-void interpolate(const ColumnMatrix& A, std::vector<T>& x) {
+void interpolate(const ColumnMatrix& A, LineStore<T>& x) {
     if (A.mixed_end == 0) return;
     for_each_line_near(A, 0, [&](int z) {
         for (const int parity : {0, 1})

@@ -3,10 +3,12 @@
 // 2011); several such elements above one another are a stacked column.
 #pragma once
 #include "core/grid.hpp"
+#include "core/parallel.hpp"
 #include "core/types.hpp"
 #include "poisson/poisson.hpp"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace weir::tallcell {
@@ -55,14 +57,32 @@ struct Layout {
     }
 };
 
+/// Lists that columns have stand one after another: where those of each begin, and behind the last of a line that is known where they end.
+/// `known(line)`: whether its columns have any here; count(column): how many. Answers how many in all.
+template <int D, class Known, class Count>
+int find_starts(const Layout<D>& layout, Known&& known, Count&& count, PlaneStore<int>& starts) {
+    const auto at = [](int i) { return static_cast<std::size_t>(i); };
+    const int n = layout.n[0], lines = layout.n[1];
+    starts.resize(0, at(n), lines + 1, 0);
+    parallel_for(0, layout.columns(), [&](int c) {
+        if (known(c / n)) starts[at(c)] = count(c);
+    });
+    int all = 0;
+    for (int line = 0; line < lines; ++line) {
+        if (!known(line)) continue;
+        for (int c = line * n; c < (line + 1) * n; ++c) all += std::exchange(starts[at(c)], all);
+        if (line + 1 == lines || !known(line + 1)) starts[at((line + 1) * n)] = all;
+    }
+    return all;
+}
+
 /// The knots of all columns, bottom up; over ranks of those that are done here and of those beside them, the others have none.
 struct Knots {
-    std::vector<int> start{0};  // of each column; one more than there are columns
+    PlaneStore<int> start;  // of each column (find_starts)
     std::vector<int> row;
     std::vector<int> length;  // rows to the next knot, if all cells between are liquid; else 0
     int count() const { return static_cast<int>(row.size()); }
-    int columns() const { return static_cast<int>(start.size()) - 1; }
-    std::size_t bytes() const { return (start.capacity() + row.capacity() + length.capacity()) * sizeof(int); }
+    std::size_t bytes() const { return start.bytes() + (row.capacity() + length.capacity()) * sizeof(int); }
 };
 
 /// Goes up a column: which element holds a row.

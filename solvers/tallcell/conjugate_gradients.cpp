@@ -38,7 +38,7 @@ void for_each_block_of_lines(const ColumnPlaces& places, F&& f) {
     const std::size_t line = at(places.line_stride());
     const int blocks = places.blocks_of_line();
     parallel_for(places.own().begin * blocks, places.own().end * blocks, [&](int i) {
-        const std::size_t first = at(i / blocks) * line, begin = first + at(i % blocks * ColumnPlaces::block);
+        const std::size_t first = places.line(i / blocks), begin = first + at(i % blocks * ColumnPlaces::block);
         f(i, begin, std::min(first + line, begin + at(ColumnPlaces::block)));
     });
 }
@@ -57,7 +57,7 @@ Parts<N> parts_of_lines(const ColumnPlaces& places, F&& f) {
 }
 
 /// y = A x, and x·y. Over ranks x must be known beyond the cuts.
-real multiply_and_dot(const ColumnMatrix& A, std::vector<real>& x, std::vector<real>& y) {
+real multiply_and_dot(const ColumnMatrix& A, LineStore<real>& x, LineStore<real>& y) {
     const std::ptrdiff_t row = A.row_stride();
     auto& parts = detail::reduction_scratch(at(A.n[1]));
     for_each_line_near(A, 0, [&](int z) {
@@ -113,7 +113,7 @@ real multiply_and_dot(const ColumnMatrix& A, std::vector<real>& x, std::vector<r
 }  // namespace
 
 /// From values by knots to the shared rows, those inside elements zero.
-void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const {
+void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, LineStore<real>& to) const {
     const std::size_t stride = at(A.row_stride());
     for_each_line_near(A, 0, [&](int z) {
         for (int x = 0; x < A.n[0]; ++x) {
@@ -130,7 +130,7 @@ void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std
 }
 
 /// Back; over ranks beyond the cuts too.
-void ColumnMultigrid::fetch(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const {
+void ColumnMultigrid::fetch(const ColumnMatrix& A, const Knots& knots, const LineStore<real>& from, std::vector<real>& to) const {
     const std::size_t stride = at(A.row_stride());
     for_each_line_near(A, 1, [&](int z) {
         for (int x = 0; x < A.n[0]; ++x) {
@@ -158,7 +158,7 @@ void ColumnMultigrid::precondition(const ColumnMatrix& A, const Knots& knots, co
     for (const real value : r) largest = std::max(largest, std::abs(value));
     place(A, knots, r, r_);
     precondition(A, largest);
-    std::copy(levels_[0].x.begin(), levels_[0].x.end(), p_.begin());
+    std::copy_n(levels_[0].x.data(), levels_[0].x.size(), p_.data());
     fetch(A, knots, p_, z);
     for (real& value : z) value *= scale_;
 }
@@ -225,7 +225,7 @@ ColumnMultigrid::Residual ColumnMultigrid::residual(const ColumnMatrix& A) {
 /// p = z + β p, β in Polak and Ribière's form, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p: single precision leaves the preconditioner not
 /// quite the same. rz becomes z·r.
 void ColumnMultigrid::turn(const ColumnMatrix& A, bool first, real alpha, real& rz) {
-    const std::vector<float>& z = levels_[0].x;
+    const LineStore<float>& z = levels_[0].x;
     const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
         real zAp = 0, zr = 0;
 #pragma omp simd reduction(+ : zAp, zr)

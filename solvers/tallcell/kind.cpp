@@ -67,10 +67,7 @@ Key scheme_keys() {
 }
 
 /// What of a scene is not shared by ranks.
-void over_ranks(const scene::Scene& scene) {
-    scene::refuse_hand(scene);
-    scene::refuse_moving_solids(scene);
-}
+void over_ranks(const scene::Scene& scene) { scene::refuse_hand(scene); }
 
 }  // namespace
 
@@ -97,6 +94,7 @@ scene::SolverKind kind() {
                            scene::Shared::by_planes,
                            "the levels of the pressure of fewer than 20,000 unknowns, the level set's "
                            "continuation into solids"};
+    tall.holds_own_part = holds_own_planes;
     tall.sends = traffic_of_step;
     tall.cut = cut_of_columns;
     return tall;

@@ -1,6 +1,5 @@
 // The levels of the multigrid on columns: coarser matrices, and the factors of every column's block.
 #include "core/parallel.hpp"
-#include "core/scratch.hpp"
 #include "tallcell/column_rows.hpp"
 #include "tallcell/multigrid.hpp"
 
@@ -22,7 +21,7 @@ void ColumnMultigrid::setup(const ColumnMatrix& finest) {
     }
     if (places_ == finest) return;  // what lies between lines and rows is zero
     places_ = finest;
-    for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_scratch(*list, finest.size(), 0.0);
+    for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_lines(finest, *list);
 }
 
 /// A level whose lines are cut so is worth messages: it has enough entries, and none of its parents has children of two ranks.
@@ -43,18 +42,19 @@ void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
     to.periodic = A.periodic;
     to.row = A.row;
     to.cut = halved(A.cut);
-    to.resize();
+    to.rows = A.rows;
+    const bool gathered = !to.cut.empty() && !worth_sharing(to, to.cut);
+    to.resize(gathered);
     for_each_line_near(to, 0, [&](int Z) {
         add_children(A, to, Z);
         add_lower_faces(A, to, Z);
     });
     if (const int beyond = to.beyond(); beyond >= 0) add_lower_faces(A, to, beyond);
-    if (!to.cut.empty() && !worth_sharing(to, to.cut)) {
-        const auto plane = at(to.line_stride());
-        slabs().gather(to.cut, {to.state.data(), plane * sizeof(to.state[0]), to.n[1]});
+    if (gathered) {
+        slabs().gather(to.cut, lines_of(to, to.state));
         for (auto* list : to.lists())
-            if (list != &to.share) slabs().gather(to.cut, {list->data(), plane * sizeof(real), to.n[1]});
-        std::fill(to.share.begin(), to.share.end(), 0.0);
+            if (list != &to.share) slabs().gather(to.cut, lines_of(to, *list));
+        to.share.fill(0);
         to.cut = {};
     }
     to.finish();
@@ -113,29 +113,27 @@ struct Elimination {
 
 /// W of a line, in single precision.
 void ColumnMultigrid::narrow_beside(const ColumnMatrix& A, Level& level, int z) {
-    const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
     for (const std::size_t h : {at(0), at(1)})
-        for (std::size_t i = from; i < to; ++i) {
+        for (std::size_t i = A.line(z); i < A.line(z + 1); ++i) {
             level.beside[h][i] = static_cast<float>(A.beside[h][i]);
             level.beside_next[h][i] = static_cast<float>(A.beside_next[h][i]);
         }
 }
 
 void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
-    const std::size_t size = A.size();
     const bool moved = !(level.places == A);
     if (moved)
         for (auto* list : {&level.diagonal, &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
-            refill_scratch(*list, size, 0.0f);
+            refill_lines(A, *list);
     level.places = A;
     for (const std::size_t h : {at(0), at(1)}) {
-        resize_scratch(level.beside[h], size);
-        resize_scratch(level.beside_next[h], size);
+        resize_lines(A, level.beside[h]);
+        resize_lines(A, level.beside_next[h]);
     }
     const std::ptrdiff_t row = A.row_stride();
     for_each_line_near(A, 0, [&](int z) { narrow_beside(A, level, z); });
     if (const int beyond = A.beyond(); beyond >= 0) narrow_beside(A, level, beyond);
-    if (moved) narrow_beside(A, level, A.n[1]);
+    if (moved) narrow_beside(A, level, ColumnPlaces::no_line);
     for_each_line_near(A, 0, [&](int z) {
         for (const int parity : {0, 1})
             for (int begin = 0; begin < A.of_parity(parity); begin += lanes) {

@@ -8,12 +8,12 @@
 namespace weir::tallcell {
 
 std::size_t ColumnMultigrid::bytes() const {
-    std::size_t total = (x_.capacity() + b_.capacity() + r_.capacity() + p_.capacity() + Ap_.capacity()) * sizeof(real);
+    std::size_t total = x_.bytes() + b_.bytes() + r_.bytes() + p_.bytes() + Ap_.bytes();
     for (const Level& level : levels_) {
         total += level.coarse.bytes();
         for (const auto* list : {&level.beside[0], &level.beside[1], &level.beside_next[0], &level.beside_next[1], &level.diagonal,
                                  &level.next, &level.inverse, &level.ratio, &level.x, &level.b, &level.r})
-            total += list->capacity() * sizeof(float);
+            total += list->bytes();
     }
     return total;
 }
@@ -102,7 +102,7 @@ void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, b
     const int last = A.n[1] - 1, lines = A.joint(1) && last > 0 ? last : A.n[1], phases = lines < A.n[1] ? 4 : 2;
     const LineRange own = A.own();
     if (from_zero && !one_colour(A))
-        for_each_line_near(A, 1, [&](int z) { std::fill_n(level.x.data() + z * A.line_stride(), A.line_stride(), 0.0f); });
+        for_each_line_near(A, 1, [&](int z) { std::fill_n(level.x.data() + A.line(z), A.line_stride(), 0.0f); });
     for (int i = 0; i < phases; ++i) {
         const int phase = upwards ? i : phases - 1 - i, colour = phase % 2;
         const bool alone = from_zero && i == 0;
@@ -160,8 +160,7 @@ void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& leve
             for (int begin = 0; begin < coarse.of_parity(parity); begin += lanes)
                 gather(coarse, Z, parity, begin, std::min(begin + lanes, coarse.of_parity(parity)), next.b.data());
     });
-    if (!A.cut.empty() && coarse.cut.empty())
-        slabs().gather(parents.cut, {next.b.data(), sizeof(float) * at(coarse.line_stride()), coarse.n[1]});
+    if (!A.cut.empty() && coarse.cut.empty()) slabs().gather(parents.cut, lines_of(coarse, next.b));
 }
 
 /// x += P x of the parents; over ranks beyond the cuts too, where x is known of children and parents.
@@ -201,8 +200,7 @@ void ColumnMultigrid::precondition(const ColumnMatrix& A, real largest) {
     Level& level = levels_[0];
     scale_ = largest > 0 ? largest : 1;  // single precision has no room for what is very small
     for_each_line_near(A, 0, [&](int z) {
-        const std::size_t from = at(z * A.line_stride()), to = from + at(A.line_stride());
-        for (std::size_t i = from; i < to; ++i) level.b[i] = static_cast<float>(r_[i] / scale_);
+        for (std::size_t i = A.line(z); i < A.line(z + 1); ++i) level.b[i] = static_cast<float>(r_[i] / scale_);
     });
     cycle(0, A);
 }

@@ -39,10 +39,10 @@ private:
     struct Level {
         ColumnMatrix coarse;  // unused on the finest level, whose matrix is the caller's
         // What a cycle reads, in single precision: a preconditioner need be no more exact, and memory is what its time goes to.
-        std::array<std::vector<float>, 2> beside, beside_next;  // W
-        std::vector<float> diagonal, next;                      // of T + Σ W on shared rows
-        std::vector<float> inverse, ratio;                      // L D Lᵀ of Rᵀ (T + Σ W) R
-        std::vector<float> x, b, r;
+        std::array<LineStore<float>, 2> beside, beside_next;  // W
+        LineStore<float> diagonal, next;                      // of T + Σ W on shared rows
+        LineStore<float> inverse, ratio;                      // L D Lᵀ of Rᵀ (T + Σ W) R
+        LineStore<float> x, b, r;
         ColumnPlaces places;  // of all these
     };
     static void coarsen(const ColumnMatrix& A, ColumnMatrix& to);
@@ -56,8 +56,8 @@ private:
     static void residual(const ColumnMatrix& A, Level& level);
     static void restrict_residual(const ColumnMatrix& A, const Level& level, const ColumnMatrix& coarse, Level& next);
     static void add_correction(const ColumnMatrix& A, Level& level, const ColumnMatrix& coarse, const Level& next);
-    void place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const;
-    void fetch(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, std::vector<real>& to) const;
+    void place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, LineStore<real>& to) const;
+    void fetch(const ColumnMatrix& A, const Knots& knots, const LineStore<real>& from, std::vector<real>& to) const;
     void precondition(const ColumnMatrix& A, real largest);
     struct Residual {
         real norm, largest, b_squares, b_largest;
@@ -70,8 +70,8 @@ private:
     int sweeps_;
     std::vector<Level> levels_;
     ColumnPlaces places_;
-    std::vector<real> x_, b_, r_, p_, Ap_;  // on shared rows
-    real scale_ = 1;                        // of what the last cycle was given
+    LineStore<real> x_, b_, r_, p_, Ap_;  // on shared rows
+    real scale_ = 1;                      // of what the last cycle was given
     poisson::Report report_;
 };
 

@@ -38,26 +38,22 @@ void walk_column(const Layout<D>& layout, const Grid<poisson::Cell, D>& cells, D
 
 template <int D, class Deep>
 void place_knots(const Layout<D>& layout, const Grid<poisson::Cell, D>& cells, Division division, int depth, Deep&& deep, Knots& knots) {
-    const int columns = layout.columns();
-    knots.start.resize(static_cast<std::size_t>(columns) + 1);
     const std::vector<char> near = layout.near_lines();
-    const auto known = [&](int c) { return near.empty() || near[static_cast<std::size_t>(c / layout.n[0])] != 0; };
-    parallel_for(0, columns, [&](int c) {
-        int count = 0;
-        if (known(c)) walk_column(layout, cells, division, depth, deep, c, [&](int, int) { ++count; });
-        knots.start[static_cast<std::size_t>(c) + 1] = count;
-    });
-    knots.start[0] = 0;
-    for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c) knots.start[c + 1] += knots.start[c];
-    resize_scratch(knots.row, static_cast<std::size_t>(knots.start.back()));
+    const auto known = [&](int line) { return near.empty() || near[static_cast<std::size_t>(line)] != 0; };
+    const auto count = [&](int c) {
+        int found = 0;
+        walk_column(layout, cells, division, depth, deep, c, [&](int, int) { ++found; });
+        return found;
+    };
+    resize_scratch(knots.row, static_cast<std::size_t>(find_starts(layout, known, count, knots.start)));
     resize_scratch(knots.length, knots.row.size());
-    parallel_for(0, columns, [&](int c) {
+    parallel_for(0, layout.columns(), [&](int c) {
+        if (!known(c / layout.n[0])) return;
         auto k = static_cast<std::size_t>(knots.start[static_cast<std::size_t>(c)]);
-        if (known(c))
-            walk_column(layout, cells, division, depth, deep, c, [&](int row, int length) {
-                knots.row[k] = row;
-                knots.length[k++] = length;
-            });
+        walk_column(layout, cells, division, depth, deep, c, [&](int row, int length) {
+            knots.row[k] = row;
+            knots.length[k++] = length;
+        });
     });
 }
 

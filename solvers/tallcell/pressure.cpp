@@ -87,25 +87,25 @@ void TallPressure<D>::agree_on_rows() {
 
 template <int D>
 void TallPressure<D>::find_runs(const MacState<D>& state) {
-    const int columns = layout_.columns();
     const ColumnRange own = layout_.own(), above = layout_.above();
-    const auto done = [&](int c) { return (c >= own.begin && c < own.end) || (c >= above.begin && c < above.end); };
+    const auto done = [&](int line) {
+        const int c = line * layout_.n[0];
+        return (c >= own.begin && c < own.end) || (c >= above.begin && c < above.end);
+    };
     for (int h = 0; h < D - 1; ++h) {
         auto& starts = run_start_[at(h)];
-        starts.resize(at(columns) + 1);
         const auto nothing = [](std::size_t, int, const Row&, const Row&) {};
-        parallel_for(0, columns, [&](int c) {
-            int count = 0;
-            if (done(c)) visit(state, h, c, nothing, [&](const Run&) { ++count; });
-            starts[at(c) + 1] = count;
-        });
-        starts[0] = 0;
-        for (int c = 0; c < columns; ++c) starts[at(c) + 1] += starts[at(c)];
-        resize_scratch(runs_[at(h)], at(starts.back()));
-        resize_scratch(w_[at(h)], at(starts.back()));
-        parallel_for(0, columns, [&](int c) {
+        const auto count = [&](int c) {
+            int found = 0;
+            visit(state, h, c, nothing, [&](const Run&) { ++found; });
+            return found;
+        };
+        resize_scratch(runs_[at(h)], at(find_starts(layout_, done, count, starts)));
+        resize_scratch(w_[at(h)], runs_[at(h)].size());
+        parallel_for(0, layout_.columns(), [&](int c) {
+            if (!done(c / layout_.n[0])) return;
             int i = starts[at(c)];
-            if (done(c)) visit(state, h, c, nothing, [&](const Run& run) { runs_[at(h)][at(i++)] = run; });
+            visit(state, h, c, nothing, [&](const Run& run) { runs_[at(h)][at(i++)] = run; });
         });
     }
     floor_ =
@@ -297,7 +297,7 @@ std::size_t TallPressure<D>::bytes() const {
     std::size_t total = knots_.bytes() + A_.bytes() + (row_index_.capacity() + rows_of_ranks_.capacity()) * sizeof(int) + solver_.bytes() +
                         (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
     for (std::size_t h = 0; h < 2; ++h)
-        total += run_start_[h].capacity() * sizeof(int) + runs_[h].capacity() * sizeof(Run) + w_[h].capacity() * sizeof(Pair);
+        total += run_start_[h].bytes() + runs_[h].capacity() * sizeof(Run) + w_[h].capacity() * sizeof(Pair);
     return total;
 }
 

@@ -208,7 +208,7 @@ private:
     std::vector<int> rows_of_ranks_;  // what each knows of the lattice's rows
     ColumnMatrix A_;
     ColumnMultigrid solver_;
-    std::array<std::vector<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
+    std::array<PlaneStore<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
     std::array<std::vector<Run>, 2> runs_;
     std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]
     int elements_end_ = 0;                // at and above this row there is no element longer than one

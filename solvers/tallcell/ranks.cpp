@@ -11,24 +11,28 @@ Cut cut_of_columns(const scene::Scene& scene, int ranks) {
     return lines >= ranks && !pairs ? Cut{} : cut_of(lines, ranks);
 }
 
+bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !slabs().holds_whole(); }
+
 /// The velocity as far beyond the cuts as anything moves in the step, and reads there: a point at the end of its path looks at two samples,
 /// and runs of the line of columns beyond move too.
 template <int D>
 void TallCells<D>::bring_faces(real dt) {
-    whole_ = cut_.empty();
+    whole_ = held_.cut().empty();
     if (!over_ranks()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
     const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];
     reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
     refresh_faces(state_.u, frame_, reach_);
+    solids_.know(state_, reach_);
 }
 
 /// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
 template <int D>
 void TallCells<D>::make_whole() const {
     if (whole_) return;
-    const OwnPlanes mine(cut_);
+    if (held_.alone()) return bring_beside();
+    const OwnPlanes mine(held_.cut());
     auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
@@ -37,6 +41,18 @@ void TallCells<D>::make_whole() const {
         pressure_.show_heights(tall_);
         gather(tall_);
     }
+    whole_ = true;
+}
+
+/// Where each holds its own planes alone, what it looks at beside them. The level set is known there since it is a distance.
+template <int D>
+void TallCells<D>::bring_beside() const {
+    const OwnPlanes mine = held_.own();
+    pressure_.show_heights(tall_);
+    auto& state = const_cast<MacState<D>&>(state_);
+    std::vector<Planes> all{planes_of(state.p), planes_of(tall_)};
+    for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
+    slabs().refresh(held_.cut(), all, 2, held_.ring());
     whole_ = true;
 }
 
@@ -54,17 +70,20 @@ static void for_each_kept(const Grid<real, D>& u, int up, int from, int beside, 
     const int last = hi[D - 1] - 1;  // around a periodic axis faces there are those of plane 0
     const AllPlanes all;
     for_each_in(lo, hi, [&](const Index<D>& I) {
-        if (near.empty() || near[static_cast<std::size_t>(I[D - 1])] || (ring && I[D - 1] == last && near[0]))
+        if (near.empty() || near[static_cast<std::size_t>(I[D - 1])] || (ring && I[D - 1] == last && near[0] && u.store().holds(last)))
             f(u.linear(I), static_cast<std::size_t>(count));
     });
 }
 
 template <int D>
 void Transport<D>::keep(const MacVelocity<D>& u, int beside) {
-    for (int a = 0; a < D; ++a)
-        for_each_kept(u[a], up_, kept_from_, beside, frame_.periodic(D - 1), [&](std::size_t first, std::size_t count) {
+    const bool ring = frame_.periodic(D - 1);
+    for (int a = 0; a < D; ++a) {
+        before_[a].store().open(beside, ring);
+        for_each_kept(u[a], up_, kept_from_, beside, ring, [&](std::size_t first, std::size_t count) {
             std::copy(u[a].data() + first, u[a].data() + first + count, before_[a].data() + first);
         });
+    }
 }
 
 #define WEIR_INSTANTIATE(D)                           \

@@ -12,6 +12,7 @@ FieldSet TallCells<D>::fields() const {
     if (pressure_.has_all()) pressure_.show_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
+    if (held_.alone()) set.cut = &held_.cut();
     FieldView velocity{"velocity", "m/s", Where::face, "", {}};
     for (int a = 0; a < D; ++a) velocity.data.push_back(state_.u[a].values());
     set.fields.push_back(std::move(velocity));
@@ -24,7 +25,7 @@ FieldSet TallCells<D>::fields() const {
 template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
     make_whole();
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine = held_.own();
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});
     if (hand_) geometry::sum_up(*hand_, D, list);
@@ -35,9 +36,11 @@ std::vector<Integral> TallCells<D>::integrals() const {
 template <int D>
 void TallCells<D>::save(Checkpoint& to) const {
     make_whole();
-    const OwnPlanes mine(cut_);
-    const_cast<LevelSet<D>&>(surface_).make_layers_whole();  // of everybody's, as all of the state
-    gather(const_cast<MacState<D>&>(state_).cells);
+    const OwnPlanes mine = held_.own();
+    if (!held_.alone()) {  // of everybody's, as all of the state
+        const_cast<LevelSet<D>&>(surface_).make_layers_whole();
+        gather(const_cast<MacState<D>&>(state_).cells);
+    }
     state_.save(to);
     surface_.save(to);
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
@@ -48,7 +51,8 @@ void TallCells<D>::save(Checkpoint& to) const {
 
 template <int D>
 void TallCells<D>::restore(const Checkpoint& from) {
-    state_.restore(from);
+    const OwnPlanes mine = held_.looking();
+    state_.time = from.get_value<real>("time");
     steps_ = from.get_value<std::int64_t>("tallcell.steps");
     place_solids(state_.time);
     state_.restore(from);  // what is liquid, after the solids have said what is not
@@ -58,7 +62,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     if (hand_ && from.has("hand")) hand_->restore(from);
     remesh();
     mark_liquid_faces();
-    whole_ = true;
+    whole_ = !held_.alone();
 }
 
 template <int D>
@@ -85,9 +89,9 @@ void TallCells<D>::edited(const EditableField&) {
 
 template <int D>
 std::size_t TallCells<D>::bytes() const {
-    std::size_t total = state_.bytes() + surface_.bytes() + pressure_.bytes() + transport_.bytes() + extrapolate_.bytes() + closed_.size() +
-                        in_solids_.bytes() + solids_.bytes() + tall_.size() * sizeof(real);
-    for (const auto& known : known_) total += known.size();
+    std::size_t total = state_.bytes() + surface_.bytes() + pressure_.bytes() + transport_.bytes() + extrapolate_.bytes() +
+                        closed_.bytes() + in_solids_.bytes() + solids_.bytes() + tall_.bytes();
+    for (const auto& known : known_) total += known.bytes();
     return total;
 }
 

@@ -3,13 +3,15 @@
 #include "core/error.hpp"
 #include "staggered/inflow.hpp"
 
+#include <optional>
+
 namespace weir::tallcell {
 
 /// One step of water on tall cells (Chentanez & Müller 2011, algorithm 1, in the order of this library's water). Enters and leaves with a
 /// velocity that is known throughout the band of the level set and free of divergence in the liquid, to the tolerance of the pressure.
 template <int D>
 StepReport TallCells<D>::step(real dt) {
-    const OwnPlanes mine(cut_);
+    const OwnPlanes mine = held_.own();
     bring_faces(dt);  // over ranks, as far as anything moves
     place_solids(state_.time + dt);
     move_surface(dt);                             // Dφ/Dt = 0, and φ is a distance again
@@ -35,8 +37,10 @@ StepReport TallCells<D>::step(real dt) {
 template <int D>
 void TallCells<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
+    std::optional<AllPlanes> all;
+    if (!held_.alone()) all.emplace();
     solids_.place(state_, t);
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
+    for_each_held(closed_, Index<D>{}, frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
     surface_.set_closed(closed_);
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
 }

@@ -4,6 +4,7 @@
 // paper, and why, is docs/adr/0016-tall-cells.md.
 #pragma once
 #include "core/effects.hpp"
+#include "core/held_planes.hpp"
 #include "core/solver.hpp"
 #include "scene/solver_kind.hpp"
 #include "staggered/solid_faces.hpp"
@@ -19,6 +20,8 @@ scene::SolverKind kind();
 
 /// Over ranks, where the planes of a scene are cut: nowhere where columns go through all of them, along the slowest axis.
 Cut cut_of_columns(const scene::Scene& scene, int ranks);
+/// May each then hold its own planes alone? Not where somebody looks at whole fields on all ranks.
+bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 /// What a rank sends in a step of a scene that is cut so.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
 
@@ -40,6 +43,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
+    bool holds_own_planes() const override { return held_.alone(); }
     std::vector<Integral> integrals() const override;
     Hand* hand() const override { return hand_.get(); }
     real time() const override { return state_.time; }
@@ -77,13 +81,14 @@ private:
     // Over ranks (ranks.cpp)
     void bring_faces(real dt);
     void make_whole() const;
+    void bring_beside() const;
 
     void set_fixed_faces();
     void mark_liquid_faces();
     real max_speed_rate() const;
 
     TallOptions options_;
-    Cut cut_;  // none in one process, nor where every rank does all
+    HeldPlanes held_;  // cut nowhere in one process, nor where every rank does all
     MacState<D> state_;
     Frame<D> frame_;
     SolidPlacement<D> solids_;
@@ -104,7 +109,7 @@ private:
     std::shared_ptr<Hand> hand_;  // none where the scene names none
     Passes passes_;
     int reach_ = 0;              // planes beyond the cuts that motion reads in this step
-    mutable bool whole_ = true;  // all planes stand here
+    mutable bool whole_ = true;  // all planes stand here, or those that this rank looks at
 };
 
 }  // namespace weir::tallcell

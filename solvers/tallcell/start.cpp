@@ -9,10 +9,21 @@
 
 namespace weir::tallcell {
 
+namespace {
+
+/// The velocity's halo: as far as anything moves in a step, and reads there.
+template <int D>
+HeldPlanes held_planes(const scene::Scene& scene, real cfl) {
+    const Cut cut = cut_of_columns(scene, slabs().ranks());
+    return HeldPlanes(cut, holds_own_planes(scene, cut), static_cast<int>(std::ceil(cfl)) + 3, geometry::Sides<D>(scene).periodic(D - 1));
+}
+
+}  // namespace
+
 template <int D>
 TallCells<D>::TallCells(const scene::Scene& scene)
     : options_(scene),
-      cut_(cut_of_columns(scene, slabs().ranks())),
+      held_(held_planes<D>(scene, options_.cfl)),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),
@@ -38,6 +49,8 @@ TallCells<D>::TallCells(const scene::Scene& scene)
     set_initial_velocity(state_, scene);
     set_fixed_faces();
     extend_velocity();
+    held_.made();
+    whole_ = !held_.alone();
 }
 
 template <int D>

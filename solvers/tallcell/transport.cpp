@@ -416,16 +416,14 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
 /// Faces on the sides of the domain that no column has on its lower side.
 template <int D>
 void Transport<D>::keep_sides(MacVelocity<D>& to) const {
-    for (int a = 0; a < D; ++a) {
-        Index<D> lo{}, hi = to[a].extent();
-        if (a != up_) lo[up_] = kept_from_;
-        hi[a] = 1;
-        for_each_in(lo, hi, [&](Index<D> I) {
-            if (I[a] == 0 && a == up_) to[a](I) = before_[a](I);
-            I[a] = frame_.cells[a];
-            if (a != up_ || !open_above_) to[a](I) = before_[a](I);
-        });
-    }
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1}) {
+            if (end == 0 ? a != up_ : a == up_ && open_above_) continue;
+            Index<D> lo{}, hi = to[a].extent();
+            if (a != up_) lo[up_] = kept_from_;
+            lo[a] = end * frame_.cells[a], hi[a] = lo[a] + 1;
+            for_each_in(lo, hi, [&](const Index<D>& I) { to[a](I) = before_[a](I); });
+        }
 }
 
 template class Transport<2>;

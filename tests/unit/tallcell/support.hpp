@@ -59,6 +59,7 @@ template <int D>
 auto any_knots(Basin<D>& basin, int longest) {
     return [&basin, longest](const Layout<D>& layout, const Grid<poisson::Cell, D>& cells, Knots& knots) {
         knots = Knots{};
+        knots.start = PlaneStore<int>(0, static_cast<std::size_t>(layout.n[0]), layout.n[1] + 1, 0, 0);
         for (int c = 0; c < layout.columns(); ++c) {
             const auto liquid = [&](int row) {
                 Index<D> I = layout.foot(c);
@@ -76,7 +77,7 @@ auto any_knots(Basin<D>& basin, int longest) {
                     row += length;
                 }
             }
-            knots.start.push_back(knots.count());
+            knots.start[static_cast<std::size_t>(c) + 1] = knots.count();
         }
     };
 }
