@@ -115,13 +115,6 @@ void gather(Grid<T, D>& q) {
     q.store().open_all();
     slabs().gather(*detail::own_share.cut, planes_of(q));
 }
-/// All planes, on the first rank alone.
-template <class T, int D>
-void gather_to_first(Grid<T, D>& q) {
-    if (!over_ranks()) return;
-    if (slabs().rank() == 0) q.store().open_all();
-    slabs().gather_to_first(*detail::own_share.cut, planes_of(q));
-}
 
 /// f(I) for every I in [lo, hi), threaded over the slowest axis; x runs innermost.
 template <int D, class F>

@@ -61,8 +61,6 @@ public:
     void refresh(const Cut& cut, const Planes& planes, int deep, bool ring) { refresh(cut, std::span(&planes, 1), deep, ring); }
     /// Brings every plane that this rank does not own.
     virtual void gather(const Cut&, const Planes&) {}
-    /// The same to the first rank alone.
-    virtual void gather_to_first(const Cut&, const Planes&) {}
     /// Everybody's bytes in the order of the ranks, to the first: sink(data, count) there, piece by piece. What it throws comes when all
     /// has been taken.
     virtual void stream_to_first(const void* own, std::size_t bytes, const std::function<void(const void*, std::size_t)>& sink) {

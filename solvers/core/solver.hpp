@@ -137,9 +137,6 @@ public:
     };
     /// Where ranks share particles: of these each its part, as many as any other, in the order of one process.
     virtual std::unique_ptr<Brought> show_in_parts() const { return nullptr; }
-    /// Where each holds its own part alone: what a surface of liquid is made from, all of it to the first rank. What others show then
-    /// nobody reads.
-    virtual std::unique_ptr<Brought> bring_to_first() const { return nullptr; }
     /// Over ranks: does each hold its own planes alone?
     virtual bool holds_own_planes() const { return false; }
     /// The components of a field at a point, from a solver that knows them without a grid; false: take them from fields().

@@ -3,6 +3,7 @@
 #include "core/types.hpp"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace weir {
@@ -14,6 +15,8 @@ struct SurfaceMesh {
     std::vector<Vec<3>> normals;              // of each point, outwards, of length one
     std::vector<Vec<3>> velocity;             // of the liquid at each point [m/s]; empty where it is not known
     std::vector<real> thickness;              // liquid along the inward normal of each point [m]
+    /// Over ranks that have a part each: so many points have those before this one; corners and lines are numbers among those of all.
+    std::size_t first = 0;
 };
 
 }  // namespace weir

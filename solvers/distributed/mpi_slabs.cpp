@@ -77,23 +77,6 @@ public:
         count_message(planes.bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
     }
 
-    void gather_to_first(const Cut& cut, const Planes& planes) override {
-        const PlaneType plane(planes.bytes);
-        requests_.clear();
-        for (int r = 1; r < ranks(); ++r) {
-            const int first = cut.begin(r), count = cut.end(r, planes.count) - first;
-            if (rank() == 0) {
-                requests_.emplace_back();
-                MPI_Irecv(plane_at(planes, first), count, plane.type, r, 0, MPI_COMM_WORLD, &requests_.back());
-            } else if (rank() == r) {
-                requests_.emplace_back();
-                MPI_Isend(plane_at(planes, first), count, plane.type, 0, 0, MPI_COMM_WORLD, &requests_.back());
-                count_message(planes.bytes * static_cast<std::size_t>(count));
-            }
-        }
-        wait_for_requests();
-    }
-
     void stream_to_first(const void* own, std::size_t bytes, const std::function<void(const void*, std::size_t)>& sink) override {
         std::vector<std::size_t> sizes(static_cast<std::size_t>(ranks()), bytes), begins(sizes.size() + 1);
         std::iota(begins.begin(), begins.end(), std::size_t{0});

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
 
 namespace weir::output {
 
@@ -227,23 +229,24 @@ VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, con
 }
 
 VtkFile surface_of(const SurfaceMesh& mesh, real t, const FrameOptions& options) {
-    const auto of_first = [](std::size_t count) { return Parts::of_first(of_ranks(count)[0]); };  // only it has the surface
-    const Parts all = of_first(mesh.points.size());
+    const auto parts = [](const auto& list) { return Parts{begins_of_ranks(list.size())}; };
+    const Parts all = parts(mesh.points);
     const auto vectors = [&](const char* name, const std::vector<Vec<3>>& list) {
-        return real_array(options, name, 3, all, [&list](std::size_t i, int c) { return list[i][c]; });
+        return real_array(options, name, 3, all, [&list, first = mesh.first](std::size_t i, int c) { return list[i - first][c]; });
     };
     std::vector<DataArray> data{vectors("Normals", mesh.normals)};
-    if (of_first(mesh.velocity.size()).all() > 0) data.push_back(vectors("velocity", mesh.velocity));
-    data.push_back(real_array(options, "thickness", 1, all, [&mesh](std::size_t i, int) { return mesh.thickness[i]; }));
-    const auto corners_of = [](const auto& list) {
-        return [&list](std::size_t at) -> std::int64_t {
-            const std::size_t corners = list[0].size();
-            return list[at / corners][at % corners];
-        };
+    if (parts(mesh.velocity).all() > 0) data.push_back(vectors("velocity", mesh.velocity));
+    data.push_back(
+        real_array(options, "thickness", 1, all, [&mesh, first = mesh.first](std::size_t i, int) { return mesh.thickness[i - first]; }));
+    const auto cells = [&](const auto& list) {
+        const std::size_t corners = std::tuple_size_v<typename std::decay_t<decltype(list)>::value_type>;
+        const Parts part = parts(list);
+        return cells_of(part, corners, [&list, corners, first = part.begin(slabs().rank())](std::size_t at) {
+            return static_cast<std::int64_t>(list[at / corners - first][at % corners]);
+        });
     };
-    return points(std::move(data), " Normals=\"Normals\"", vectors("position", mesh.points), no_cells(),
-                  cells_of(of_first(mesh.lines.size()), 2, corners_of(mesh.lines)),
-                  cells_of(of_first(mesh.corners.size()), 3, corners_of(mesh.corners)), t);
+    return points(std::move(data), " Normals=\"Normals\"", vectors("position", mesh.points), no_cells(), cells(mesh.lines),
+                  cells(mesh.corners), t);
 }
 
 }  // namespace weir::output

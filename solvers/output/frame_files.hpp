@@ -16,7 +16,8 @@ VtkFile image_of(const FieldSet& fields, real t, const FrameOptions& options);
 VtkFile face_image_of(const FieldSet& fields, int axis, real t, const FrameOptions& options);
 /// One particle set: vertices at "position", and its other fields. All ranks ask for it together.
 VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, const FrameOptions& options);
-/// Triangles with "Normals", "velocity" where it is known, and "thickness" at their corners. The first rank has the surface.
+/// Triangles with "Normals", "velocity" where it is known, and "thickness" at their corners; over ranks each has a part. All ranks ask for
+/// it together.
 VtkFile surface_of(const SurfaceMesh& mesh, real t, const FrameOptions& options);
 
 /// Whether `options` choose this field.

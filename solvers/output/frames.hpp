@@ -30,7 +30,7 @@ struct FrameOptions {
     /// 1 for each of the cells [begin, end), which are whole planes, that a solid takes at a time: ParaView draws nothing there. Empty:
     /// there are no solids.
     std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t, std::size_t begin, std::size_t end)> solid = {};
-    /// The liquid's surface at a time, written as liquid_surface.pvd; over ranks the first's. Empty: the scene names none.
+    /// The liquid's surface at a time, written as liquid_surface.pvd; over ranks each has its part. Empty: the scene names none.
     std::function<const SurfaceMesh&(const FieldSet& fields, real t)> surface = {};
 };
 

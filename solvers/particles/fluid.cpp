@@ -134,23 +134,14 @@ void Fluid<D>::deal(Fluid& part) const {
 }
 
 template <int D>
-void Fluid<D>::gather(Fluid& all, bool to_first) const {
-    const auto gathered = [&](const std::vector<real>& own) {
-        if (!to_first) return of_all_ranks(own);
-        std::vector<real> list;
-        slabs().stream_to_first(own.data(), own.size() * sizeof(real), [&](const void* bytes, std::size_t count) {
-            const auto* numbers = static_cast<const real*>(bytes);
-            list.insert(list.end(), numbers, numbers + count / sizeof(real));
-        });
-        return list;
-    };
+void Fluid<D>::gather(Fluid& all) const {
     all.take_setting(*this);
-    const std::vector<real> places = gathered(place);
+    const std::vector<real> places = of_all_ranks(place);
     std::vector<int> at(places.empty() ? 0 : static_cast<std::size_t>(next_place), -1), order;  // who stands there
     for (std::size_t i = 0; i < places.size(); ++i) at[static_cast<std::size_t>(places[i])] = static_cast<int>(i);
     std::copy_if(at.begin(), at.end(), std::back_inserter(order), [](int i) { return i >= 0; });
     const auto fill = [&](std::vector<real>& to, const std::vector<real>& own) {
-        const std::vector<real> list = gathered(own);
+        const std::vector<real> list = of_all_ranks(own);
         to.resize(order.size());
         parallel_for(0, static_cast<int>(order.size()),
                      [&](int k) { to[static_cast<std::size_t>(k)] = list[static_cast<std::size_t>(order[static_cast<std::size_t>(k)])]; });

@@ -64,8 +64,8 @@ struct Fluid {
         if (warm) f(enthalpy);
         if (shared) f(place);
     }
-    /// The particles of all ranks as one process has them, to all ranks or to the first alone; all call it together.
-    void gather(Fluid& all, bool to_first) const;
+    /// The particles of all ranks as one process has them, to all ranks; all call it together.
+    void gather(Fluid& all) const;
     /// Of the particles of all ranks as one process has them each rank as many as any other; all call it together.
     void deal(Fluid& part) const;
     /// Takes out the particles for which gone(i) holds; the others keep their order.

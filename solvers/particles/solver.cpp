@@ -64,16 +64,16 @@ void ParticleSolver<D>::restore(const Checkpoint& from) {
     if (heat_) heat_->restore(from);
 }
 
-/// Each has its part; or the first rank has all, and the others what they own, which nobody reads.
+/// Each has its part.
 template <int D>
 class HostSolver<D>::Brought final : public Solver::Brought {
 public:
-    Brought(const HostSolver& solver, bool in_parts) : solver_(solver) {
+    explicit Brought(const HostSolver& solver) : solver_(solver) {
         solver_.whole_ = std::make_unique<Fluid<D>>();
-        in_parts ? solver.fluid_.deal(*solver_.whole_) : solver.fluid_.gather(*solver_.whole_, true);
-        solver_.in_parts_ = in_parts, solver_.brought_ = !in_parts;
+        solver.fluid_.deal(*solver_.whole_);
+        solver_.in_parts_ = true;
     }
-    ~Brought() override { solver_.whole_.reset(), solver_.in_parts_ = solver_.brought_ = false; }
+    ~Brought() override { solver_.whole_.reset(), solver_.in_parts_ = false; }
     Brought(const Brought&) = delete;
     Brought& operator=(const Brought&) = delete;
 
@@ -83,19 +83,14 @@ private:
 
 template <int D>
 std::unique_ptr<Solver::Brought> HostSolver<D>::show_in_parts() const {
-    return fluid_.shared ? std::make_unique<Brought>(*this, true) : nullptr;
-}
-template <int D>
-std::unique_ptr<Solver::Brought> HostSolver<D>::bring_to_first() const {
-    return fluid_.shared ? std::make_unique<Brought>(*this, false) : nullptr;
+    return fluid_.shared ? std::make_unique<Brought>(*this) : nullptr;
 }
 
 template <int D>
 const Fluid<D>& HostSolver<D>::whole() const {
-    if (brought_ && slabs().rank() > 0) return fluid_;
     if (!whole_) {
         auto all = std::make_unique<Fluid<D>>();
-        fluid_.gather(*all, false);
+        fluid_.gather(*all);
         whole_ = std::move(all);
     }
     return *whole_;

@@ -96,7 +96,6 @@ public:
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
     std::unique_ptr<Solver::Brought> show_in_parts() const final;
-    std::unique_ptr<Solver::Brought> bring_to_first() const final;
     bool checks_itself() const final { return fluid_.shared; }
     Hand* hand() const final { return hand_.get(); }
 
@@ -141,7 +140,6 @@ protected:
 private:
     class Brought;
     mutable std::unique_ptr<Fluid<D>> whole_;  // as long as somebody looks
-    mutable bool brought_ = false;             // to the first rank alone
 };
 
 }  // namespace weir::particles

@@ -1,5 +1,6 @@
 #include "reconstruction/contour_flat.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace weir::reconstruction {
@@ -9,15 +10,15 @@ namespace {
 /// The point at which each side between two samples is crossed: made when it is first asked for.
 class Crossings {
 public:
-    Crossings(const Samples& samples, SurfaceMesh& mesh) : samples_(samples), mesh_(mesh), along_{points(), points()} {}
+    Crossings(const Samples& samples, PlaneRange rows, SurfaceMesh& mesh)
+        : samples_(samples), rows_(rows), mesh_(mesh), along_{points(), points()} {}
 
     /// Of the side from sample (i, j) to the next along axis a.
     int point(int i, int j, std::size_t a) {
-        int& number = along_[a][samples_.linear(i, j, 0)];
+        int& number = along_[a][samples_.linear(i, j - rows_.begin, 0)];
         if (number >= 0) return number;
         number = static_cast<int>(mesh_.points.size());
-        const real here = real(samples_.depth[samples_.linear(i, j, 0)]),
-                   next = real(samples_.depth[samples_.linear(i + (a == 0), j + (a == 1), 0)]);
+        const real here = real(samples_(i, j, 0)), next = real(samples_(i + (a == 0), j + (a == 1), 0));
         Vec<3> x = samples_.position(i, j, 0);
         x[static_cast<int>(a)] += samples_.spacing[a] * here / (here - next);
         mesh_.points.push_back(x);
@@ -25,21 +26,25 @@ public:
     }
 
 private:
-    std::vector<int> points() const { return std::vector<int>(samples_.depth.size(), -1); }
+    std::vector<int> points() const { return std::vector<int>(samples_.linear(0, rows_.end - rows_.begin, 0), -1); }
 
     const Samples& samples_;
+    PlaneRange rows_;
     SurfaceMesh& mesh_;
     std::array<std::vector<int>, 2> along_;
 };
 
 }  // namespace
 
-void contour_flat(const Samples& samples, SurfaceMesh& mesh) {
-    Crossings crossings(samples, mesh);
+Piece contour_flat(const Samples& samples, SurfaceMesh& mesh) {
+    mesh.points.clear(), mesh.lines.clear();
+    const PlaneRange layers = samples.layers;
+    if (layers.begin >= layers.end) return {};
+    const PlaneRange rows{std::max(0, layers.begin - 2), std::min(samples.n[1], layers.end + 2)};
+    Crossings crossings(samples, rows, mesh);
     const auto cell = [&](int i, int j) {
         // corners and sides against the clock from the lower left
-        const std::array<float, 4> f{samples.depth[samples.linear(i, j, 0)], samples.depth[samples.linear(i + 1, j, 0)],
-                                     samples.depth[samples.linear(i + 1, j + 1, 0)], samples.depth[samples.linear(i, j + 1, 0)]};
+        const std::array<float, 4> f{samples(i, j, 0), samples(i + 1, j, 0), samples(i + 1, j + 1, 0), samples(i, j + 1, 0)};
         const auto side = [&](std::size_t s) {
             return s == 0   ? crossings.point(i, j, 0)
                    : s == 1 ? crossings.point(i + 1, j, 1)
@@ -58,8 +63,17 @@ void contour_flat(const Samples& samples, SurfaceMesh& mesh) {
             mesh.lines.push_back({side(s), side(to)});
         }
     };
-    for (int j = 0; j + 1 < samples.n[1]; ++j)
+    std::vector<std::size_t> points, lines;  // before each row of cells
+    for (int j = rows.begin; j + 1 < rows.end; ++j) {
+        points.push_back(mesh.points.size()), lines.push_back(mesh.lines.size());
         for (int i = 0; i + 1 < samples.n[0]; ++i) cell(i, j);
+    }
+    points.push_back(mesh.points.size()), lines.push_back(mesh.lines.size());
+    const auto before = [&](const std::vector<std::size_t>& list, int row) {
+        return list[static_cast<std::size_t>(std::clamp(row, rows.begin, rows.end - 1) - rows.begin)];
+    };
+    return piece_of(
+        layers, [&](int row) { return before(points, row); }, before(lines, layers.begin), before(lines, layers.end));
 }
 
 }  // namespace weir::reconstruction

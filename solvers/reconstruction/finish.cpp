@@ -1,10 +1,12 @@
 #include "reconstruction/finish.hpp"
 
+#include "core/owners.hpp"
 #include "core/parallel.hpp"
 #include "reconstruction/triangle.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace weir::reconstruction {
 
@@ -32,20 +34,40 @@ struct Neighbours {
 
 }  // namespace
 
-void smooth(SurfaceMesh& mesh, const std::vector<real>& weight, int passes) {
-    if (passes == 0 || mesh.points.empty()) return;
+namespace {
+
+/// Points of the layers beside this rank's, from their owners.
+void bring_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut& cut) {
+    const auto [begin, end] = layers_of(cut, slabs().rank());
+    if (begin == end) return;
+    std::vector<Parcel> parcels;
+    const auto meet = [&](int layer, std::size_t first, std::size_t last, std::size_t from, std::size_t to) {
+        if (layer < 0 || layer + 1 >= cut.planes()) return;
+        parcels.push_back({owner_of(cut, layer), points.data() + first, (last - first) * sizeof(Vec<3>), points.data() + from,
+                           (to - from) * sizeof(Vec<3>)});
+    };
+    meet(begin - 1, piece.begin, piece.first_end, piece.below, piece.begin);
+    meet(end, piece.last_begin, piece.end, piece.end, piece.above);
+    slabs().trade(parcels);
+}
+
+}  // namespace
+
+void smooth(SurfaceMesh& mesh, const Piece& piece, const std::vector<real>& weight, int passes, const Cut& cut) {
+    if (passes == 0) return;
     const Neighbours around(mesh);
-    std::vector<Vec<3>> moved(mesh.points.size());
+    std::vector<Vec<3>> moved = mesh.points;
     const auto step = [&](real share) {
-        parallel_for(0, static_cast<int>(mesh.points.size()), [&](int p) {
-            const auto at = static_cast<std::size_t>(p);
+        parallel_for(0, static_cast<int>(piece.points()), [&](int p) {
+            const auto own = static_cast<std::size_t>(p), at = piece.begin + own;
             Vec<3> sum{};
             for (int i = around.start[at]; i < around.start[at + 1]; ++i)
                 sum += mesh.points[static_cast<std::size_t>(around.list[static_cast<std::size_t>(i)])];
             const int count = around.start[at + 1] - around.start[at];
-            moved[at] = mesh.points[at] + (share * weight[at]) * (sum / real(count) - mesh.points[at]);
+            moved[at] = mesh.points[at] + (share * weight[own]) * (sum / real(count) - mesh.points[at]);
         });
         mesh.points.swap(moved);
+        if (!cut.empty()) bring_points(mesh.points, piece, cut);
     };
     for (int pass = 0; pass < passes; ++pass) step(forward), step(back);
 }
@@ -67,24 +89,82 @@ void add_normals(SurfaceMesh& mesh) {
     });
 }
 
-void add_thickness(SurfaceMesh& mesh, const Samples& samples) {
-    mesh.thickness.resize(mesh.points.size());
-    const real step = 0.5 * std::min({samples.spacing[0], samples.spacing[1], samples.spacing[2]});
-    const int most = 2 * (samples.n[0] + samples.n[1] + samples.n[2]);  // a line inside a box is no longer than its sides together
-    parallel_for(0, static_cast<int>(mesh.points.size()), [&](int p) {
-        const auto at = static_cast<std::size_t>(p);
-        real before = 0;
-        int i = 1;
-        for (; i <= most; ++i) {
-            const real here = samples.at(mesh.points[at] - (i * step) * mesh.normals[at]);
-            if (here <= 0) {
-                mesh.thickness[at] = step * (before > 0 ? i - 1 + before / (before - here) : i - 1);
-                return;
-            }
-            before = here;
+namespace {
+
+/// A line into the liquid, from a point of some rank's, and where it is looked at next.
+struct Ray {
+    Vec<3> from, outwards;
+    std::size_t point;
+    int rank;
+    int step;     // from 1
+    real before;  // the samples' value a step before
+};
+
+/// How rays go on, step by step.
+struct March {
+    const Samples& samples;
+    real step = 0.5 * std::min({samples.spacing[0], samples.spacing[1], samples.spacing[2]});
+    int most = 2 * (samples.n[0] + samples.n[1] + samples.n[2]);  // a line inside a box is no longer than its sides together
+
+    Vec<3> place(const Ray& ray) const { return ray.from - (ray.step * step) * ray.outwards; }
+    /// How far the ray goes in liquid; -1 where it leaves the layers that are known here, and where it is then.
+    real go(Ray& ray, bool knows_all) const {
+        for (; ray.step <= most; ++ray.step) {
+            const Vec<3> x = place(ray);
+            if (!knows_all && !knows(samples.layer_of(x))) return -1;
+            const real here = samples.at(x);
+            if (here <= 0) return step * (ray.before > 0 ? ray.step - 1 + ray.before / (ray.before - here) : ray.step - 1);
+            ray.before = here;
         }
-        mesh.thickness[at] = step * most;
+        return step * most;
+    }
+
+private:
+    bool knows(int layer) const { return layer >= samples.layers.begin && layer < samples.layers.end; }
+};
+
+/// How far one has come.
+struct Arrived {
+    std::size_t point;
+    real thickness;
+};
+
+/// Rays that have left this rank's layers go from owner to owner; what they find comes back.
+void go_on_elsewhere(const std::vector<Ray>& left, const March& march, const Cut& cut, std::vector<real>& thickness) {
+    const auto ranks = static_cast<std::size_t>(cut.ranks());
+    ListsOfRanks<Ray> leaving(ranks);
+    const auto leave = [&](const Ray& ray) {
+        leaving[static_cast<std::size_t>(owner_of(cut, march.samples.layer_of(march.place(ray))))].push_back(ray);
+    };
+    for (const Ray& ray : left) leave(ray);
+    ListsOfRanks<Arrived> arrived(ranks);
+    while (slabs().largest(std::any_of(leaving.begin(), leaving.end(), [](const auto& list) { return !list.empty(); })) > 0) {
+        const ListsOfRanks<Ray> come = trade_lists(std::exchange(leaving, ListsOfRanks<Ray>(ranks)));
+        for (const auto& list : come)
+            for (Ray ray : list) {
+                const real length = march.go(ray, false);
+                length < 0 ? leave(ray) : arrived[static_cast<std::size_t>(ray.rank)].push_back({ray.point, length});
+            }
+    }
+    for (const auto& list : trade_lists(std::move(arrived)))
+        for (const Arrived& one : list) thickness[one.point] = one.thickness;
+}
+
+}  // namespace
+
+void add_thickness(SurfaceMesh& mesh, const Piece& piece, const Samples& samples, const Cut& cut) {
+    mesh.thickness.assign(mesh.points.size(), 0);
+    const March march{samples};
+    std::vector<Ray> left;
+    parallel_for(0, static_cast<int>(piece.points()), [&](int p) {
+        const std::size_t at = piece.begin + static_cast<std::size_t>(p);
+        Ray ray{mesh.points[at], mesh.normals[at], at, slabs().rank(), 1, 0};
+        mesh.thickness[at] = march.go(ray, cut.empty());
+        if (mesh.thickness[at] >= 0) return;
+#pragma omp critical
+        left.push_back(ray);
     });
+    if (!cut.empty()) go_on_elsewhere(left, march, cut, mesh.thickness);
 }
 
 }  // namespace weir::reconstruction

@@ -1,5 +1,7 @@
 #include "reconstruction/options.hpp"
 
+#include "reconstruction/kernel.hpp"
+
 #include <stdexcept>
 
 namespace weir::reconstruction {
@@ -10,6 +12,12 @@ Method method_named(std::string_view name) {
     if (name == "anisotropic") return Method::anisotropic;
     if (name == "density") return Method::density;
     throw std::logic_error("no surface is made by \"" + std::string(name) + "\"");
+}
+
+real read_beside(const Options& options) {
+    if (options.method == Method::zhu_bridson) return reach + options.cell + reach;
+    if (options.method == Method::density) return reach + options.cell + reach + 2 * reach;
+    return far_reach * longest + farthest_move + options.cell + far_reach + 2 * reach;
 }
 
 std::optional<Options> options_of(const scene::Scene& scene) {

@@ -19,6 +19,8 @@ struct Options {
 
 /// What the scene says; nothing where it does not name a surface.
 std::optional<Options> options_of(const scene::Scene& scene);
+/// How far beyond the planes of samples that a rank has it reads particles, to a cell of its sort [spacings].
+real read_beside(const Options& options);
 /// By name; throws std::logic_error where there is none.
 Method method_named(std::string_view name);
 

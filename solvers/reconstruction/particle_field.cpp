@@ -10,10 +10,11 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// Samples of a block along each axis: its sums stay in the first-level cache. Rows have room for a vector on both sides, so that no
-/// particle's row needs to be cut.
+/// Samples of a block along each axis: its sums stay in the first-level cache; as many along z, and of a flat liquid along y. Rows have
+/// room for a vector on both sides, so that no particle's row needs to be cut.
 constexpr int block_x = 16, block_y = 8, block_z = 8;
 constexpr int lanes = 8, row_length = lanes + block_x + lanes;
+static_assert(block_y == block_z);
 constexpr int rows_of_block = block_y * block_z;
 /// A cell whose particles are at least this part of what a liquid at rest has there is full.
 constexpr float full_part = 0.5F;
@@ -42,11 +43,41 @@ int blocks_along(int samples, int length) { return (samples + length - 1) / leng
 
 }  // namespace
 
+void ParticleField::lay(const particles::Box& box, std::int64_t count, real spacing, const Samples& samples) {
+    grid_ = particles::cover_box(box, static_cast<int>(count), reach * spacing);
+    origin_ = samples.first;
+    step_ = static_cast<float>(samples.spacing[0] / spacing);
+    cell_width_ = static_cast<float>(1 / (grid_.per_cell * spacing));
+    for (std::size_t a = 0; a < 3; ++a) cell_origin_[a] = static_cast<float>((grid_.origin[a] - origin_[a]) / spacing);
+}
+
+PlaneRange ParticleField::cells_read(const Samples& samples, PlaneRange planes) const {
+    if (planes.begin >= planes.end) return {0, 0};
+    const int count = samples.n[slowest()], cells = grid_.cells[slowest()];
+    const auto at = [&](int plane) { return step_ * static_cast<float>(plane); };
+    // those in reach, and those that are read to measure them
+    PlaneRange read = cells_between(slowest(), at(planes.begin) - outermost() - step_, at(planes.end) + outermost() + step_);
+    const float radius = method_ == Method::anisotropic ? static_cast<float>(far_reach) : static_cast<float>(reach);
+    const int measured = method_ == Method::zhu_bridson ? 0 : static_cast<int>(std::ceil(radius / cell_width_)) + 1;
+    read.begin -= measured, read.end += measured;
+    // those that tell whether a block is deep in the liquid, all of it
+    const int first = planes.begin / block_z * block_z, last = std::min(count, (planes.end + block_z - 1) / block_z * block_z);
+    const PlaneRange blocks = cells_between(slowest(), at(first), at(last - 1));
+    return {std::max(0, std::min(read.begin, blocks.begin - 1)), std::min(cells, std::max(read.end, blocks.end + 1))};
+}
+
+int ParticleField::cell_plane(real x) const {
+    const std::size_t a = slowest();
+    return std::min(static_cast<int>((x - grid_.origin[a]) * grid_.per_cell), grid_.cells[a] - 1);
+}
+
 void ParticleField::compute(const Cloud& cloud, Samples& samples) {
     cloud_ = &cloud;
-    samples.depth.resize(static_cast<std::size_t>(samples.n[0]) * static_cast<std::size_t>(samples.n[1]) *
-                         static_cast<std::size_t>(samples.n[2]));
-    sort(cloud, samples);
+    blocks_.clear();
+    if (samples.own.begin >= samples.own.end) return;
+    const bool all = samples.own == PlaneRange{0, samples.n[slowest()]};
+    read_ = all ? PlaneRange{0, grid_.cells[slowest()]} : cells_read(samples, samples.own);
+    sort(cloud);
     find_deep_cells();
     find_blocks(samples);
     measure_particles();
@@ -58,16 +89,14 @@ float ParticleField::outermost() const {
     return static_cast<float>(method_ == Method::anisotropic ? far_reach * longest + farthest_move : reach);
 }
 
-void ParticleField::sort(const Cloud& cloud, const Samples& samples) {
-    const particles::CellGrid grid =
-        particles::cover_box(cells_.box(cloud.coordinates(), cloud.count()), cloud.count(), reach * cloud.spacing);
-    cells_.sort(cloud.coordinates(), cloud.count(), grid);
-    origin_ = samples.first;
-    step_ = static_cast<float>(samples.spacing[0] / cloud.spacing);
-    cell_width_ = static_cast<float>(1 / (grid.per_cell * cloud.spacing));
+void ParticleField::sort(const Cloud& cloud) {
+    const int plane = grid_.cells[0] * grid_.cells[1];
+    if (flat_)  // its rows of cells are in many layers
+        cells_.sort(cloud.coordinates(), cloud.count(), grid_);
+    else
+        cells_.sort(cloud.coordinates(), cloud.count(), grid_, plane * read_.begin, plane * read_.end);
     const std::vector<int>& order = cells_.order();
     for (std::size_t a = 0; a < 3; ++a) {
-        cell_origin_[a] = static_cast<float>((grid.origin[a] - origin_[a]) / cloud.spacing);
         x_[a].resize(order.size());
         const real per_spacing = 1 / cloud.spacing;
         parallel_for(0, cloud.count(), [&](int i) {
@@ -79,24 +108,23 @@ void ParticleField::sort(const Cloud& cloud, const Samples& samples) {
 
 /// A cell is deep where it and all around it are full: what lies in it is inside.
 void ParticleField::find_deep_cells() {
-    const auto& n = cells_.cells();
+    const auto& n = grid_.cells;
     const auto& start = cells_.start();
     const float enough = full_part * cell_width_ * cell_width_ * cell_width_;
-    const auto count = static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+    const std::size_t count = start.size() - 1;
     full_.resize(count), deep_.assign(count, 0), needed_.assign(count, 0);
     for (std::size_t c = 0; c < count; ++c) full_[c] = static_cast<float>(start[c + 1] - start[c]) >= enough;
-    parallel_for(1, n[2] - 1, [&](int k) {
+    const PlaneRange ks = flat_ ? PlaneRange{0, n[2]} : read_;
+    parallel_for(ks.begin + 1, ks.end - 1, [&](int k) {
         for (int j = 1; j + 1 < n[1]; ++j)
             for (int i = 1; i + 1 < n[0]; ++i) {
                 bool all = true;
                 for (int dk = -1; dk <= 1; ++dk)
                     for (int dj = -1; dj <= 1; ++dj) {
-                        const char* row = full_.data() + (static_cast<std::ptrdiff_t>(k + dk) * n[1] + j + dj) * n[0] + i;
+                        const char* row = full_.data() + row_of(j + dj, k + dk) + i;
                         all = all && row[-1] && row[0] && row[1];
                     }
-                deep_[(static_cast<std::size_t>(k) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(j)) *
-                          static_cast<std::size_t>(n[0]) +
-                      static_cast<std::size_t>(i)] = all;
+                deep_[row_of(j, k) + static_cast<std::size_t>(i)] = all;
             }
     });
 }
@@ -110,61 +138,65 @@ std::array<float, 3> ParticleField::high(const Block& block) const {
             step_ * static_cast<float>(block.end[2] - 1)};
 }
 
-ParticleField::CellBox ParticleField::cells_in(const std::array<float, 3>& lo, const std::array<float, 3>& hi) const {
-    CellBox box{{}, {}, false};
+PlaneRange ParticleField::cells_between(std::size_t axis, float lo, float hi) const {
     // a hair more: cells were chosen in double precision, and a particle may lie a rounding beyond its cell here
     constexpr float hair = 1e-3F;
+    return {static_cast<int>(std::floor((lo - hair - cell_origin_[axis]) / cell_width_)),
+            static_cast<int>(std::floor((hi + hair - cell_origin_[axis]) / cell_width_)) + 1};
+}
+
+ParticleField::CellBox ParticleField::cells_in(const std::array<float, 3>& lo, const std::array<float, 3>& hi) const {
+    CellBox box{{}, {}, false};
     for (std::size_t a = 0; a < 3; ++a) {
-        const int begin = static_cast<int>(std::floor((lo[a] - hair - cell_origin_[a]) / cell_width_));
-        const int end = static_cast<int>(std::floor((hi[a] + hair - cell_origin_[a]) / cell_width_)) + 1;
-        box.begin[a] = std::max(0, begin), box.end[a] = std::min(cells_.cells()[a], end);
-        box.beyond = box.beyond || begin < 0 || end > cells_.cells()[a];
+        const PlaneRange cells = cells_between(a, lo[a], hi[a]);
+        const PlaneRange all = a == slowest() ? read_ : PlaneRange{0, grid_.cells[a]};
+        box.begin[a] = std::max(all.begin, cells.begin), box.end[a] = std::min(all.end, cells.end);
+        box.beyond = box.beyond || cells.begin < 0 || cells.end > grid_.cells[a];
     }
     return box;
 }
 
 template <class F>
 void ParticleField::for_runs(const CellBox& box, const F& f) const {
-    const auto& n = cells_.cells();
     if (box.begin[0] >= box.end[0]) return;
     for (int k = box.begin[2]; k < box.end[2]; ++k)
         for (int j = box.begin[1]; j < box.end[1]; ++j) {
-            const std::size_t row = (static_cast<std::size_t>(k) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(j)) *
-                                    static_cast<std::size_t>(n[0]);
+            const std::size_t row = row_of(j, k);
             const int first = cells_.start()[row + static_cast<std::size_t>(box.begin[0])];
             const int behind = cells_.start()[row + static_cast<std::size_t>(box.end[0])];
             if (first < behind) f(first, behind);
         }
 }
 
+bool ParticleField::is_deep(const Block& whole) const {
+    const CellBox box = cells_in(low(whole), high(whole));
+    if (box.beyond) return false;
+    for (int k = box.begin[2]; k < box.end[2]; ++k)
+        for (int j = box.begin[1]; j < box.end[1]; ++j)
+            for (int i = box.begin[0]; i < box.end[0]; ++i)
+                if (!deep_[row_of(j, k) + static_cast<std::size_t>(i)]) return false;
+    return true;
+}
+
 void ParticleField::find_blocks(const Samples& samples) {
-    blocks_.clear();
     const std::array<int, 3> length{block_x, block_y, block_z};
-    const auto all_deep = [&](const CellBox& box) {
-        if (box.beyond) return false;
-        const auto& n = cells_.cells();
-        for (int k = box.begin[2]; k < box.end[2]; ++k)
-            for (int j = box.begin[1]; j < box.end[1]; ++j)
-                for (int i = box.begin[0]; i < box.end[0]; ++i)
-                    if (!deep_[(static_cast<std::size_t>(k) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(j)) *
-                                   static_cast<std::size_t>(n[0]) +
-                               static_cast<std::size_t>(i)])
-                        return false;
-        return true;
-    };
     const float far = outermost();
     const float dry = method_ == Method::zhu_bridson ? -1.0F : std::max(-1.0F, profile_of(method_, flat_).depth(0.0F));
+    const std::size_t cut = slowest();
+    std::array<int, 3> first{0, 0, 0}, last = samples.n;
+    first[cut] = samples.own.begin, last[cut] = samples.own.end;
     Block block{};
-    for (int k = 0; k < blocks_along(samples.n[2], block_z); ++k)
-        for (int j = 0; j < blocks_along(samples.n[1], block_y); ++j)
+    for (int k = first[2] / block_z; k < blocks_along(last[2], block_z); ++k)
+        for (int j = first[1] / block_y; j < blocks_along(last[1], block_y); ++j)
             for (int i = 0; i < blocks_along(samples.n[0], block_x); ++i) {
                 const std::array<int, 3> number{i, j, k};
                 for (std::size_t a = 0; a < 3; ++a) {
                     block.begin[a] = number[a] * length[a];
                     block.end[a] = std::min(samples.n[a], block.begin[a] + length[a]);
                 }
+                const bool inside = is_deep(block);  // over ranks too all of it
+                block.begin[cut] = std::max(block.begin[cut], first[cut]), block.end[cut] = std::min(block.end[cut], last[cut]);
                 auto lo = low(block), hi = high(block);
-                const bool inside = all_deep(cells_in(lo, hi));
                 for (std::size_t a = 0; a < 3; ++a) lo[a] -= far, hi[a] += far;
                 bool any = false;
                 if (!inside) for_runs(cells_in(lo, hi), [&](int, int) { any = true; });
@@ -180,13 +212,9 @@ void ParticleField::mark_needed(const Block& block) {
     // a step more: a point of the surface may lie between the block's last sample and the next one
     for (std::size_t a = 0; a < 3; ++a) lo[a] -= outermost() + step_, hi[a] += outermost() + step_;
     const CellBox box = cells_in(lo, hi);
-    const auto& n = cells_.cells();
     for (int k = box.begin[2]; k < box.end[2]; ++k)
         for (int j = box.begin[1]; j < box.end[1]; ++j)
-            for (int i = box.begin[0]; i < box.end[0]; ++i)
-                needed_[(static_cast<std::size_t>(k) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(j)) *
-                            static_cast<std::size_t>(n[0]) +
-                        static_cast<std::size_t>(i)] = 1;
+            for (int i = box.begin[0]; i < box.end[0]; ++i) needed_[row_of(j, k) + static_cast<std::size_t>(i)] = 1;
 }
 
 void ParticleField::measure_particles() {

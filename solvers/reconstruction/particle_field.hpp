@@ -2,33 +2,29 @@
 // threads, in blocks of samples. Blocks far from any particle, and blocks among so many that they are inside, are not computed.
 #pragma once
 #include "particles/cell_sort.hpp"
+#include "reconstruction/cloud.hpp"
 #include "reconstruction/kernel.hpp"
 #include "reconstruction/options.hpp"
 #include "reconstruction/samples.hpp"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace weir::reconstruction {
 
-/// The particles of one instant, and behind them their images beyond walls and sides that repeat.
-struct Cloud {
-    std::array<std::vector<real>, 3> x;  // [m]
-    std::vector<int> source;             // of each image: the particle that it is one of
-    int own = 0;                         // particles that are no images
-    real spacing = 0;                    // at rest [m]
-
-    int count() const { return static_cast<int>(x[0].size()); }
-    particles::Coordinates coordinates() const { return {x[0].data(), x[1].data(), x[2].data()}; }
-    int particle(int i) const { return i < own ? i : source[static_cast<std::size_t>(i - own)]; }
-};
-
 class ParticleField {
 public:
     /// `flat`: the lattice is one plane, and the cloud has layers on both sides of it.
     explicit ParticleField(Method method, bool flat = false) : method_(method), flat_(flat) {}
-    /// Fills samples.depth of a lattice that is laid already. The cloud must live as long as means are asked for.
+    /// Where the cells of all particles are, which have this box and number, on a lattice that is laid already.
+    void lay(const particles::Box& box, std::int64_t count, real spacing, const Samples& samples);
+    /// Over ranks: the planes of cells whose particles are read by whoever computes these planes of samples, and asks for means between
+    /// them and the next one; and which plane of cells a place is in.
+    PlaneRange cells_read(const Samples& samples, PlaneRange planes) const;
+    int cell_plane(real x) const;
+    /// Fills the own planes of samples from the particles that are read for them. The cloud must live as long as means are asked for.
     void compute(const Cloud& cloud, Samples& samples);
     /// The mean over the particles in reach of a point, weighted by their kernels, of their velocity [m/s]; 0 where there is none.
     Vec<3> velocity_at(const Vec<3>& x, const std::array<std::span<const real>, 3>& velocity) const;
@@ -40,7 +36,7 @@ public:
 
 private:
     struct Block {
-        std::array<int, 3> begin, end;  // samples
+        std::array<int, 3> begin, end;  // samples that are this rank's
         float value;                    // where it is not computed
         bool computed;
     };
@@ -49,9 +45,10 @@ private:
         std::array<float, 6> stretch;
         float peak;
     };
-    void sort(const Cloud& cloud, const Samples& samples);
+    void sort(const Cloud& cloud);
     void find_deep_cells();
     void find_blocks(const Samples& samples);
+    bool is_deep(const Block& whole) const;
     void mark_needed(const Block& block);
     void measure_particles();
     void measure(int i);
@@ -65,6 +62,16 @@ private:
         std::array<int, 3> begin, end;
         bool beyond;
     };
+    /// Of these [spacings] along an axis.
+    PlaneRange cells_between(std::size_t axis, float lo, float hi) const;
+    std::size_t slowest() const { return flat_ ? 1 : 2; }
+    /// The number of the cell that a row begins with, among those that are sorted.
+    std::size_t row_of(int j, int k) const {
+        const auto& n = grid_.cells;
+        return (static_cast<std::size_t>(k) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(j)) *
+                   static_cast<std::size_t>(n[0]) -
+               static_cast<std::size_t>(cells_.first_cell());
+    }
     CellBox cells_in(const std::array<float, 3>& lo, const std::array<float, 3>& hi) const;
     /// f(first, behind last) for sorted particles in the cells of a box, a run of cells at a time, in the order of the sort.
     template <class F>
@@ -79,6 +86,8 @@ private:
     Method method_;
     bool flat_;
     const Cloud* cloud_ = nullptr;
+    particles::CellGrid grid_;
+    PlaneRange read_{0, 0};  // planes of cells
     particles::CellSort cells_;
     Vec<3> origin_{};                         // the first sample [m]
     float step_ = 1;                          // between samples [spacings]

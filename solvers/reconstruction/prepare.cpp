@@ -12,35 +12,6 @@ namespace {
 /// In units of Samples::unit; the next sample is at most 1 on the other side.
 constexpr float nearest_to_zero = 2e-3F;
 
-template <class F>
-void for_samples(Samples& samples, const F& f) {
-    parallel_for(0, samples.n[2], [&](int k) {
-        for (int j = 0; j < samples.n[1]; ++j)
-            for (int i = 0; i < samples.n[0]; ++i) f(i, j, k, samples.depth[samples.linear(i, j, k)]);
-    });
-}
-
-}  // namespace
-
-real Samples::at(const Vec<3>& x) const {
-    std::array<std::size_t, 3> low{}, step{};
-    std::array<real, 3> part{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const real index = std::clamp((x[a] - first[a]) / spacing[a], 0.0, real(n[a] - 1));
-        low[a] = std::min(static_cast<std::size_t>(index), static_cast<std::size_t>(std::max(0, n[a] - 2)));
-        part[a] = index - real(low[a]);
-        step[a] = n[a] > 1 ? 1 : 0;
-    }
-    const auto wide = static_cast<std::size_t>(n[0]), high = static_cast<std::size_t>(n[1]);
-    const float* f = depth.data() + low[0] + wide * (low[1] + high * low[2]);
-    const std::size_t dx = step[0], dy = step[1] * wide, dz = step[2] * wide * high;
-    const auto along = [&](std::size_t from) { return (1 - part[0]) * real(f[from]) + part[0] * real(f[from + dx]); };
-    const auto over = [&](std::size_t from) { return (1 - part[1]) * along(from) + part[1] * along(from + dy); };
-    return (1 - part[2]) * over(0) + part[2] * over(dz);
-}
-
-namespace {
-
 /// Makes the value change its sign at distance `in` from the inner sample and `out` from the outer one, if the inner one is in the liquid.
 void cross_between(float& inner, float& outer, float in, float out) {
     if (inner <= 0) return;
@@ -53,6 +24,9 @@ void cross_between(float& inner, float& outer, float in, float out) {
 
 void keep_inside(Samples& samples, const Vec<3>& lo, const Vec<3>& hi) {
     const std::array<std::size_t, 3> step{1, samples.linear(0, 1, 0), samples.linear(0, 0, 1)};
+    const auto slowest = static_cast<std::size_t>(samples.slowest());
+    const auto held = [&](std::size_t axis) { return axis == slowest ? samples.held : PlaneRange{0, samples.n[axis]}; };
+    const auto is_held = [&](std::size_t axis, int i) { return i >= held(axis).begin && i < held(axis).end; };
     for (std::size_t a = 0; a < 3; ++a) {
         const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
         for (const bool upper : {false, true}) {
@@ -62,11 +36,14 @@ void keep_inside(Samples& samples, const Vec<3>& lo, const Vec<3>& hi) {
                 return static_cast<float>((upper ? hi[a] - x : x - lo[a]) / samples.unit);
             };
             if (below(last) >= 0) continue;  // the lattice ends before the side
-            parallel_for(0, samples.n[c], [&](int k) {
-                for (int j = 0; j < samples.n[b]; ++j) {
+            if (!is_held(a, before)) continue;
+            const PlaneRange js = held(b), ks = held(c);
+            parallel_for(ks.begin, ks.end, [&](int k) {
+                for (int j = js.begin; j < js.end; ++j) {
                     float* row = samples.depth.data() + static_cast<std::size_t>(k) * step[c] + static_cast<std::size_t>(j) * step[b];
-                    cross_between(row[static_cast<std::size_t>(before) * step[a]], row[static_cast<std::size_t>(last) * step[a]],
-                                  below(before), -below(last));
+                    float nowhere = 0;
+                    float& outer = is_held(a, last) ? row[static_cast<std::size_t>(last) * step[a]] : nowhere;
+                    cross_between(row[static_cast<std::size_t>(before) * step[a]], outer, below(before), -below(last));
                 }
             });
         }
@@ -76,7 +53,8 @@ void keep_inside(Samples& samples, const Vec<3>& lo, const Vec<3>& hi) {
 template <int D>
 void keep_out_of(Samples& samples, const geometry::Solids<D>& solids) {
     if (solids.empty()) return;
-    for_samples(samples, [&](int i, int j, int k, float& f) {
+    for_samples(samples, samples.held, [&](int i, int j, int k) {
+        float& f = samples(i, j, k);
         if (f <= -1) return;
         const Vec<3> at = samples.position(i, j, k);
         Vec<D> x;
@@ -89,7 +67,8 @@ template void keep_out_of(Samples& samples, const geometry::Solids<3>& solids);
 
 void avoid_zero(Samples& samples) {
     const auto& n = samples.n;
-    for_samples(samples, [&](int i, int j, int k, float& f) {
+    for_samples(samples, samples.held, [&](int i, int j, int k) {
+        float& f = samples(i, j, k);
         const bool end = i == 0 || j == 0 || i == n[0] - 1 || j == n[1] - 1 || (n[2] > 1 && (k == 0 || k == n[2] - 1));
         if (std::abs(f) < nearest_to_zero) f = f > 0 ? nearest_to_zero : -nearest_to_zero;
         if (end) f = std::min(f, -nearest_to_zero);

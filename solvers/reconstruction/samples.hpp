@@ -1,29 +1,68 @@
 // A scalar on a lattice: how far each point lies inside the liquid. Its zero is the surface.
 #pragma once
+#include "core/parallel.hpp"
+#include "core/plane_store.hpp"
 #include "core/types.hpp"
 
+#include <algorithm>
 #include <array>
-#include <vector>
+#include <cstddef>
 
 namespace weir::reconstruction {
 
+/// Of a lattice whose planes are cut so, the layers that a rank owns: layer k is between plane k and the next.
+inline PlaneRange layers_of(const Cut& cut, int rank) {
+    return {std::min(cut.begin(rank), cut.planes() - 1), std::min(cut.end(rank, cut.planes()), cut.planes() - 1)};
+}
+
+/// Planes of the slowest axis may be shared by ranks: each owns those between two cuts, and holds two more beyond either.
 struct Samples {
     std::array<int, 3> n{0, 0, 0};  // along each axis, x fastest
     Vec<3> first{};                 // where the first one stands [m]
     std::array<real, 3> spacing{1, 1, 1};
-    real unit = 1;             // [m]
-    std::vector<float> depth;  // inside the liquid, in units; negative outside, cut at -1 and 1
+    real unit = 1;            // [m]
+    PlaneStore<float> depth;  // inside the liquid, in units; negative outside, cut at -1 and 1
+    PlaneRange own{0, 0}, held{0, 0}, layers{0, 0};
 
+    /// Room for all of them; over ranks, where they are cut, for those that this one holds.
+    void make_room(const Cut& cut = {});
+    /// Over ranks: those beyond, from whoever owns them.
+    void bring(const Cut& cut);
+    /// Of space z, of a plane of samples y.
+    int slowest() const { return n[2] > 1 ? 2 : 1; }
+    std::size_t plane() const { return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(slowest() == 2 ? n[1] : 1); }
     std::size_t linear(int i, int j, int k) const {
         return static_cast<std::size_t>(i) +
                static_cast<std::size_t>(n[0]) *
                    (static_cast<std::size_t>(j) + static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(k));
     }
+    float& operator()(int i, int j, int k) { return depth.data()[linear(i, j, k)]; }
+    float operator()(int i, int j, int k) const { return depth.data()[linear(i, j, k)]; }
     Vec<3> position(int i, int j, int k) const {
         return {{first[0] + spacing[0] * i, first[1] + spacing[1] * j, first[2] + spacing[2] * k}};
     }
+    /// Between which samples along an axis a place is, the outermost beyond the lattice: the lower one and how far on.
+    struct Between {
+        std::size_t low;
+        real part;
+    };
+    Between between(std::size_t axis, real x) const;
+    /// The layer in which a place is.
+    int layer_of(const Vec<3>& x) const;
+    /// Whether what is next to a place is known here: it is among this rank's layers, or by them.
+    bool is_near(const Vec<3>& x) const;
     /// Trilinear; the nearest sample's beyond the outermost.
     real at(const Vec<3>& x) const;
 };
+
+/// f(i, j, k) for the samples of these planes, on threads.
+template <class F>
+void for_samples(const Samples& samples, PlaneRange planes, const F& f) {
+    const bool flat = samples.slowest() == 1;
+    parallel_for(planes.begin, planes.end, [&](int plane) {
+        for (int j = flat ? plane : 0; j < (flat ? plane + 1 : samples.n[1]); ++j)
+            for (int i = 0; i < samples.n[0]; ++i) f(i, j, flat ? 0 : plane);
+    });
+}
 
 }  // namespace weir::reconstruction

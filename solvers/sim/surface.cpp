@@ -131,13 +131,6 @@ struct OwnCells {
     }
 };
 
-/// What those of all ranks come to.
-real largest_of_owners(const FieldSet& fields, real own) {
-    if (!fields.cut) return own;
-    const std::vector<real> all = of_ranks(own);
-    return *std::max_element(all.begin(), all.end());
-}
-
 /// Of lines through cell centres.
 real front_of_level_set(const FieldSet& fields, std::span<const real> phi, int axis) {
     const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;

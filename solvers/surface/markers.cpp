@@ -300,23 +300,6 @@ void Markers<D>::gather(const Frame<D>& frame, Markers& all) const {
 }
 
 template <int D>
-void Markers<D>::gather_to_first(const Frame<D>& frame, Markers& all) const {
-    const auto [first, last] = own(frame);
-    std::vector<std::vector<real>*> to;
-    all.for_each_array([&](std::vector<real>& array) { to.push_back(&array); });
-    std::size_t number = 0;
-    for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
-        std::vector<real>& whole = *to[number++];
-        whole.clear();
-        slabs().stream_to_first(array.data() + begin, count * sizeof(real), [&](const void* data, std::size_t bytes) {
-            const std::size_t old = whole.size();
-            whole.resize(old + bytes / sizeof(real));
-            std::memcpy(whole.data() + old, data, bytes);
-        });
-    });
-}
-
-template <int D>
 void Markers<D>::trim() {
     const std::size_t capacity = count() + count() / 8;
     const auto fit = [&](auto& list) {

@@ -58,9 +58,8 @@ public:
     std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Cut& cut, bool leave);
     /// The same of all that is here, which is any part of all markers, in the order of the ranks: a part of a file. Sorts.
     void deal(const Frame<D>& frame, const Cut& cut);
-    /// All markers of all ranks, to `all`, as they are sorted in one process; or to that of the first rank alone.
+    /// All markers of all ranks, to `all`, as they are sorted in one process.
     void gather(const Frame<D>& frame, Markers& all) const;
-    void gather_to_first(const Frame<D>& frame, Markers& all) const;
     /// Those of this rank's own planes: [first, second). Sorted.
     std::pair<std::size_t, std::size_t> own(const Frame<D>& frame) const {
         const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(frame.cells[D - 1]);

@@ -110,36 +110,11 @@ void Water<D>::gather_markers() const {
     markers_whole_ = true;
 }
 
-template <int D>
-std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const {
-    if (!held_.alone()) return nullptr;
-    struct Lent final : Brought {
-        Water& solver;
-        explicit Lent(Water& s) : solver(s) { solver.brought_ = true; }
-        ~Lent() override {
-            const OwnPlanes mine = solver.held_.own();
-            for (int a = 0; a < D; ++a) solver.state_.u[a].store().close();
-            solver.surface_.phi.store().close();
-            solver.all_markers_.for_each_array([](std::vector<real>& array) { std::vector<real>().swap(array); });
-            solver.brought_ = false;
-        }
-    };
-    auto& own = const_cast<Water&>(*this);  // the state stays the same
-    auto lent = std::make_unique<Lent>(own);
-    make_whole();
-    const OwnPlanes mine = held_.own();
-    for (int a = 0; a < D; ++a) gather_to_first(own.state_.u[a]);
-    gather_to_first(own.surface_.phi);
-    markers_.gather_to_first(frame_, all_markers_);
-    return lent;
-}
-
-#define WEIR_INSTANTIATE(D)                                                     \
-    template void Water<D>::bring_faces(real);                                  \
-    template std::array<std::int64_t, 2> Water<D>::let_depart();                \
-    template void Water<D>::check_own() const;                                  \
-    template void Water<D>::make_whole() const;                                 \
-    template std::unique_ptr<Solver::Brought> Water<D>::bring_to_first() const; \
+#define WEIR_INSTANTIATE(D)                                      \
+    template void Water<D>::bring_faces(real);                   \
+    template std::array<std::int64_t, 2> Water<D>::let_depart(); \
+    template void Water<D>::check_own() const;                   \
+    template void Water<D>::make_whole() const;                  \
     template void Water<D>::gather_markers() const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

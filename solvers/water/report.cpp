@@ -15,7 +15,7 @@ FieldSet Water<D>::fields() const {
     FieldSet set;
     set.grid = grid_view(state_.u);
     if (held_.alone()) set.cut = &held_.cut();
-    set.particles_in_parts = held_.alone() && !brought_;
+    set.particles_in_parts = held_.alone();
     const Markers<D>& markers = set.particles_in_parts ? markers_ : all_markers();
     const auto own_markers = [&] {
         const OwnPlanes mine = held_.own();

@@ -2,6 +2,8 @@
 
 #include "staggered/inflow.hpp"
 
+#include <optional>
+
 namespace weir::water {
 
 /// One step of the marker-and-cell method with a free surface. Enters and leaves with a velocity that is known throughout the band of
@@ -54,6 +56,8 @@ void Water<D>::move_solids(real t) {
 template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
+    std::optional<AllPlanes> all;
+    if (!held_.alone()) all.emplace();
     solids_.place(state_, t);
     mark_closed();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {

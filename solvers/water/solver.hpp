@@ -67,7 +67,6 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    std::unique_ptr<Brought> bring_to_first() const override;
     bool holds_own_planes() const override { return held_.alone(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
@@ -184,7 +183,6 @@ private:
     mutable bool whole_ = true,
                  markers_whole_ = true;  // all planes stand here, or those that this rank looks at; all markers in all_markers_
     mutable Markers<D> all_markers_;     // over ranks, when somebody looks
-    bool brought_ = false;               // what they are to be on the first rank alone
 };
 
 }  // namespace weir::water

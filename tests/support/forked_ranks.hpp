@@ -1,5 +1,5 @@
 // Ranks for a unit test without MPI: the test forks a process for each, which exchange through sockets between each two. Of Slabs they have
-// what knows no planes (gather_parts, trade, stream_to_first, largest); planes are refused.
+// all but the gathering of planes.
 #pragma once
 #include "core/parallel.hpp"
 #include "core/slabs.hpp"
@@ -84,9 +84,10 @@ public:
     }
     bool poisons() const override { return poisons_; }
 
-    void refresh(const Cut&, std::span<const Planes>, int, bool) override { refuse(); }
-    void gather(const Cut&, const Planes&) override { refuse(); }
-    void gather_to_first(const Cut&, const Planes&) override { refuse(); }
+    void refresh(const Cut& cut, std::span<const Planes> arrays, int deep, bool ring) override {
+        for (const Planes& planes : arrays) refresh_one(cut, planes, deep, ring);
+    }
+    void gather(const Cut&, const Planes&) override { throw std::logic_error("forked ranks gather no planes"); }
 
 private:
     int socket_of(const Parcel& parcel) const { return peers_[static_cast<std::size_t>(parcel.peer)]; }
@@ -94,7 +95,28 @@ private:
         if (bytes > 0) done += static_cast<std::size_t>(bytes);
         if (bytes == 0 || (bytes < 0 && errno != EAGAIN && errno != EINTR)) throw std::runtime_error("another rank has ended");
     }
-    [[noreturn]] static void refuse() { throw std::logic_error("forked ranks know no planes"); }
+    void refresh_one(const Cut& cut, const Planes& planes, int deep, bool ring) {
+        const auto count = static_cast<std::size_t>(ranks());
+        std::vector<std::vector<char>> sent(count), brought(count);
+        std::vector<Parcel> parcels;
+        const auto each = [&](int from, int to, auto&& f) {
+            for (const PlaneRange& range : halo_from(cut, from, to, planes.count, deep, ring))
+                f(static_cast<char*>(planes.first) + static_cast<std::ptrdiff_t>(planes.bytes) * range.begin,
+                  planes.bytes * static_cast<std::size_t>(range.end - range.begin));
+        };
+        for (int peer = 0; peer < ranks(); ++peer) {
+            if (peer == rank()) continue;
+            auto &out = sent[static_cast<std::size_t>(peer)], &in = brought[static_cast<std::size_t>(peer)];
+            each(rank(), peer, [&](char* at, std::size_t bytes) { out.insert(out.end(), at, at + bytes); });
+            each(peer, rank(), [&](char*, std::size_t bytes) { in.resize(in.size() + bytes); });
+            parcels.push_back({peer, out.data(), out.size(), in.data(), in.size()});
+        }
+        trade(parcels);
+        for (int peer = 0; peer < ranks(); ++peer) {
+            const char* next = brought[static_cast<std::size_t>(peer)].data();
+            if (peer != rank()) each(peer, rank(), [&](char* at, std::size_t bytes) { std::memcpy(at, next, bytes), next += bytes; });
+        }
+    }
 
     std::vector<int> peers_;
     bool poisons_;

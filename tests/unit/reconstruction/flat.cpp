@@ -79,7 +79,7 @@ TEST("flat: the fast fields are those of a slice of a liquid that goes on for ev
         for (int j = 1; j + 1 < samples.n[1]; ++j)
             for (int i = 1; i + 1 < samples.n[0]; ++i) {
                 const real slow = std::clamp(exact.depth(samples.position(i, j, 0)), -1.0, 1.0);
-                worst = std::max(worst, std::abs(real(samples.depth[samples.linear(i, j, 0)]) - slow));
+                worst = std::max(worst, std::abs(real(samples(i, j, 0)) - slow));
                 compared += std::abs(slow) < 1;
             }
         EXPECT_EQ(samples.n[2], 1);
@@ -117,10 +117,11 @@ TEST("flat: discs, films, tanks and sprays are within closed lines") {
 TEST("flat: liquid that touches air at two corners of a square of samples is joined or parted there, and closed") {
     Samples samples;
     samples.n = {4, 4, 1};
-    samples.depth.assign(16, -1);
+    samples.make_room();
+    samples.depth.fill(-1);
     for (const float between : {-0.25F, -4.0F}) {
-        samples.depth[samples.linear(1, 1, 0)] = samples.depth[samples.linear(2, 2, 0)] = 1;
-        samples.depth[samples.linear(2, 1, 0)] = samples.depth[samples.linear(1, 2, 0)] = between;
+        samples(1, 1, 0) = samples(2, 2, 0) = 1;
+        samples(2, 1, 0) = samples(1, 2, 0) = between;
         SurfaceMesh mesh;
         contour_flat(samples, mesh);
         EXPECT_EQ(topology(mesh).open_edges, 0);

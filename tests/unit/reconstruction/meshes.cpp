@@ -17,11 +17,10 @@ template <class Depth>
 Samples samples_of(int n, const Depth& depth) {
     Samples samples;
     samples.n = {n, n, n};
-    samples.depth.resize(samples.linear(0, 0, n));
+    samples.make_room();
     for (int k = 0; k < n; ++k)
         for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i)
-                samples.depth[samples.linear(i, j, k)] = static_cast<float>(std::clamp(depth(samples.position(i, j, k)), -1.0, 1.0));
+            for (int i = 0; i < n; ++i) samples(i, j, k) = static_cast<float>(std::clamp(depth(samples.position(i, j, k)), -1.0, 1.0));
     return samples;
 }
 
@@ -92,9 +91,9 @@ TEST("smoothing flattens bumps and keeps the volume; with no weight nothing move
     }));
     const real before = volume(ball), rough = area(ball);
     SurfaceMesh same = ball;
-    smooth(same, std::vector<real>(ball.points.size(), 0.0), 25);
+    smooth(same, whole_of(same), std::vector<real>(ball.points.size(), 0.0), 25);
     EXPECT_EQ(same.points, ball.points);
-    smooth(ball, std::vector<real>(ball.points.size(), 1.0), 25);
+    smooth(ball, whole_of(ball), std::vector<real>(ball.points.size(), 1.0), 25);
     EXPECT_LT(area(ball), rough);
     // Taubin's steps: what a pass leaves of a sphere differs from 1 by the square of its curvature over the cells'; plain ones take 10%
     EXPECT_NEAR(volume(ball) / before, 1, 0.005);
@@ -104,7 +103,7 @@ TEST("the thickness of a slab is its height") {
     Samples slab = samples_of(32, [](const Vec<3>& x) { return std::min(x[1] - 6.2, 20.7 - x[1]); });
     SurfaceMesh mesh = contoured(slab);
     add_normals(mesh);
-    add_thickness(mesh, slab);
+    add_thickness(mesh, whole_of(mesh), slab);
     int seen = 0;
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         const bool middle = mesh.points[i][0] > 4 && mesh.points[i][0] < 27 && mesh.points[i][2] > 4 && mesh.points[i][2] < 27;

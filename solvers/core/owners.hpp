@@ -1,0 +1,53 @@
+// Where each rank holds its own part alone: whose a place is, what is asked of its owner, and lists that go from rank to rank.
+#pragma once
+#include "core/slabs.hpp"
+#include "core/types.hpp"
+
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+namespace weir {
+
+/// The rank that owns a plane of cells; of faces, the last rank the last one too.
+inline int owner_of(const Cut& cut, int plane) {
+    int rank = 0;
+    while (rank + 1 < cut.ranks() && plane >= cut.begin(rank + 1)) ++rank;
+    return rank;
+}
+
+/// Of every number the one that its owner knows, on all ranks.
+inline std::vector<real> of_owners(const std::vector<real>& own, const std::vector<int>& owners) {
+    const std::vector<real> all = of_all_ranks(own);
+    std::vector<real> list;
+    for (std::size_t i = 0; i < owners.size(); ++i) list.push_back(all[static_cast<std::size_t>(owners[i]) * own.size() + i]);
+    return list;
+}
+
+/// A list of entries for each rank.
+template <class T>
+using ListsOfRanks = std::vector<std::vector<T>>;
+
+/// Gives each rank the list that is for it, and brings what each has for this one; this rank's own stays. A table of how many go from each
+/// to each is gathered first.
+template <class T>
+ListsOfRanks<T> trade_lists(ListsOfRanks<T> lists) {
+    const std::size_t ranks = lists.size(), self = static_cast<std::size_t>(slabs().rank());
+    std::vector<std::size_t> counts(ranks * ranks), rows(ranks + 1);
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    for (std::size_t r = 0; r < ranks; ++r) counts[self * ranks + r] = lists[r].size();
+    slabs().gather_parts(counts.data(), ranks * sizeof(std::size_t), rows);
+    ListsOfRanks<T> brought(ranks);
+    std::vector<Parcel> parcels;
+    for (std::size_t r = 0; r < ranks; ++r) {
+        if (r == self) continue;
+        brought[r].resize(counts[r * ranks + self]);
+        parcels.push_back(
+            {static_cast<int>(r), lists[r].data(), lists[r].size() * sizeof(T), brought[r].data(), brought[r].size() * sizeof(T)});
+    }
+    slabs().trade(parcels);
+    brought[self] = std::move(lists[self]);
+    return brought;
+}
+
+}  // namespace weir

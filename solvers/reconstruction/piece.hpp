@@ -1,0 +1,42 @@
+// What a rank has of a contour: its own layers of the lattice, and those beside them, of which it knows the same points in the same order
+// as their owners. A whole contour is the piece of one rank.
+#pragma once
+#include "core/halo.hpp"
+#include "core/surface_mesh.hpp"
+
+#include <cstddef>
+
+namespace weir::reconstruction {
+
+/// Points stand in the order of their layers, and so do triangles or lines, by the layer of their cell. In space a layer's points are those
+/// on edges that begin in its plane, in a plane of samples those that its cells have and the layer before has not.
+struct Piece {
+    /// Own points are [begin, end), of which [begin, first_end) are of the first own layer and [last_begin, end) of the last; those of the
+    /// layers beside them are [below, begin) and [end, above).
+    std::size_t below = 0, begin = 0, first_end = 0, last_begin = 0, end = 0, above = 0;
+    /// Own triangles or lines.
+    std::size_t cells_begin = 0, cells_end = 0;
+
+    std::size_t points() const { return end - begin; }
+};
+
+/// start(k): how many points there are before layer k.
+template <class Start>
+Piece piece_of(PlaneRange layers, const Start& start, std::size_t cells_begin, std::size_t cells_end) {
+    return {start(layers.begin - 1),
+            start(layers.begin),
+            start(layers.begin + 1),
+            start(layers.end - 1),
+            start(layers.end),
+            start(layers.end + 1),
+            cells_begin,
+            cells_end};
+}
+
+/// All of a mesh.
+inline Piece whole_of(const SurfaceMesh& mesh) {
+    const std::size_t count = mesh.points.size();
+    return {0, 0, count, 0, count, count, 0, mesh.corners.size() + mesh.lines.size()};
+}
+
+}  // namespace weir::reconstruction
