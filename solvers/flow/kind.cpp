@@ -41,7 +41,6 @@ void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (Heat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts");
     scene::refuse_hand(scene);
-    scene::refuse_moving_solids(scene);
     scene::refuse_petsc(scene);
 }
 

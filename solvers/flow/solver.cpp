@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace weir::flow {
 
@@ -368,10 +369,11 @@ void FlowSolver<D>::place_solids(real t, real dt) {
     if (!solids_.any()) return;
     const auto timed = passes_.time("solids");
     if (bodies_) bodies_->fly(solids_, dt);
-    if (solids_.moving()) {
-        solids_.place(state_, t);
-        projection_.set_matrix(state_);
-    }
+    if (!solids_.moving()) return;
+    std::optional<AllPlanes> all;
+    if (!held_.alone()) all.emplace();
+    solids_.place(state_, t);
+    projection_.set_matrix(state_);
 }
 
 template <int D>
@@ -596,6 +598,7 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
         smoke_removed_ = smoke[0], smoke_continued_ = smoke[1];
     }
     if (!solids_.moving()) return;
+    const OwnPlanes mine = held_.looking();
     solids_.place(state_, state_.time);
     projection_.set_matrix(state_);
     remember_solids();

@@ -19,13 +19,6 @@ inline void refuse_bodies(const Scene& scene) {
     if (scene.has("bodies") && !scene.root().tables("bodies").empty()) one_process_only(scene, "bodies", "bodies move");
 }
 
-inline void refuse_moving_solids(const Scene& scene) {
-    if (!scene.has("solids")) return;
-    const auto& solids = scene.root().tables("solids");
-    for (std::size_t i = 0; i < solids.size(); ++i)
-        if (solids[i].has("motion")) one_process_only(scene, "solids[" + std::to_string(i) + "].motion", "solids move");
-}
-
 inline void refuse_petsc(const Scene& scene) {
     if (scene.root().text("scheme.poisson.method").starts_with("petsc"))
         one_process_only(scene, "scheme.poisson.method", "PETSc's methods are");

@@ -3,7 +3,6 @@
 #include "core/cut_by_work.hpp"
 #include "geometry/sides.hpp"
 #include "poisson/poisson.hpp"
-#include "scene/whole_fields.hpp"
 #include "staggered/state.hpp"
 
 namespace weir::staggered {
@@ -11,7 +10,7 @@ namespace weir::staggered {
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs().holds_whole() && could_hold_own_planes(scene, cut); }
 
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
-    if (cut.empty() || scene::looks_at_whole_fields(scene)) return false;
+    if (cut.empty()) return false;
     if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
     const auto shares = [&]<int D>() {
         const Lattice<D> lattice(scene);

@@ -95,23 +95,27 @@ void SolidPlacement<D>::open(MacState<D>& s, int planes) {
 
 template <int D>
 void SolidPlacement<D>::know(MacState<D>& s, int planes) {
-    if (!any() || moving() || !corner_.store().windowed() || planes <= known_) return;
+    if (!any() || !corner_.store().windowed() || planes <= known_) return;
     open(s, planes);
     placed_ = false;
-    place(s, s.time);
+    place(s, time_);
     placed_ = false;
 }
 
 template <int D>
 void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
-    solids_.set_time(t);
+    const bool alone = corner_.store().windowed();
+    std::optional<AllPlanes> all;
+    if (!alone) all.emplace();  // over ranks: of what a rank holds, it finds everything
+    solids_.set_time(time_ = t);
     find_changed(s);
     for (std::size_t box = 0; box < changed_.size(); ++box) {
         place_corners(s, box);
         place_faces(s, box);
     }
     extends_ = false;
+    if (alone && moving()) rate_ = find_rate(s);
 }
 
 /// The distances at the corners of a box, as far as anybody asks for them.
@@ -295,6 +299,12 @@ void SolidPlacement<D>::extend_field(const MacState<D>& s, Padded<D>& before) co
 
 template <int D>
 real SolidPlacement<D>::max_rate(const MacState<D>& s) const {
+    return rate_ ? *rate_ : find_rate(s);
+}
+
+/// Over ranks, each looks at its own planes.
+template <int D>
+real SolidPlacement<D>::find_rate(const MacState<D>& s) const {
     bool told = false;
     for (std::size_t i = 0; i < solids_.count(); ++i) told = told || solids_[i].motion.moves();
     if (!told) return 0;
@@ -304,11 +314,14 @@ real SolidPlacement<D>::max_rate(const MacState<D>& s) const {
         real fastest = 0;  // of solids that moved: all others stand
         for (const CellBox<D>& box : changed_)
             box.faces(a).rows([&](const Index<D>& I, int count) {
+                if (!is_own_plane(I[D - 1])) return;
                 const real* v = &velocity(I);
                 real most = 0, poison = 0;  // x - x is 0, or NaN where x is not finite
                 for (int i = 0; i < count; ++i) most = std::max(most, std::abs(v[i])), poison += v[i] - v[i];
                 fastest = larger_or_nan(fastest, most + poison);
             });
+        if (over_ranks())
+            for (const real of_rank : of_ranks(fastest)) fastest = larger_or_nan(fastest, of_rank);
         rate = std::max(rate, fastest / s.u.h[a]);
     }
     return rate;

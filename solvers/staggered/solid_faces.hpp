@@ -4,6 +4,7 @@
 #include "geometry/solids.hpp"
 #include "staggered/state.hpp"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,7 +76,7 @@ public:
     /// Open fractions, face velocities and cell flags at time t; those that the solids have not been near since they were placed last stay
     /// as they are.
     void place(MacState<D>& s, real t);
-    /// Over ranks, of solids that stand: from here on so many planes beyond the cuts are known too.
+    /// Over ranks, from here on so many planes beyond the cuts are known too.
     void know(MacState<D>& s, int planes);
     /// Where that was: boxes of cells that reach further from the solids than reach().
     const std::vector<CellBox<D>>& changed() const { return changed_; }
@@ -112,6 +113,7 @@ private:
     void place_faces(MacState<D>& s, std::size_t box) const;
     CellBox<D> cells_of(const MacState<D>& s, std::size_t solid) const;
     void find_extended(const MacState<D>& s);
+    real find_rate(const MacState<D>& s) const;
 
     geometry::Solids<D> solids_;
     Grid<real, D> corner_;  // signed distance at the corners of cells
@@ -120,6 +122,8 @@ private:
     std::vector<std::vector<std::size_t>> near_;  // of each box of changed_
     std::vector<Extended> extended_;
     int known_ = 0;                          // planes beyond the cuts
+    real time_ = 0;                          // when they were placed last [s]
+    std::optional<real> rate_;               // max_rate() of all ranks' planes, where each holds its own
     bool placed_ = false, extends_ = false;  // extends_: extended_ is of the solids as they stand
 };
 

@@ -78,6 +78,12 @@ struct Frame {
     }
     /// The cell with this place in memory.
     Index<D> index_of(std::size_t linear) const { return staggered::index_of<D>(cells, linear); }
+    /// A cell's place in memory.
+    std::size_t linear(const Index<D>& I) const {
+        auto at = static_cast<std::size_t>(I[D - 1]);
+        for (int d = D - 2; d >= 0; --d) at = at * static_cast<std::size_t>(cells[d]) + static_cast<std::size_t>(I[d]);
+        return at;
+    }
     /// Moves I by ±1 along an axis, around a periodic one; false, and I unchanged, at a side of the domain.
     bool step(Index<D>& I, int axis, int by) const {
         const int i = I[axis] + by;

@@ -25,16 +25,18 @@ LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
     layer_start_.assign(static_cast<std::size_t>(layers_) + 1, 0);
 }
 
-/// f(I) for cells that are open and have a closed neighbour, in the order of the grid.
+/// f(I) for cells that are open and have a closed neighbour, in the order of the grid; and for some at the ends of lines that have none.
 template <int D>
 template <class F>
-void LevelSet<D>::for_each_open_beside_closed(const Grid<std::uint8_t, D>& closed, F&& f) const {
+void LevelSet<D>::for_each_open_beside_closed(const std::vector<char>& planes, F&& f) const {
+    const Grid<std::uint8_t, D>& closed = closed_;
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     const auto has_closed = [&](std::size_t line) { return std::memchr(&closed[line], 1, n) != nullptr; };
     for (std::size_t line = 0; line < closed.size(); line += n) {
         std::array<const std::uint8_t*, 2 * D> beside{};  // lines of cells next to this one, and itself
         std::size_t count = 0;
         Index<D> I = frame_.index_of(line);
+        if (!planes.empty() && planes[static_cast<std::size_t>(I[D - 1])] == 0) continue;
         if (has_closed(line)) beside[count++] = &closed[line];
         for (int d = 1; d < D; ++d)
             for (const int by : {-1, 1})
@@ -49,53 +51,56 @@ void LevelSet<D>::for_each_open_beside_closed(const Grid<std::uint8_t, D>& close
     }
 }
 
-/// The planes that both hold.
-template <int D>
-static void copy_held(const Grid<std::uint8_t, D>& from, Grid<std::uint8_t, D>& to) {
-    const auto entries = static_cast<std::size_t>(from.stride(D - 1));
-    for (int plane = 0; plane < from.extent()[D - 1]; ++plane)
-        if (from.store().holds(plane) && to.store().holds(plane))
-            std::copy_n(from.data() + entries * static_cast<std::size_t>(plane), entries,
-                        to.data() + entries * static_cast<std::size_t>(plane));
-}
+/// How deep the skin of solids goes [cells]: as far as interpolation beside a solid looks.
+static constexpr int skin_layers = 3;
 
-/// Over ranks the solids stand, and their skin is found once: of all cells, which everybody gets to see for that.
 template <int D>
 void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed) {
     closed_ = closed;
-    if (!slabs().several()) return find_skin(closed_, layer_);  // layer_ is free for this: redistance() finds it anew
-    Grid<std::uint8_t, D> all, seen;
-    {
-        const AllPlanes whole;
-        all = seen = Grid<std::uint8_t, D>(frame_.cells);
+    const bool alone = closed_.store().windowed();
+    if (alone) {
+        find_near();
+        refresh(closed_, frame_.periodic(D - 1), wide() + 1);
     }
-    copy_held(closed, all);
-    gather(all);
-    find_skin(all, seen);
-    skin_of_ranks_.find(frame_, all, skin_);
-    find_near();
-    copy_held(all, closed_);
+    find_skin(planes_near(frame_.cells[D - 1], skin_layers, frame_.periodic(D - 1)));
+    if (slabs().several()) share_skin(alone);
 }
 
-/// Closed cells beside open ones, and beside those, to skin_. `seen` is 0 in them, before and after.
+/// Closed cells beside open ones of these planes (none named: of all), and beside those, to skin_.
 template <int D>
-void LevelSet<D>::find_skin(const Grid<std::uint8_t, D>& closed, Grid<std::uint8_t, D>& seen) {
+void LevelSet<D>::find_skin(const std::vector<char>& planes) {
     skin_.clear();
     std::size_t first = 0;
     constexpr std::uint8_t mark = 253;
+    Grid<std::uint8_t, D>& seen = layer_;  // free for this: redistance() finds it anew
     const auto add_neighbours = [&](const Index<D>& I) {
-        for (int d = 0; d < D; ++d)
-            for (const int by : {-1, 1}) {
-                Index<D> J = I;
-                if (frame_.step(J, d, by) && closed(J) && seen(J) != mark) seen(J) = mark, skin_.push_back(J);
-            }
+        for_each_beside(frame_, I, [&](const Index<D>& J) {
+            if (closed_(J) && seen(J) != mark) seen(J) = mark, skin_.push_back(J);
+        });
     };
-    for_each_open_beside_closed(closed, add_neighbours);
-    for (int layer = 1; layer < 3; ++layer) {  // three cells deep: as far as interpolation beside a solid looks
+    for_each_open_beside_closed(planes, add_neighbours);
+    for (int layer = 1; layer < skin_layers; ++layer) {
         const std::size_t last = skin_.size();
         for (; first < last; ++first) add_neighbours(Index<D>(skin_[first]));
     }
     for (const Index<D>& J : skin_) seen(J) = 0;
+}
+
+/// Over ranks everybody gets the skin of all, in the order of one process, from what each has found of its own planes where it is `alone`
+/// with them.
+template <int D>
+void LevelSet<D>::share_skin(bool alone) {
+    std::vector<std::size_t> rim, near;
+    for_each_open_beside_closed(planes_near(frame_.cells[D - 1], 0, false), [&](const Index<D>& I) {
+        bool beside = false;
+        for_each_beside(frame_, I, [&](const Index<D>& J) { beside = beside || closed_(J); });
+        if (beside) rim.push_back(phi.linear(I));
+    });
+    for (const Index<D>& I : skin_)
+        if (is_own_plane(I[D - 1])) near.push_back(phi.linear(I));
+    std::sort(near.begin(), near.end());
+    if (alone) rim = of_all_ranks(rim), near = of_all_ranks(near);
+    skin_of_ranks_.find(frame_, std::move(rim), near, skin_layers, skin_);
 }
 
 /// Mean of the neighbours that lie further out; skin_ goes inwards, so one pass suffices.

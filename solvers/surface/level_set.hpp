@@ -70,8 +70,9 @@ public:
 
 private:
     template <class F>
-    void for_each_open_beside_closed(const Grid<std::uint8_t, D>& closed, F&& f) const;
-    void find_skin(const Grid<std::uint8_t, D>& closed, Grid<std::uint8_t, D>& seen);
+    void for_each_open_beside_closed(const std::vector<char>& planes, F&& f) const;
+    void find_skin(const std::vector<char>& planes);
+    void share_skin(bool alone);
     void continue_into_solids();
     /// How wide the cell is across the surface next to it [m].
     real width_at(const Index<D>& I) const;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <map>
 
 namespace weir::surface {
 
@@ -13,34 +12,47 @@ constexpr int nobody = INT_MIN;
 }
 
 template <int D>
-void SkinOfRanks<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& closed, const std::vector<Index<D>>& skin) {
-    std::map<std::size_t, int> place;
-    for (std::size_t i = 0; i < skin.size(); ++i) place[closed.linear(skin[i])] = static_cast<int>(i);
-    const auto for_each_beside = [&](auto&& f) {
-        for (const Index<D>& I : skin)
-            for (int d = 0; d < D; ++d)
-                for (const int by : {-1, 1}) {
-                    Index<D> J = I;
-                    const bool inside = frame.step(J, d, by);
-                    f(inside, closed.linear(J));
-                }
+void SkinOfRanks<D>::find(const Frame<D>& frame, std::vector<std::size_t> rim, const std::vector<std::size_t>& closed, int layers,
+                          std::vector<Index<D>>& skin) {
+    rim_ = std::move(rim);
+    std::unordered_map<std::size_t, int> place;  // in the skin, of the closed cells that may be in it
+    place.reserve(closed.size());
+    for (const std::size_t at : closed) place.emplace(at, nobody);
+    skin.clear();
+    const auto add_neighbours = [&](const Index<D>& I) {
+        for_each_beside(frame, I, [&](const Index<D>& J) {
+            const auto at = place.find(frame.linear(J));
+            if (at == place.end() || at->second != nobody) return;
+            at->second = static_cast<int>(skin.size());
+            skin.push_back(J);
+        });
     };
-    rim_.clear(), beside_.clear();
-    for_each_beside([&](bool inside, std::size_t at) {
-        if (inside && !closed[at]) rim_.push_back(at);
-    });
-    std::sort(rim_.begin(), rim_.end());
-    rim_.erase(std::unique(rim_.begin(), rim_.end()), rim_.end());
-    for_each_beside([&](bool inside, std::size_t at) {
-        const auto self = static_cast<int>(beside_.size() / (2 * D));
-        int to = nobody;
-        if (inside && !closed[at])
-            to = static_cast<int>(std::lower_bound(rim_.begin(), rim_.end(), at) - rim_.begin());
-        else if (const auto other = place.find(at); inside && other != place.end() && other->second < self)
-            to = ~other->second;
-        beside_.push_back(to);
-    });
+    for (const std::size_t at : rim_) add_neighbours(frame.index_of(at));
+    std::size_t first = 0;
+    for (int layer = 1; layer < layers; ++layer)
+        for (const std::size_t last = skin.size(); first < last; ++first) add_neighbours(Index<D>(skin[first]));
+    find_beside(frame, skin, place);
     rim_value_.resize(rim_.size()), value_.resize(skin.size());
+}
+
+/// A neighbour's place in the rim, or in the skin where that comes before.
+template <int D>
+void SkinOfRanks<D>::find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin,
+                                 const std::unordered_map<std::size_t, int>& place) {
+    std::unordered_map<std::size_t, int> in_rim;
+    in_rim.reserve(rim_.size());
+    for (std::size_t i = 0; i < rim_.size(); ++i) in_rim.emplace(rim_[i], static_cast<int>(i));
+    const auto to = [&](const Index<D>& J, int self) {
+        const std::size_t at = frame.linear(J);
+        if (const auto open = in_rim.find(at); open != in_rim.end()) return open->second;
+        const auto other = place.find(at);
+        return other != place.end() && other->second != nobody && other->second < self ? ~other->second : nobody;
+    };
+    beside_.assign(2 * D * skin.size(), nobody);
+    for (std::size_t i = 0; i < skin.size(); ++i) {
+        std::size_t k = 2 * D * i;
+        for_each_beside(frame, skin[i], [&](const Index<D>& J) { beside_[k++] = to(J, static_cast<int>(i)); });
+    }
 }
 
 /// Mean of the neighbours that lie further out, in the order of the skin.

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 namespace weir::surface {
@@ -81,13 +82,23 @@ real BandOfRanks::sum_of_blocks(int layers, const std::vector<std::size_t>& laye
     return first % block == 0 ? sum : sum + part;
 }
 
+/// f(J) for the cells beside I, around periodic axes.
+template <int D, class F>
+void for_each_beside(const Frame<D>& frame, const Index<D>& I, F&& f) {
+    for (int d = 0; d < D; ++d)
+        for (const int by : {-1, 1})
+            if (Index<D> J = I; frame.step(J, d, by)) f(J);
+}
+
 /// φ in the solids' skin follows from the open cells beside it, one skin cell after the other: everybody finds all of it, from what is
 /// gathered of those cells.
 template <int D>
 class SkinOfRanks {
 public:
-    /// `closed`: of all cells, whatever planes this rank holds.
-    void find(const Frame<D>& frame, const Grid<std::uint8_t, D>& closed, const std::vector<Index<D>>& skin);
+    /// Finds the skin, `layers` deep, in the order of one process. `rim`: the open cells beside closed ones; `closed`: the closed cells
+    /// that are so deep at most, and maybe others. Both of all ranks, in the order of the grid.
+    void find(const Frame<D>& frame, std::vector<std::size_t> rim, const std::vector<std::size_t>& closed, int layers,
+              std::vector<Index<D>>& skin);
     void continue_into(Grid<real, D>& phi, const std::vector<Index<D>>& skin);
     std::size_t bytes() const {
         return beside_.capacity() * sizeof(int) + rim_.capacity() * sizeof(std::size_t) +
@@ -95,6 +106,7 @@ public:
     }
 
 private:
+    void find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin, const std::unordered_map<std::size_t, int>& place);
     std::vector<std::size_t> rim_;  // open cells beside the skin, in the order of the grid
     std::vector<int> beside_;       // of each skin cell its neighbours: place in rim_, or ~place in the skin if that comes before; or none
     std::vector<real> rim_value_, value_;
