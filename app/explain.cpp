@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "core/slabs.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
 
@@ -112,11 +113,13 @@ std::string passes_text(Simulation& simulation) {
 std::string surface_text(const Simulation& simulation) {
     const auto surface = reconstruction::reconstruction_of(simulation.scene());
     if (!surface) return "";
-    const auto& mesh = surface->make(simulation.fields(), simulation.time());
+    const auto parts = simulation.solver().show_in_parts();
+    const auto& mesh = surface->make_part(simulation.fields(), simulation.time());
+    const std::size_t cells = begins_of_ranks(mesh.corners.size() + mesh.lines.size()).back();
     std::string text = fmt::format("a surface by {}, each frame\n", simulation.scene().text("output.surface.method"));
     for (const Pass& pass : surface->passes().list()) text += fmt::format("  {:22} {:9.3f} ms\n", pass.name, 1e3 * pass.seconds);
-    return text + fmt::format("  {:22} {:9} {:>12} {} {:>8}\n", "all", "", mesh.corners.size() + mesh.lines.size(),
-                              mesh.lines.empty() ? "triangles" : "lines", megabytes(surface->bytes()));
+    return text + fmt::format("  {:22} {:9} {:>12} {} {:>8}\n", "all", "", cells, simulation.scene().dim() == 2 ? "lines" : "triangles",
+                              megabytes(surface->bytes()));
 }
 
 std::string left_out(const scene::Scene& scene, const scene::SolverSchema& schema) {

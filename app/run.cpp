@@ -20,8 +20,10 @@
 #include "sim/shares.hpp"
 #include "sim/solid_cells.hpp"
 #include "validation/cost/over_ranks.hpp"
+#include "validation/harness/generic_metrics.hpp"
 #include "validation/report/command.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -55,27 +57,13 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
                                                  : output::Compression::zlib;
     options.solid = sim::solid_cells(scene);
     if (const std::shared_ptr<reconstruction::Reconstruction> maker = reconstruction::reconstruction_of(scene))
-        options.surface = [maker](const FieldSet& fields, real t) -> const SurfaceMesh& { return maker->make(fields, t); };
+        options.surface = [maker](const FieldSet& fields, real t) -> const SurfaceMesh& { return maker->make_part(fields, t); };
     return options;
-}
-
-/// A surface is made of all liquid, by the first rank.
-void bring_liquid_to_first(output::FrameOptions& options, const Simulation& simulation) {
-    if (!options.surface || !slabs().several()) return;
-    options.surface = [&simulation, make = options.surface](const FieldSet&, real t) -> const SurfaceMesh& {
-        static const SurfaceMesh none;
-        const auto brought = simulation.solver().bring_to_first();
-        const FieldSet fields = simulation.fields();
-        const SurfaceMesh* made = &none;
-        by_first_rank([&] { made = &make(fields, t); });
-        return *made;
-    };
 }
 
 /// The frames of a run; none, with a word about it, where this build has no VTK.
 std::optional<output::Frames> open_frames(const Simulation& simulation, const std::filesystem::path& folder, bool restarted) {
-    auto options = frame_options(simulation.scene());
-    bring_liquid_to_first(options, simulation);
+    const auto options = frame_options(simulation.scene());
     if (!output::can_write_frames()) {
         by_first_rank([] {
             std::fprintf(stderr, "this weir was built without VTK (WEIR_VTK=OFF): probes and run.json are written, frames are not\n");
@@ -287,7 +275,7 @@ int simulate(const RunArguments& arguments) {
             throw BadInput("--ranks tells what a run over so many ranks takes: it needs --explain; mpirun -n N starts one");
         sim::require_ranks(scene, arguments.planned_ranks);
     }
-    if (!arguments.measure.empty()) slabs().hold_whole(true);  // metrics look at all of it
+    slabs().hold_whole(std::any_of(arguments.measure.begin(), arguments.measure.end(), validation::looks_at_whole_fields));
     if (!arguments.explain)
         sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run,
                             memory_for_all(scene));

@@ -183,6 +183,7 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
         if (const auto& g = gravity->numbers("g"); g[0] != 0 || g[2] != 0) tally.gather(number, 2);  // pace and volume after a push
     if (scene.effect("rain")) tally.sent().besides.emplace_back("effects.rain");
     if (scene.has("probes") && !scene.root().tables("probes").empty()) tally.sent().besides.emplace_back("probes");
+    if (scene.root().number_or("time.stop_when_steady", 0) > 0) tally.sent().besides.emplace_back("time.stop_when_steady");
     return tally.sent();
 }
 

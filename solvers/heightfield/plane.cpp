@@ -1,13 +1,10 @@
 #include "heightfield/plane.hpp"
 
 #include "heightfield/sides.hpp"
-#include "scene/whole_fields.hpp"
 
 namespace weir::heightfield {
 
-bool holds_own_rows(const scene::Scene& scene, const Cut& cut) {
-    return !cut.empty() && !slabs().holds_whole() && !scene::looks_at_whole_fields(scene);
-}
+bool holds_own_rows(const scene::Scene&, const Cut& cut) { return !cut.empty() && !slabs().holds_whole(); }
 
 HeldPlanes held_rows(const scene::Scene& scene) {
     const Cut cut = cut_of_rows(Plane(scene), slabs().ranks());

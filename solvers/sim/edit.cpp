@@ -1,5 +1,6 @@
 // A hand in the run between two steps: fields that are written, particles that come and go, and who is called to look on.
 #include "core/error.hpp"
+#include "core/slabs.hpp"
 #include "sim/simulation.hpp"
 #include "sim/steadiness.hpp"
 
@@ -23,6 +24,11 @@ void check_values(const std::string& name, const std::vector<real>& values, std:
     }
 }
 
+/// A rank may hold a part of the state, and whoever writes knows all of it or nothing.
+void one_process_only(const std::string& what) {
+    if (slabs().several()) throw BadInput(fmt::format("{} in one process only, and there are {}", what, slabs().ranks()));
+}
+
 /// A place has as many coordinates as the scene has dimensions.
 void check_points(std::span<const Vec<3>> points, const std::string& what, const GridView& grid, bool inside) {
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -40,6 +46,7 @@ void check_points(std::span<const Vec<3>> points, const std::string& what, const
 
 std::vector<std::string> Simulation::editable() {
     std::vector<std::string> names;
+    if (slabs().several()) return names;
     for (const auto& field : solver_->editable()) names.push_back(full_name(field.set, field.name));
     return names;
 }
@@ -70,6 +77,7 @@ void Simulation::change_state(const std::function<void(Solver&)>& change) {
 }
 
 void Simulation::edit(std::string_view name, const std::function<void(FieldEdit&)>& write) {
+    one_process_only(fmt::format("\"{}\" is edited", name));
     const EditableField at = editable_named(name);
     const FieldSet shown = fields();
     const FieldView* view = shown.find(at.set, at.name);
@@ -91,6 +99,7 @@ void Simulation::edit(std::string_view name, const std::function<void(FieldEdit&
 }
 
 void Simulation::add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) {
+    one_process_only(fmt::format("particles of the set \"{}\" are added", set));
     if (at.size() != velocity.size()) throw BadInput(fmt::format("{} places of particles and {} velocities", at.size(), velocity.size()));
     const GridView grid = fields().grid;
     check_points(at, "the place of particle", grid, true);
@@ -102,6 +111,7 @@ void Simulation::add_particles(std::string_view set, std::span<const Vec<3>> at,
 }
 
 void Simulation::remove_particles(std::string_view set, std::span<const std::size_t> which) {
+    one_process_only(fmt::format("particles of the set \"{}\" are removed", set));
     const FieldSet shown = fields();
     const FieldView* position = shown.find(set, "position");
     std::vector<unsigned char> gone(position ? position->data[0].size() : 0, 0);

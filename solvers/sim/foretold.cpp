@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "core/slabs.hpp"
 #include "geometry/shape.hpp"
+#include "geometry/wet_part.hpp"
 #include "reconstruction/contour.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
@@ -221,6 +222,19 @@ double filled(const std::vector<double>& cells, const Held& fine, const Held& co
     return fine.bytes * std::pow(product(cells) / n0, std::clamp(power, 1.0, 2.0));
 }
 
+/// What part of a scene's memory is of liquid: so much less a half as high pool takes.
+double part_of_liquid(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+    const auto& root = scene.root();
+    const auto pool = [&](double part) {
+        auto overrides = scene.overrides();
+        overrides.push_back(
+            {"liquid", pool_text(root.numbers("grid.origin"), root.numbers("grid.size"), root.numbers("grid.cells"), part)});
+        return hold(scene::parse(scene.source(), scene.file(), scene::schemas_of(kinds), overrides), kinds).bytes;
+    };
+    const double wet = wet_part(scene), all = pool(wet);
+    return std::clamp(2 * (all - pool(0.5 * wet)) / all, 0.0, 1.0);
+}
+
 bool factorises(const scene::Scene& scene) {
     return scene.has("scheme.poisson.method") && scene.text("scheme.poisson.method") == "cholmod";
 }
@@ -365,10 +379,36 @@ double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool fr
     return foretold.bytes + state + (frames ? foretell_output(scene, foretold).bytes_of_array + foretold.surface_bytes : 0);
 }
 
-double bytes_of_rank(double bytes, const Cut& cut, int rank) {
-    const double planes = cut.planes(), own = cut.end(rank, cut.planes()) - cut.begin(rank);
-    const bool outer = rank == 0 || rank + 1 == cut.ranks();
-    return bytes * std::min(planes, own + (outer ? (planes_near_cuts + 1) / 2 : planes_near_cuts)) / planes;
+std::vector<double> parts_of_planes(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+    if (!kind_named(scene.solver(), kinds).work_of_planes) return {};
+    const auto wet = scene.dim() == 2 ? geometry::liquid_in_planes<2>(scene, 0) : geometry::liquid_in_planes<3>(scene, 0);
+    double liquid = 0;
+    for (const auto& plane : wet) liquid += plane.wet;
+    const double part = liquid > 0 ? part_of_liquid(small_copy(scene, kinds, cells_of_copy, Copy::like_rows), kinds) : 0;
+    std::vector<double> parts;
+    for (const auto& plane : wet)
+        parts.push_back((1 - part) / static_cast<double>(wet.size()) + (liquid > 0 ? part * plane.wet / liquid : 0));
+    return parts;
+}
+
+double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<double>& parts) {
+    const bool first = rank == 0, last = rank + 1 == cut.ranks();
+    constexpr int near = static_cast<int>(planes_near_cuts), more = (near + 1) / 2;
+    const int begin = std::max(0, cut.begin(rank) - (first ? 0 : last ? more : near - more));
+    const int end = std::min(cut.planes(), cut.end(rank, cut.planes()) + (last ? 0 : more));
+    if (parts.empty()) return bytes * (end - begin) / cut.planes();
+    return bytes * std::accumulate(parts.begin() + begin, parts.begin() + end, 0.0);
+}
+
+double surface_bytes_of_rank(const scene::Scene& scene, const Foretold& foretold, int rank, int ranks) {
+    const auto options = reconstruction::options_of(scene);
+    if (!options) return 0;
+    constexpr double samples_beside = 2, markers_a_cell = 2;
+    const double planes = scene.root().numbers("grid.cells").back(), cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
+    const double beside = options->method == reconstruction::Method::level_set
+                              ? samples_beside
+                              : reconstruction::read_beside(*options) / (foretold.particle_solver ? 1 : markers_a_cell);
+    return foretold.surface_bytes * std::min(1.0, 1.0 / ranks + (ranks > 1 ? cuts * beside / planes : 0));
 }
 
 void require_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, Use use, double available) {

@@ -62,8 +62,14 @@ double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool fr
 
 /// Planes that a rank holds of those that others own, where nothing crosses more than a cell in a step: 4 beyond either cut, and one.
 inline constexpr double planes_near_cuts = 9;
+/// What part of a solver's memory each plane of the slowest axis takes: its cells, and the liquid in them, as a scene begins; from two
+/// copies, one with half the liquid. Empty: all the same.
+std::vector<double> parts_of_planes(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds);
 /// Of what one process would hold, the part of a rank that holds its own planes and those near its cuts alone.
-double bytes_of_rank(double bytes, const Cut& cut, int rank);
+double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<double>& parts);
+
+/// The same of what making output.surface takes, by the planes of samples that are its own and the particles that it reads beside them.
+double surface_bytes_of_rank(const scene::Scene& scene, const Foretold& foretold, int rank, int ranks);
 
 enum class Use { solver, run, run_with_frames };
 /// Refuses a scene that needs more memory than is available, at grid.cells, with both numbers. Costs nothing for scenes that cannot.

@@ -1,6 +1,5 @@
 #include "sim/probe_kinds.hpp"
 
-#include "core/slabs.hpp"
 #include "geometry/solids.hpp"
 #include "rigid/bodies.hpp"
 #include "sim/owners.hpp"
@@ -21,23 +20,11 @@ std::string component_name(const std::string& field, int components, int compone
     return components == 1 ? field : field + '_' + "xyz"[component];
 }
 
-/// The values of a cell field, added one after another; where each rank holds its own planes alone, they add theirs in turn.
-real sum_of(std::span<const real> values, const FieldSet& fields) {
-    const auto add = [&](real sum, std::size_t begin, std::size_t end) {
-        for (const real value : values.subspan(begin, end - begin)) sum += value;
-        return sum;
-    };
-    if (fields.cut == nullptr) return add(0, 0, values.size());
-    const int planes = fields.grid.cells[static_cast<std::size_t>(fields.grid.dim - 1)];
-    const std::size_t plane = values.size() / static_cast<std::size_t>(planes);
-    real sum = 0;
-    for (int r = 0; r < slabs().ranks(); ++r) {
-        if (slabs().rank() == r)
-            sum = add(sum, static_cast<std::size_t>(fields.cut->begin(r)) * plane,
-                      static_cast<std::size_t>(fields.cut->end(r, planes)) * plane);
-        sum = of_ranks(sum)[static_cast<std::size_t>(r)];
-    }
-    return sum;
+/// The values of a cell field, added one after another.
+real sum_of(const FieldSet& fields, const FieldView& view, std::size_t component) {
+    return added_by_owners(fields, view, real{0}, [&](real& sum) {
+        for (const real value : own_values(fields, view, component)) sum += value;
+    });
 }
 
 /// A grid field at fixed points.
@@ -114,7 +101,8 @@ public:
         for (const auto& integral : solver.integrals())
             if (integral.name == name_) return {integral.value};
         std::vector<real> sums;
-        for (const auto& values : fields.find("", name_)->data) sums.push_back(sum_of(values, fields) * cell_volume(fields.grid));
+        const FieldView& view = *fields.find("", name_);
+        for (std::size_t c = 0; c < view.data.size(); ++c) sums.push_back(sum_of(fields, view, c) * cell_volume(fields.grid));
         return sums;
     }
 

@@ -68,6 +68,7 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
 
 Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& kind) {
     Shares shares{.shared = kind.shared, .by_all = kind.by_all};
+    if (scene.dim() == 2 && !kind.by_all_flat.empty()) shares.by_all += (shares.by_all.empty() ? "" : ", ") + kind.by_all_flat;
     if (ranks == 1 || shares.shared == scene::Shared::by_particles) return shares;
     if (kind.cut)
         shares.cut = kind.cut(scene, ranks);

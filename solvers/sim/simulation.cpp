@@ -165,6 +165,7 @@ void Simulation::cut_anew(const Checkpoint& state) {
     solver->restore(state);
     replace(std::move(solver));
     shares_->cut = std::move(cut);
+    if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }
 
 real Simulation::end_time() const {

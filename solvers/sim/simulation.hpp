@@ -75,7 +75,8 @@ public:
     /// Writes a field between two steps: `write` gets it and changes what it likes but the number of values. Then the solver makes good
     /// what every step leaves behind, so that the field may come out otherwise than it was written: a velocity of grids free of divergence
     /// and still at walls, a depth nowhere negative. Throws BadInput where the solver has no such field that may be written (editable()
-    /// names them), where a value is not finite or cannot be, and leaves all as it was. "set.name" where the name alone could be several.
+    /// names them), where a value is not finite or cannot be, or where the run goes over several ranks, and leaves all as it was.
+    /// "set.name" where the name alone could be several.
     void edit(std::string_view field, const std::function<void(FieldEdit&)>& write);
     /// The fields that edit() takes: "velocity", "smoke", "particles.position", ...
     std::vector<std::string> editable();

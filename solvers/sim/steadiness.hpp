@@ -6,9 +6,9 @@
 
 namespace weir::sim {
 
-/// A copy, one list a component.
+/// A copy, one list a component; over ranks that hold their own planes alone, of those.
 std::vector<std::vector<real>> grid_velocity(const FieldSet& fields);
-/// The largest change since `before`, which is the velocity of `fields` from here on.
+/// The largest change anywhere since `before`, which is the velocity of `fields` from here on.
 real change_and_keep(const FieldSet& fields, std::vector<std::vector<real>>& before);
 
 }  // namespace weir::sim

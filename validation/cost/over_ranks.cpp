@@ -160,11 +160,13 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
         o.own_part =
             ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene, o.cut)));
     }
+    const std::vector<double> parts = o.own_part && !o.cut.empty() ? sim::parts_of_planes(scene, kinds) : std::vector<double>{};
     for (int rank = 0; rank < ranks; ++rank) {
         const RankOf of{.cut = o.cut, .rank = rank, .ranks = ranks};
         o.bytes.push_back(!o.own_part       ? f.held.bytes
-                          : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank)
+                          : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank, parts)
                                             : f.held.bytes * part_of_particles(scene, rank, ranks));
+        o.surface_bytes.push_back(sim::surface_bytes_of_rank(scene, f.held, rank, ranks));
         if (ranks > 1 && kind.sends) o.sent.push_back(kind.sends(scene, of, o.shape));
     }
     if (!o.sent.empty() && !o.nothing_shared) o.weak = weak_scaling(scene, kinds, o, o.shape.particles);
@@ -209,6 +211,7 @@ std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::
         s += fmt::format("  rank {:4}", r);
         if (planes) s += fmt::format("  planes {:5} to {:5}", o.cut.begin(r), o.cut.end(r, o.cut.planes()) - 1);
         s += fmt::format("  {:>10.4g} MB", o.bytes[rank] / 1e6);
+        if (o.surface_bytes[rank] > 0) s += fmt::format(", {:.4g} MB more for a surface", o.surface_bytes[rank] / 1e6);
         if (!o.sent.empty()) s += fmt::format("  {:6} messages {:>12} bytes a step", o.sent[rank].all().messages, o.sent[rank].all().bytes);
         s += "\n";
     }

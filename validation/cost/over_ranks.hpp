@@ -29,11 +29,12 @@ struct ModelStep {
 
 struct OverRanks {
     int ranks = 1;
-    Cut cut{};                    // empty where particles are shared
-    bool own_part = false;        // each holds its own planes alone
-    bool nothing_shared = false;  // every rank does all of it
-    std::string by_all{};         // what every rank does alone
-    std::vector<double> bytes{};  // that each holds
+    Cut cut{};                            // empty where particles are shared
+    bool own_part = false;                // each holds its own planes alone
+    bool nothing_shared = false;          // every rank does all of it
+    std::string by_all{};                 // what every rank does alone
+    std::vector<double> bytes{};          // that each holds
+    std::vector<double> surface_bytes{};  // more while output.surface is made
     StepShape shape{};
     std::vector<StepTraffic> sent{};  // by each, a step; empty where the solver has no formula
     Link link{};

@@ -2,6 +2,7 @@
 #include "validation/harness/generic_metrics.hpp"
 
 #include "scene/names.hpp"
+#include "sim/owners.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <fmt/format.h>
@@ -50,12 +51,16 @@ struct Component {
     NormSum error, scale;
 };
 
-/// f(x, weight, i) for each sample of one component where it lives: cell centres, faces, or particles, which weigh all the same.
+/// f(x, weight, i) for each sample of one component where it lives: cell centres, faces, or particles, which weigh all the same. Of this
+/// rank's own where each shows its part.
 template <class F>
 void for_each_sample_of(const RunRecord& run, const FieldView& view, int c, F&& f) {
-    if (view.where != Where::particle) return for_each_sample(run.fields.grid, view.where == Where::face ? c : -1, f);
+    if (view.where != Where::particle)
+        return for_each_sample(run.fields.grid, view.where == Where::face ? c : -1,
+                               sim::own_planes(run.fields, view, static_cast<std::size_t>(c)), f);
     const FieldView& position = *run.fields.find(view.set, "position");
-    for (std::size_t i = 0; i < position.data[0].size(); ++i) {
+    const auto [first, last] = sim::own_entries(run.fields, view, static_cast<std::size_t>(c));
+    for (std::size_t i = first; i < last; ++i) {
         Vec<3> x{};
         for (int a = 0; a < position.components(); ++a) x[a] = position.data[static_cast<std::size_t>(a)][i];
         f(x, 1.0, i);
@@ -67,21 +72,25 @@ template <class Exact>
 Component component_error(const RunRecord& run, const Reference& reference, const FieldView& view, int c, Norm norm, Exact&& exact) {
     const auto& data = view.data[static_cast<std::size_t>(c)];
     const auto covered = [&](const Vec<3>& x) { return !reference.covers || reference.covers(x, run.time); };
-    real value_mean = 0, exact_mean = 0, weight = 0;
-    for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
-        if (covered(x)) value_mean += w * data[i], exact_mean += w * exact(x), weight += w;
+    struct Means {
+        real value, exact, weight;
+    };
+    const Means all = sim::added_by_owners(run.fields, view, Means{0, 0, 0}, [&](Means& m) {
+        for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
+            if (covered(x)) m.value += w * data[i], m.exact += w * exact(x), m.weight += w;
+        });
     });
-    if (weight == 0) throw BadInput(fmt::format("the reference of \"{}\" covers no sample of the run", view.name));
+    if (all.weight == 0) throw BadInput(fmt::format("the reference of \"{}\" covers no sample of the run", view.name));
     const bool keep = reference.up_to_a_constant.count(view.name) == 0;
-    value_mean = keep ? 0 : value_mean / weight, exact_mean = keep ? 0 : exact_mean / weight;
-    Component sums{{norm}, {norm}};
-    for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
-        if (!covered(x)) return;
-        const real truth = exact(x) - exact_mean;
-        sums.error.add(data[i] - value_mean - truth, w);
-        sums.scale.add(truth, w);
+    const real value_mean = keep ? 0 : all.value / all.weight, exact_mean = keep ? 0 : all.exact / all.weight;
+    return sim::added_by_owners(run.fields, view, Component{{norm}, {norm}}, [&](Component& sums) {
+        for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
+            if (!covered(x)) return;
+            const real truth = exact(x) - exact_mean;
+            sums.error.add(data[i] - value_mean - truth, w);
+            sums.scale.add(truth, w);
+        });
     });
-    return sums;
 }
 
 real statistic(const Curve& s, const std::string& operation) {
@@ -116,10 +125,12 @@ bool has_series(const RunRecord& run, const std::string& name) {
 }
 
 real largest(const RunRecord& run, std::string_view field) {
-    NormSum sum{Norm::linf};
-    for (const auto& component : run.field(field).data)
-        for (const real v : component) sum.add(v, 1);
-    return sum.mean();
+    const FieldView& view = run.field(field);
+    const auto add = [&](NormSum& sum) {
+        for (std::size_t c = 0; c < view.data.size(); ++c)
+            for (const real v : sim::own_values(run.fields, view, c)) sum.add(v, 1);
+    };
+    return sim::added_by_owners(run.fields, view, NormSum{Norm::linf}, add).mean();
 }
 
 real field_metric(const Name& name, const RunRecord& run, const Reference& reference) {
@@ -154,6 +165,8 @@ FieldError field_error(const RunRecord& run, const Reference& reference, std::st
     const auto finish = [&](const NormSum& s) { return norm == Norm::l2 ? std::sqrt(s.sum) : s.sum; };
     return {finish(error), finish(scale)};
 }
+
+bool looks_at_whole_fields(std::string_view name) { return find_metric(name) != nullptr; }
 
 const Metric* find_metric(std::string_view name) {
     for (const Metric& m : metrics())

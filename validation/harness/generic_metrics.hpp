@@ -26,6 +26,9 @@ std::string unit_of(std::string_view name, const RunRecord& run);
 Quantity quantity_of(std::string_view name);
 /// The registered metric of that name, or nullptr.
 const Metric* find_metric(std::string_view name);
+/// Whether each of several ranks has to hold whole fields for it: a registered metric may look anywhere, the generic ones look at what a
+/// rank owns.
+bool looks_at_whole_fields(std::string_view name);
 /// Throws BadInput when `name` cannot be measured on a run that starts as `start`: so a misspelt metric costs no run.
 void check_metric(std::string_view name, const RunRecord& start, const Reference& reference);
 

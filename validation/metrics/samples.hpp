@@ -1,22 +1,27 @@
 // Loops over the samples of a field on the grid, and its values on lines: what metrics need of a finished run.
 #pragma once
+#include "core/halo.hpp"
 #include "core/solver.hpp"
 #include "core/types.hpp"
 #include "validation/harness/curve.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace weir::validation {
 
 /// f(x, weight, i) for each sample of one component of a field on the grid: cell centres (face_axis < 0), or faces across an axis, where
-/// the two on the boundary weigh half.
+/// the two on the boundary weigh half; in these planes of the slowest axis.
 template <class F>
-void for_each_sample(const GridView& g, int face_axis, F&& f) {
-    std::array<int, 3> n = g.cells;
+void for_each_sample(const GridView& g, int face_axis, const PlaneRange& planes, F&& f) {
+    std::array<int, 3> n = g.cells, lo{}, hi{};
     if (face_axis >= 0) ++n[static_cast<std::size_t>(face_axis)];
-    std::size_t i = 0;
-    for (int z = 0; z < n[2]; ++z)
-        for (int y = 0; y < n[1]; ++y)
+    hi = n;
+    const auto slowest = static_cast<std::size_t>(std::max(1, g.dim) - 1);
+    lo[slowest] = planes.begin, hi[slowest] = planes.end;
+    auto i = static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(lo[1] + n[1] * lo[2]);
+    for (int z = lo[2]; z < hi[2]; ++z)
+        for (int y = lo[1]; y < hi[1]; ++y)
             for (int x = 0; x < n[0]; ++x, ++i) {
                 const std::array<int, 3> at{x, y, z};
                 Vec<3> position{};
@@ -28,6 +33,13 @@ void for_each_sample(const GridView& g, int face_axis, F&& f) {
                                                     at[static_cast<std::size_t>(face_axis)] == n[static_cast<std::size_t>(face_axis)] - 1);
                 f(position, end ? 0.5 : 1.0, i);
             }
+}
+
+/// In all of them.
+template <class F>
+void for_each_sample(const GridView& g, int face_axis, F&& f) {
+    const int axis = std::max(1, g.dim) - 1;
+    for_each_sample(g, face_axis, {0, g.cells[static_cast<std::size_t>(axis)] + (face_axis == axis ? 1 : 0)}, f);
 }
 
 /// Volume of a cell [m^3]; in 2D per metre of depth.

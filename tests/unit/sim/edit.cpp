@@ -1,4 +1,5 @@
 // A hand in a run between two steps: what is written is checked and made good, what comes and goes is counted, who looks on is called.
+#include "core/slabs.hpp"
 #include "shared/device.hpp"
 #include "sim/registry.hpp"
 #include "support/fake_solver.hpp"
@@ -111,6 +112,28 @@ TEST("smoke is as it was written, but where a source holds it and inside solids,
     EXPECT_EQ(smoke[0], 1);
     EXPECT_EQ(smoke[4 * 16 + 12], 0.5);
     EXPECT_EQ(smoke[10 * 16 + 10], 0);
+}
+
+TEST("over ranks nobody edits: that is refused by name before anything is touched, and nothing is editable") {
+    Simulation water = made(drop("mac_water")), particles = made(drop("pbf"));
+    const std::string before = state_of(water), before_particles = state_of(particles);
+    const std::vector<Vec<3>> at{{{0.5, 0.5, 0}}};
+    const std::vector<std::size_t> which{0};
+    {
+        set_slabs(std::make_unique<Slabs>(0, 2));
+        const std::unique_ptr<void, void (*)(void*)> alone_again(&water, [](void*) { set_slabs(nullptr); });
+        bool written = false;
+        expect_in(refusal([&] { water.edit("velocity", [&](FieldEdit&) { written = true; }); }),
+                  "\"velocity\" is edited in one process only, and there are 2");
+        expect_in(refusal([&] { water.add_particles("markers", at, at); }),
+                  "particles of the set \"markers\" are added in one process only");
+        expect_in(refusal([&] { particles.remove_particles("particles", which); }), "are removed in one process only");
+        EXPECT_FALSE(written);
+        EXPECT_TRUE(water.editable().empty());
+    }
+    EXPECT_EQ(state_of(water), before);
+    EXPECT_EQ(state_of(particles), before_particles);
+    EXPECT_FALSE(water.editable().empty());
 }
 
 TEST("what cannot be written is refused, and not a bit changes") {
