@@ -69,10 +69,16 @@ probes=(--set 'probes=[{name="gauge",kind="gauge",at=[0.6,0.0]},{name="along",ki
     {name="floor",kind="wall_pressure",at=[0.2,0.0]},{name="side",kind="wall_pressure",at=[0.0,0.475]},{name="ball",kind="wall_pressure",at=[0.42,0.3]}]')
 probes_deep=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},
     {name="z",kind="front",axis="z"},{name="floor",kind="wall_pressure",at=[0.1,0.0,0.26]},{name="ball",kind="wall_pressure",at=[0.25,0.15,0.28]}]')
+probes_tall=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},
+    {name="z",kind="front",axis="z"},{name="floor",kind="wall_pressure",at=[0.1,0.0,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.15,0.18]},
+    {name="sums",kind="integral",field="volume"},{name="high",kind="point",field="cell_height",at=[0.2,0.1,0.16]}]')
+# some four cells a step, where a rank has four planes beyond its cuts as it begins
+fast='--set initial.velocity={name="random",speed=4.0} --set time.dt=0.01 --set time.guard="off"'
 even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
 # from rest, and without a jet into air: there friction takes hundreds of iterations
 viscous='--set fluid.viscosity=1e-4 --set effects.viscosity={} --set initial={} --set emitters=[]'
 water_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
+basin='--set waves={model="basin"} --set liquid=[{shape="box",min=[0.0,-10.0,0.0],max=[80.0,0.0,40.0]},{shape="box",min=[0.0,-10.0,0.0],max=[50.0,-0.5,88.0]}]'
 # what rank number 0, 1, .. of a run tells of itself, and a bound for it
 told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 | cut -d, -f$(($3 + 1)); }
 at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
@@ -82,6 +88,15 @@ holds_own() {
     done
 }
 holds_whole() { grep -q '"storage":"every rank holds whole grids"' "$1/run.json" || fail "run.json of $1 does not tell that grids are whole"; }
+# ends_steady RUN: the last run, and as many steps of this one, which were some
+ends_steady() {
+    says "steady at t = "
+    [ "$(grep -c '"step":' "$1/run.json")" -gt 2 ] || fail "$1 was steady from the start"
+}
+# what was measured of a run, without times
+measured() { grep -o '"measured": {[^}]*}' "$1/run.json" | tr '{,}' '\n\n\n' | grep -v '"ms_per_step"\|"seconds'; }
+# measures_alike ONE OTHER
+measures_alike() { [ -n "$(measured "$1")" ] && [ "$(measured "$1")" = "$(measured "$2")" ] || fail "$2 measured $(measured "$2"), and $1 $(measured "$1")"; }
 # continues RANKS FOLDER BESIDE [--set ...]: over so many, each of which reads its part of the checkpoint twice (it goes through it for the
 # checksum, and gets what it owns), `beside` bytes more of its own where not all own as much, and less than 8 KiB that all read: names,
 # sizes, the scene, clocks
@@ -102,6 +117,18 @@ case $part in
 2d)
     compare all "$every" "$flat"
     grep -q '"count":2,"cut":\[0,72,152\]' all-2-1/run.json || fail "run.json does not tell the ranks"
+    compare watched "2 1,3 2,4 1" "$flat" --set time.stop_when_steady=15 --set time.max_dt=0.005 --set time.cfl=0.5
+    holds_own watched-2-1 watched-4-1
+    ends_steady watched
+    # what is measured of fields by their names is of own planes; what a metric of its own looks at is all of it
+    norms="--measure velocity.l2_relative --measure velocity.linf --measure velocity.max --measure pressure.l1 --measure kinetic_energy.drift --measure divergence.max"
+    vortices="$scenes/../../../cases/taylor_green/scene.toml --set grid.cells=[160,160] --set time.end=0.1 --reference taylor_green"
+    compare norms "2 1,3 2,4 1" $vortices $norms
+    for run in norms-2-1 norms-3-2 norms-4-1; do measures_alike norms $run; done
+    holds_own norms-2-1 norms-4-1
+    compare energy "2 1" $vortices --measure flow.energy
+    measures_alike energy energy-2-1
+    holds_whole energy-2-1
     ;;
 3d)
     compare all "2 1,2 2,3 1,3 2,4 1,4 2" "$deep"
@@ -160,14 +187,15 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
     ends 2 over 2 "$weir" run --restart parts --quiet --set time.end=0.08 --set grid.cells=[24,20,72]
     says "does not fit the scene"
-    # anew at checkpoints; the last one changes nothing any more
-    ends 0 "$weir" run "$one_end" --checkpoint-every 3 --quiet --threads 1 --out anew
+    # anew at checkpoints; the last one changes nothing any more. How much the velocity has changed is watched across that.
+    one_end="$one_end --set time.stop_when_steady=300"
+    ends 0 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out anew
     for ranks in 2 4; do
-        ends 0 over $ranks "$weir" run "$one_end" --checkpoint-every 3 --quiet --threads 2 --out anew-$ranks
+        ends 0 over $ranks "$weir" run $one_end --checkpoint-every 3 --quiet --threads 2 --out anew-$ranks
         alike anew anew-$ranks
     done
     [ "$(told_cut anew-2)" != '[0,16,80]' ] || fail "nothing was cut anew at a checkpoint"
-    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$one_end" --checkpoint-every 3 --quiet --threads 1 --out anew-3
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out anew-3
     alike anew anew-3
     ;;
 heightfield)
@@ -185,11 +213,11 @@ heightfield)
         compare fronts "2 1,3 2" "$scene" --set 'probes=[{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},{name="z",kind="front",axis="z"}]'
         holds_own fronts-3-2
     done
-    # whole where somebody looks at all of it
-    for scene in "$shallow" "$columns"; do
+    for case in "$shallow --set time.stop_when_steady=10" "$columns --set time.stop_when_steady=15"; do
         rm -rf watched*
-        compare watched "2 1,3 2" "$scene" $around --set time.stop_when_steady=1e-9
-        holds_whole watched-2-1
+        compare watched "2 1,3 2,4 1" $case
+        holds_own watched-2-1 watched-4-1
+        ends_steady watched
     done
     for scene in "$shallow" "$columns"; do
         in_two_parts 0.2 0.4 "$scene"
@@ -208,7 +236,7 @@ waves)
     compare sea "$every" "$sea"
     grep -q '"cut":\[0,16,44\]' sea-2-1/run.json || fail "run.json does not tell the ranks"
     holds_own sea-2-1 sea-4-2
-    grep -q '"every_rank_does":"the transforms of a basin' sea-2-1/run.json || fail "run.json does not tell what is not shared"
+    ! grep -q every_rank_does sea-2-1/run.json || fail "run.json tells of what is not shared on a sea"
     compare trains "$every" "$trains"
     grep -q '"cut":\[0,8,22\]' trains-2-1/run.json || fail "run.json does not tell the ranks of layers"
     holds_own trains-2-1 trains-4-2
@@ -219,14 +247,20 @@ waves)
     compare stokes "2 2,3 1" "$below" --set 'waves={model="stokes",height=1.0,wavelength=40.0,heading=0.5}'
     compare sines "3 1" "$below" --set 'waves={model="sines",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
     compare gerstner "2 1,3 2" "$below" --set 'waves={model="gerstner",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
-    compare basin "2 1,3 2" "$below" --set 'waves={model="basin"}' \
-        --set 'liquid=[{shape="box",min=[0.0,-10.0,0.0],max=[80.0,0.0,40.0]},{shape="box",min=[0.0,-10.0,0.0],max=[50.0,-0.5,88.0]}]'
-    holds_whole basin-2-1
+    compare basin "$every" "$below" $basin \
+        --set 'probes=[{name="below",kind="point",field="velocity",at=[50.0,-3.0,60.0]},{name="above",kind="point",field="level_set",at=[20.0,1.0,30.0]},
+            {name="gauge",kind="gauge",at=[30.0,0.0,70.0]},{name="sums",kind="integral",field="potential_energy"}]'
+    holds_own basin-2-1 basin-4-2
+    ! grep -q every_rank_does basin-2-1/run.json || fail "run.json tells of what is not shared in a basin"
+    compare sheet "2 1,4 2" "$below" $basin --set grid.cells=[20,1,22]
+    compare narrow "3 1" "$below" $basin --set grid.cells=[2,7,22] # fewer columns than ranks
+    in_two_parts 0.2 0.6 "$below" $basin
     # in 2D a sea's row and the water below it; and fewer layers than ranks, where every rank does all of it
     sed -e 's/dim = 3/dim = 2/' -e 's/\[20, 7, 22\], size = \[80.0, 14.0, 88.0\], origin = \[0.0, -10.0, 0.0\]/[40, 9], size = [160.0, 18.0], origin = [0.0, -14.0]/' \
         -e 's/-9.81, 0.0/-9.81/; s/-3.0, 60.0/-3.0/; s/heading = 0.4, //' "$below" >row.toml
     compare row "2 2,3 1,4 1" row.toml
     compare row_basin "3 1" row.toml --set 'waves={model="basin"}' --set 'liquid=[{shape="wave",level=0.0,amplitude=0.5,wavelength=160.0}]'
+    grep -q '"every_rank_does":"the surface.s one row"' row_basin-3-1/run.json || fail "run.json does not tell what is not shared in 2D"
     compare surface "3 2" row.toml --set grid.cells=[40,1] --set probes=[]
     grep -q '"every_rank_does":"all of it"' surface-3-2/run.json || fail "run.json does not tell that every rank does all of it"
     for scene in "$sea" "$trains"; do
@@ -235,7 +269,7 @@ waves)
     ;;
 tallcell)
     compare deep "1 2,2 1,2 2,3 1,4 2" "$tall_deep"
-    holds_whole deep-2-1
+    holds_own deep-2-1 deep-4-2
     grep -q '"every_rank_does":"the levels of the pressure of fewer than 20,000 unknowns' deep-2-1/run.json || fail "run.json does not tell what is not shared"
     compare flat "2 1,3 2,4 1" "$tall"
     tall_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
@@ -243,11 +277,21 @@ tallcell)
     # paths of two cells around the ends of the cut axis, in steps that advection allows
     compare ring "2 1,3 2,4 1" "$tall_deep" $tall_ring $clear --set time.cfl=3 --set time.max_dt=0.05 \
         --set 'initial.velocity={name="random",speed=2.0}' --set 'effects={gravity={g=[0.0,-9.81,0.0]}}'
+    holds_own ring-4-1
+    # farther than a step of the scene's CFL number goes, without and around the ends
+    compare fast "3 1,4 2" "$tall_deep" $fast
+    compare fast_ring "3 2" "$tall_deep" $tall_ring $clear $fast
+    holds_own fast-4-2 fast_ring-3-2
+    compare probed "2 1,3 2" "$tall_deep" "${probes_tall[@]}" --set 'output.surface={method="level_set"}'
+    holds_own probed-3-2
+    compare watched "2 1" "$tall_deep" --set time.stop_when_steady=1e-9
+    holds_own watched-2-1
     compare single "3 1" "$tall_deep" $clear --set scheme.columns=single --set scheme.advection=semi_lagrangian
     compare uniform "3 2" "$tall_deep" --set scheme.columns=uniform
     compare lines "2 1,4 2" "$tall_deep" $clear --set grid.cells=[32,48,26] --set grid.size=[0.64,0.96,0.52]
     compare lying "3 1" "$tall_deep" --set 'effects={gravity={g=[-9.81,0.0,0.0]}}'  # columns along x
     compare across "3 1" "$tall_deep" --set 'effects={gravity={g=[0.0,0.0,-9.81]}}' # columns through all slabs: every rank does all
+    holds_whole across-3-1
     compare thin "4 1" "$tall_deep" --set grid.cells=[28,48,9] --set grid.size=[0.56,0.96,0.18]
     compare few "4 1" "$tall_deep" --set grid.cells=[28,48,7] --set grid.size=[0.56,0.96,0.14] # no pair of lines for each
     grep -q '"every_rank_does":"all of it"' few-4-1/run.json || fail "run.json does not tell that every rank does all of it"
@@ -284,6 +328,83 @@ schemes)
     compare paths "3 1" "$flat" --set scheme.advection=semi_lagrangian --set effects.viscosity.scheme=implicit
     compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
     compare small "4 1" "$flat" --set grid.cells=[16,5]
+    ;;
+moving) # solids on a way that the scene tells, which leads through cuts, and one that turns in one
+    stirs='solids=[{shape="sphere",centre=[0.45,0.45],radius=0.1,motion={kind="sinusoidal",amplitude=[0.02,0.1],frequency=3.0}}]'
+    stirs_deep='solids=[{shape="sphere",centre=[0.3,0.2,0.26],radius=0.1,motion={kind="sinusoidal",amplitude=[0.0,0.02,0.08],frequency=3.0}},
+        {shape="box",min=[0.05,0.02,0.08],max=[0.12,0.3,0.3],motion={kind="rotation",rate=6.0,axis=[0.0,1.0,0.0],centre=[0.1,0.1,0.2]}}]'
+    compare smoke "2 1,4 2" "$scenes/smoke.toml"
+    compare paths "3 2,4 1" "$flat" --set "$stirs"
+    holds_own paths-3-2
+    compare fluxes "3 1" "$flat" --set "$stirs" --set scheme.advection=conservative
+    compare deep "2 2,4 1" "$deep" --set "$stirs_deep" --set 'probes=[{name="ball",kind="wall_pressure",at=[0.3,0.1,0.26]}]'
+    holds_own deep-4-1
+    compare whole "3 1" "$deep" --set "$stirs_deep" --set scheme.poisson.method=cg_mic0
+    holds_whole whole-3-1
+    compare water "3 2,4 1" "$water" --set "$stirs"
+    holds_own water-3-2
+    compare water_deep "2 2,4 1" "$water_deep" --set "$stirs_deep"
+    holds_own water_deep-4-1
+    compare water_ring "3 2" "$water_deep" $water_ring $even --set "$stirs_deep" --set scheme.transfer=apic
+    compare water_viscous "3 1" "$water_deep" $viscous --set "$stirs_deep"
+    compare water_whole "3 1" "$water_deep" --set "$stirs_deep" --set scheme.poisson.method=cg_mic0
+    holds_whole water_whole-3-1
+    compare tall "3 1" "$tall" --set "$stirs"
+    compare tall_deep "2 2,4 1" "$tall_deep" --set "$stirs_deep"
+    holds_own tall_deep-4-1
+    for scene in "$deep" "$water_deep" "$tall_deep"; do
+        in_two_parts 0.03 0.06 "$scene" --set "$stirs_deep"
+        rm -rf free free_poisoned
+        ends 0 "$weir" run "$scene" --set "$stirs_deep" --checkpoint-every 1000 --quiet --threads 1 --out free
+        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$scene" --set "$stirs_deep" --checkpoint-every 1000 --quiet --threads 1 --out free_poisoned
+        alike free free_poisoned
+    done
+    ;;
+surfaces | surfaces_water) # the liquid's surface, which all make together, by every reconstruction
+    by() { echo "--set output.surface={method=\"$1\"${2:-}} --set output.every=0.03 --set time.end=0.03"; }
+    has_surface() { [ "$(ls "$1"/frames/liquid_surface_*.vtp | wc -l)" -ge 2 ] || fail "$1 has no surfaces"; }
+    # what nobody has brought is not a number
+    poisoned() {
+        rm -rf surface surface_poisoned
+        ends 0 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out surface
+        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out surface_poisoned
+        alike surface surface_poisoned
+    }
+    if [ $part = surfaces ]; then
+        for method in zhu_bridson anisotropic density; do
+            compare $method "$every" "$drops" $(by $method)
+            has_surface $method
+            compare $method-deep "2 1,3 2,4 1" "$drops_deep" $(by $method)
+        done
+        compare sph "2 2,3 1" "$drops_deep" $sph $(by density)
+        # as VTK's filters count, with several threads; and around the ends of the cut axis
+        compare threads "1 2,2 2,4 2" "$drops_deep" $(by density ,cell=0.5)
+        compare ring "3 1" "$drops_deep" --set 'sides={z_min={kind="periodic"},z_max={kind="periodic"}}' $(by anisotropic)
+        poisoned "$drops" $(by density)
+        poisoned "$drops_deep" $(by density)
+        exit 0
+    fi
+    for method in zhu_bridson anisotropic density; do
+        compare $method "2 1,3 2" "$water" $(by $method)
+        holds_own $method-3-2
+    done
+    compare deep "2 2,4 1" "$water_deep" $(by density)
+    has_surface deep
+    holds_own deep-4-1
+    compare whole "3 1" "$water" $(by zhu_bridson) --set scheme.poisson.method=cg_mic0
+    holds_whole whole-3-1
+    compare grid "2 1,3 2" "$water" $(by zhu_bridson) --set scheme.transfer=grid
+    compare set "$every" "$water" $(by level_set)
+    has_surface set
+    holds_own set-4-2
+    compare set-deep "2 1,2 2,3 1,4 2" "$water_deep" $(by level_set)
+    holds_own set-deep-4-2
+    compare tall-deep "2 1,3 2" "$tall_deep" $(by level_set)
+    compare tall "3 1" "$tall" $(by level_set)
+    poisoned "$water" $(by density)
+    poisoned "$water_deep" $(by density)
+    ends 0 over 2 "$weir" run "$water" $(by level_set) --explain
+    says "a surface by level_set, each frame"
     ;;
 storage) # each rank holds its own planes and those near its cuts, by its own count and as the system sees it
     cat >plume.toml <<-END
@@ -350,15 +471,13 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
         alike $solver $solver-2
         alike $solver $solver-4
     done
-    # continued by others, and where somebody looks at all of it
+    # continued by others
     # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more)
     continues 4 parts-2 $((8 * cells)) --set time.end=0.004
     continues 2 parts-4 $((8 * cells)) --set time.end=0.004
     ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
     alike one parts-2
     alike one parts-4
-    ends 0 over 2 "$weir" run "$flat" --quiet --threads 1 --out watched --set time.stop_when_steady=1e-9 --set time.end=0.04
-    holds_whole watched
     ;;
 storage_water) # the same of liquid with markers, as much of it in every plane
     cat >pool.toml <<-END
@@ -418,6 +537,61 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     alike one parts-2
     alike one parts-4
     ;;
+storage_tall) # the same of tall cells: planes of the lattice, and lines of the pressure's matrix and of its levels
+    cat >deep.toml <<-END
+	solver = "tallcell"
+	dim = 3
+	grid = { cells = [32, 48, 256], size = [0.32, 0.48, 2.56] }
+	time = { end = 0.003, max_dt = 0.001 }
+	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.32, 0.4, 2.56] } ]
+	solids = [ { shape = "cylinder", from = [0.16, 0.05, -0.1], to = [0.16, 0.05, 2.7], radius = 0.04 } ]
+	initial.velocity = { name = "random", speed = 0.1 }
+	effects = { gravity = { g = [0.0, -9.81, 0.0] }, volume_control = {} }
+	output = { every = 1.0 }
+	END
+    cells=$((32 * 48)) # of a plane
+    # shared RANKS FOLDER OF PARTS [--set ...]: each holds its part of what one process has in the folder
+    shared() {
+        local ranks=$1 folder=$2 parts=$3 one rank
+        shift 3
+        one=$(grep -o '"solver_bytes": [0-9]*' "$folder/run.json" | cut -d' ' -f2)
+        ends 0 over "$ranks" "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out "$parts" "$@"
+        alike "$folder" "$parts"
+        holds_own "$parts"
+        for rank in $(seq 0 $((ranks - 1))); do
+            # Numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
+            # more than that); lines 2. Whole are the pressure's levels of fewer than 20,000 unknowns, of 4/3 as many in all: 9 numbers, 11 of
+            # single precision and a flag, less than 128 bytes, in rows half as long again; and of a row of cells where the band begins and ends
+            # in it.
+            at_most "$(told "$parts" solver_bytes "$rank")" \
+                $((one * (256 / ranks + 9) / 256 + 14 * 8 * cells + 20000 * 4 / 3 * 128 * 3 / 2 + 8 * 48 * 256)) "$folder, rank $rank of $ranks"
+        done
+    }
+    ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out one
+    for ranks in 2 4; do
+        shared $ranks one parts-$ranks
+        ends 0 over $ranks "$weir" run deep.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,12,64]
+        for rank in $(seq 0 $((ranks - 1))); do
+            held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
+            # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
+            # beside it (3 + 1 + 1 numbers, a flag and a layer of a cell, each), a page at both ends of less than 128 arrays; and of a frame
+            # the own part of its largest array, three numbers a cell, and what the first rank puts into the file at once. A whole frame
+            # has 48 bytes a cell.
+            more=$(($(told parts-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+            at_most $more $((held + (2 * 42 + 24) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
+        done
+    done
+    # where the pressure is most of it: no tall cell anywhere
+    regular='--set scheme.columns=uniform --set solids=[]'
+    ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out regular $regular
+    for ranks in 2 4; do shared $ranks regular regular-$ranks $regular; done
+    # continued by others (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more)
+    continues 4 parts-2 $((8 * cells)) --set time.end=0.004
+    continues 2 parts-4 $((8 * cells)) --set time.end=0.004
+    ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
+    alike one parts-2
+    alike one parts-4
+    ;;
 storage_heightfield) # the same of rows of columns, with rain over a part of them, and of varied depth where they pull their neighbours
     cat >lake.toml <<-END
 	solver = "heightfield"
@@ -459,7 +633,7 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
         alike $model $model-4
     done
     ;;
-storage_waves) # the same of a sea: rows of the sheet, and its waves by columns of wavenumbers; with water below it, layers of rows
+storage_waves) # the same of a sea: rows of the sheet, and its waves by columns of wavenumbers; with water below it, layers of rows; of a basin
     cat >sea.toml <<-END
 	solver = "waves"
 	dim = 3
@@ -470,7 +644,8 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
 	effects.gravity.g = [0.0, -9.81, 0.0]
 	output = { every = 1.0, fields = ["velocity"] }
 	END
-    for sea in "choppy --set waves.choppiness=0.8" "deep --set grid.cells=[256,8,512]"; do
+    heap='--set waves={model="basin"} --set liquid=[{shape="box",min=[0.0,-20.0,0.0],max=[512.0,0.0,512.0]},{shape="sphere",centre=[200.0,0.0,300.0],radius=15.0}]'
+    for sea in "choppy --set waves.choppiness=0.8" "deep --set grid.cells=[256,8,512]" "basin $heap --set grid.cells=[256,8,512]"; do
         read -r name more <<<"$sea"
         cells=$([ $name = choppy ] && echo 512 || echo $((256 * 8))) points=$([ $name = choppy ] && echo 512 || echo 256) # of a plane
         ends 0 "$weir" run sea.toml $more --checkpoint-every 1000 --quiet --threads 1 --out $name
@@ -482,16 +657,71 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
             ends 0 over $ranks "$weir" run sea.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[64,1,64]
             for rank in $(seq 0 $((ranks - 1))); do
                 # One row beyond either cut, and one. Half the waves with 5 complex and 2 real numbers each; of their columns, one more than of the
-                # rows, the last rank has one more than its share. What a transposition brings and takes: half the waves of this rank.
+                # rows, the last rank has one more than its share. What a transposition brings and takes: half the waves of this rank; of a
+                # basin all, in real numbers.
                 held=$(told $name-$ranks solver_bytes $rank) rows=$((512 / ranks))
-                waves=$(((points / 2 + 1) * 512))
-                at_most "$held" $((one * (rows + 3) / 512 + (5 * 16 + 2 * 8) * 512 + 2 * 16 * (waves / ranks + 512))) "$name, rank $rank of $ranks"
+                waves=$(((points / 2 + 1) * 512)) more_columns=$(((5 * 16 + 2 * 8) * 512))
+                [ $name != basin ] || waves=$((points * 512 / 2)) more_columns=0
+                at_most "$held" $((one * (rows + 3) / 512 + more_columns + 2 * 16 * (waves / ranks + 512))) "$name, rank $rank of $ranks"
                 # As the system sees it, at any time of the run: that, a page at both ends of less than 32 arrays; and of a frame the own part of
                 # its largest array, 3 numbers a cell or 4 corners between points, and what the first rank puts into the file at once.
                 more_held=$(($(told $name-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
                 array=$((3 * cells > 4 * points ? 3 * cells : 4 * points))
                 at_most $more_held $((held + 8 * array * rows + 32 * 2 * 4096 + handed)) "$name peak, rank $rank of $ranks"
             done
+        done
+    done
+    ;;
+storage_surface) # of the liquid's surface too each rank holds its part: its own planes and particles, those that it reads beside them, its mesh
+    # extra RANKS RANK FOLDER: what the surface adds to a rank's peak, beyond what it adds to that of a few cells (VTK's filters themselves)
+    extra() { echo $(($(told "$3-$1" peak_bytes $2) - $(told "$3-plain-$1" peak_bytes $2) - $(told "$3-tiny-$1" peak_bytes $2) + $(told "$3-tiny-plain-$1" peak_bytes $2))); }
+    # made NAME SURFACE "TINY" SCENE: with a surface and without, in a tank and in a part of it
+    made() {
+        local name=$1 surface=$2 tiny=$3 ranks
+        shift 3
+        ends 0 "$weir" run "$@" --quiet --threads 1 --out $name --set "output.surface={method=\"$surface\"}"
+        for ranks in 2 4; do
+            ends 0 over $ranks "$weir" run "$@" --quiet --threads 1 --out $name-$ranks --set "output.surface={method=\"$surface\"}"
+            alike $name $name-$ranks
+            ends 0 over $ranks "$weir" run "$@" --quiet --threads 1 --out $name-plain-$ranks
+            ends 0 over $ranks "$weir" run "$@" $tiny --quiet --threads 1 --out $name-tiny-$ranks --set "output.surface={method=\"$surface\"}"
+            ends 0 over $ranks "$weir" run "$@" $tiny --quiet --threads 1 --out $name-tiny-plain-$ranks
+        done
+    }
+    cat >column.toml <<-END
+	solver = "pbf"
+	dim = 3
+	grid = { cells = [24, 24, 520], size = [0.24, 0.24, 5.2] }
+	time = { end = 0.004, dt = 2e-3 }
+	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.24, 0.12, 5.12] } ]
+	output = { every = 1.0 }
+	END
+    made column density '--set grid.cells=[24,24,40] --set grid.size=[0.24,0.24,0.4] --set liquid=[{shape="box",min=[0.0,0.0,0.0],max=[0.24,0.12,0.3]}]' column.toml
+    layer=$((24 * 12)) # of 512
+    for ranks in 2 4; do
+        for rank in $(seq 0 $((ranks - 1))); do
+            # A particle: 28 bytes, 48 given to those who read it and 48 as it comes; and then 24 of its velocity, 28 with images and room for
+            # as many, 32 sorted, and 70 of samples and mesh, which is more. Cuts are at multiples of 8 planes, and less than 12 layers
+            # beyond them are read. The first rank has pieces of the file too.
+            at_most "$(extra $ranks $rank column)" $((190 * layer * (512 / ranks + 4 + 2 * 12) + (rank == 0 ? handed : 0))) "surface of particles, rank $rank of $ranks"
+        done
+    done
+    cat >pool.toml <<-END
+	solver = "mac_water"
+	dim = 3
+	grid = { cells = [32, 32, 256], size = [0.32, 0.32, 2.56] }
+	time = { end = 0.002, max_dt = 0.001 }
+	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.32, 0.16, 2.56] } ]
+	initial.velocity = { name = "random", speed = 0.1 }
+	output = { every = 1.0, fields = ["pressure"] }
+	END
+    made pool level_set '--set grid.cells=[32,32,80] --set grid.size=[0.32,0.32,0.8]' pool.toml
+    holds_own pool-2 pool-4
+    for ranks in 2 4; do
+        for rank in $(seq 0 $((ranks - 1))); do
+            # Samples, of which two planes beyond either cut and one; and less than 120 points and 240 triangles a plane: 150 and 60 bytes each.
+            # The level set, the velocity and the markers of all would be 32 bytes a cell and 192 a cell of liquid.
+            at_most "$(extra $ranks $rank pool)" $(((4 * 34 * 34 + 120 * 150 + 240 * 60) * (256 / ranks + 5) + (rank == 0 ? handed : 0))) "surface of a level set, rank $rank of $ranks"
         done
     done
     ;;
@@ -515,13 +745,13 @@ halo) # NaN in every plane that no one has brought, whenever something is brough
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
         alike liquid_3d liquid_3d_poisoned
     done
-    for case in "$shallow" "$columns" "$sea" "$trains" "$below"; do
+    for case in "$shallow" "$columns" "$sea" "$trains" "$below" "$below $basin"; do
         rm -rf field field_poisoned
         ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field_poisoned
         alike field field_poisoned
     done
-    for case in "$tall_deep" "$tall_deep --set solids=[] $water_ring --set time.cfl=2" "$tall"; do
+    for case in "$tall_deep" "$tall_deep --set solids=[] $water_ring --set time.cfl=2" "$tall_deep $fast" "$tall"; do
         rm -rf tall tall_poisoned
         ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out tall
         ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out tall_poisoned
@@ -571,18 +801,17 @@ ends)
     }
     refused 'solver "closed_vessel" runs in one process' "$scenes/../../../cases/closed_vessel/scene.toml"
     refused "effects.hand: the hand pushes in one process only" "$tall" --set effects.hand={}
-    refused 'solids\[0\].motion' "$tall_deep" --set 'solids=[{shape="sphere",centre=[0.3,0.15,0.28],radius=0.1,motion={kind="rotation",rate=1.0,axis=[0.0,0.0,1.0]}}]'
     refused "effects.hand: the hand pushes in one process only" "$water" --set effects.hand={}
-    refused 'solids\[0\].motion' "$water" --set 'solids=[{shape="sphere",centre=[0.5,0.3],radius=0.08,motion={kind="rotation",rate=1.0,axis=[0.0,0.0,1.0]}}]'
     refused scheme.poisson.method "$water" --set scheme.poisson.method=petsc_gamg
     refused "effects.hand: the hand pushes in one process only" "$drops" --set effects.hand={}
     refused "scheme.backend: this backend runs in one process only" "$drops" --set scheme.backend=reference
-    refused 'solids\[0\].motion' "$scenes/smoke.toml"
     refused scheme.poisson.method "$flat" --set scheme.poisson.method=petsc_gamg
     refused "floats: objects float in one process only" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
     refused "effects.hand: the hand pushes in one process only" "$shallow" --set effects.hand={}
     refused "effects.hand: the hand pushes in one process only" "$line" --set effects.hand={}
     # what only some ranks see of their rows all say, in the words of one process
+    refused "there is liquid over air at x = 50 m" "$below" --set 'waves={model="basin"}' \
+        --set 'liquid=[{shape="box",min=[0.0,-10.0,0.0],max=[80.0,0.0,88.0]},{shape="box",min=[48.0,2.0,70.0],max=[60.0,3.0,88.0]}]'
     refused "terrain.height has no value at x = 0.05, z = 3.05" "$shallow" --set 'terrain.height="sqrt(3-z)"'
     refused "hangs above the bed at x = 2.95, z = 2.85" "$columns" --set initial={} --set 'liquid=[{shape="box",min=[2.0,0.5,2.8],max=[3.0,0.6,7.4]}]'
     ends 0 over 3 "$weir" run "$shallow" --checkpoint-every 1000 --quiet --out rows --set time.end=0.1

@@ -236,7 +236,7 @@ TEST("heightfield in 2D, which every rank moves, sends what the loop of a run se
 }
 
 // A sum of waves is one transposition: of the surface's height, of what moves it sideways and its derivatives, of velocities.
-TEST("waves: seas with and without water below them send what the formula says, and other models what the loop sends") {
+TEST("waves: seas and basins with and without water below them send what the formula says, and other models what the loop sends") {
     const std::string field =
         "solver = \"waves\"\ndim = 3\ntime = { end = 0.3, dt = 1e-3 }\noutput = { every = 10.0, compression = \"none\" }\n";
     const std::string down = "effects = { gravity = { g = [0.0, -9.81, 0.0] } }\n",
@@ -250,6 +250,11 @@ TEST("waves: seas with and without water below them send what the formula says, 
     expect_as_told(field + down + sheet + sea(", choppiness = 0.2"), {2, 3}, {1e-3, 5, 15});  // and it does not fold
     expect_as_told(field + foam + sheet + sea(", choppiness = 1.0, velocity = false"), {3}, {1e-3, 5, 15});
     expect_as_told(field + down + water + sea(""), {2, 3}, {1e-3, 5, 15});
+    const std::string basin =
+        "waves = { model = \"basin\" }\nliquid = [ { shape = \"box\", min = [0.0, -6.0, 0.0], max = [90.0, 0.0, 132.0] }, "
+        "{ shape = \"sphere\", centre = [20.0, -2.0, 30.0], radius = 3.0 } ]\n";
+    expect_as_told(field + down + sheet + basin, {2, 3}, {1e-3, 5, 15});
+    expect_as_told(field + down + water + basin, {2, 3}, {1e-3, 5, 15});
     const std::string trochoid = "waves = { model = \"gerstner\", trains = [ { amplitude = 0.5, wavelength = 30.0 } ] }\n";
     expect_as_told(field + down + sheet + trochoid, {2, 3}, {1e-3, 5, 15});
     expect_as_told(field + foam + sheet + trochoid, {2}, {1e-3, 5, 15});
@@ -277,10 +282,11 @@ std::pair<int, std::string> said(std::vector<std::string> arguments) {
 // tenth of the half or quarter that it holds. In mac_water, of liquid that stands as high on all planes, the band and the markers reach
 // beyond the 5 or 9 planes near cuts that are counted: 11 planes to either side of 40 for bytes, one for markers. Of a height field and of
 // waves a rank reads fewer, 2 rows or 1 beyond a cut, less than a tenth of 64; a sea that is summed over ranks has the messages of its
-// transposition beside that, 2 complex numbers for each wave, where it has 5 and 12 reals for the two points that make one.
+// transposition beside that, 2 complex numbers for each wave, where it has 5 and 12 reals for the two points that make one. Of tall cells
+// it has 2 lines of columns beyond a cut where the lattice has 4 planes and bytes 11, and whole levels of the pressure as mac.
 TEST(
-    "what each rank of mac will hold is foretold within a fifth, and of mac_water within a third, of heightfield and waves within a "
-    "fifth") {
+    "what each rank of mac will hold is foretold within a fifth, and of mac_water within a third, of tallcell, heightfield and waves "
+    "within a fifth") {
     if (const std::string why = no_ranks(); !why.empty()) GTEST_SKIP() << why;
     const auto compare = [](const std::string& text, double end, double wrong) {
         const Runs runs(text);
@@ -301,6 +307,16 @@ TEST(
                 "dim = 2\ngrid = { cells = [128, 160], size = [1.28, 1.6] }\n"
                 "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.64, 1.6] } ]\n",
             2e-4, 0.33);
+    // a quarter of the cut axis: of the planes that hold it a rank has a few, and of empty ones many
+    compare(pool +
+                "dim = 3\ngrid = { cells = [32, 32, 160], size = [0.32, 0.32, 1.6] }\n"
+                "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.32, 0.24, 0.4] } ]\n",
+            2e-4, 0.25);
+    compare(
+        "solver = \"tallcell\"\ndim = 3\ngrid = { cells = [32, 48, 128], size = [0.32, 0.48, 1.28] }\n"
+        "time = { end = 0.002, max_dt = 1e-3 }\noutput = { every = 1.0, fields = [\"pressure\"], compression = \"none\" }\n"
+        "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.32, 0.36, 1.28] } ]\neffects.gravity.g = [0.0, -9.81, 0.0]\n",
+        0.002, 0.2);
     compare(
         "solver = \"heightfield\"\ndim = 3\ngrid = { cells = [64, 1, 256], size = [6.4, 1.0, 25.6] }\ntime = { end = 0.003, dt = 0.001 }\n"
         "initial = { surface = \"0.4 + 0.05*sin(2*x)\" }\neffects.gravity.g = [0.0, -9.81, 0.0]\noutput = { every = 1.0 }\n",
