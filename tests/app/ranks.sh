@@ -109,6 +109,40 @@ continues() {
         at_most "$(told "$folder" checkpoint_bytes "$rank")" $((2 * size / ranks + beside + 8192)) "read of $folder, rank $rank of $ranks"
     done
 }
+# continued_by_others ONE PARTS BESIDE4 BESIDE2 END: what two ranks have saved four continue, and what four have saved two, as one process does
+continued_by_others() {
+    continues 4 "$2-2" "$3" --set time.end="$5"
+    continues 2 "$2-4" "$4" --set time.end="$5"
+    ends 0 "$weir" run --restart "$1" --checkpoint-every 1000 --quiet --threads 1 --set time.end="$5"
+    alike "$1" "$2-2"
+    alike "$1" "$2-4"
+}
+# poisoned RANKS THREADS SCENE [--set ...]: what no one has brought is not a number, and nothing changes
+poisoned() {
+    local ranks=$1 threads=$2
+    shift 2
+    rm -rf clean poisoned
+    ends 0 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out clean
+    ends 0 over "$ranks" WEIR_HALO_POISON=1 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads "$threads" --out poisoned
+    alike clean poisoned
+}
+# what the solver of one process holds, and what the system has seen of a rank beyond what it sees of one with a few cells
+holds() { grep -o '"solver_bytes": [0-9]*' "$1/run.json" | cut -d' ' -f2; }
+peak_beyond() { echo $(($(told "$2" peak_bytes "$3") - $(told "$1" peak_bytes "$3"))); } # TINY FOLDER RANK
+# shared SCENE PLANE_CELLS WHOLE RANKS FOLDER PARTS [--set ...]: of 256 planes each of so many ranks holds its part of what one process has in
+# the folder: numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
+# more than that); and so much that is whole
+shared() {
+    local scene=$1 plane=$2 whole=$3 ranks=$4 folder=$5 parts=$6 one rank
+    shift 6
+    one=$(holds "$folder")
+    ends 0 over "$ranks" "$weir" run "$scene" --checkpoint-every 1000 --quiet --threads 1 --out "$parts" "$@"
+    alike "$folder" "$parts"
+    holds_own "$parts"
+    for rank in $(seq 0 $((ranks - 1))); do
+        at_most "$(told "$parts" solver_bytes "$rank")" $((one * (256 / ranks + 9) / 256 + 14 * 8 * plane + whole)) "$folder, rank $rank of $ranks"
+    done
+}
 # pieces of a file between two ranks, and blocks that are being compressed
 handed=$((4 * 1048576 + 2 * 8 * 32768))
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
@@ -181,8 +215,7 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     is_cut begun-2-1 '[0,16,80]' # 20 planes of liquid
     is_cut begun-4-2 '[0,8,16,24,80]'
     holds_own begun-4-2
-    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$one_end" --checkpoint-every 1000 --quiet --threads 1 --out poisoned
-    alike begun poisoned
+    poisoned 3 1 "$one_end"
     in_two_parts 0.06 0.07 "$one_end"
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
     ends 2 over 2 "$weir" run --restart parts --quiet --set time.end=0.08 --set grid.cells=[24,20,72]
@@ -354,22 +387,12 @@ moving) # solids on a way that the scene tells, which leads through cuts, and on
     holds_own tall_deep-4-1
     for scene in "$deep" "$water_deep" "$tall_deep"; do
         in_two_parts 0.03 0.06 "$scene" --set "$stirs_deep"
-        rm -rf free free_poisoned
-        ends 0 "$weir" run "$scene" --set "$stirs_deep" --checkpoint-every 1000 --quiet --threads 1 --out free
-        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$scene" --set "$stirs_deep" --checkpoint-every 1000 --quiet --threads 1 --out free_poisoned
-        alike free free_poisoned
+        poisoned 3 1 "$scene" --set "$stirs_deep"
     done
     ;;
 surfaces | surfaces_water) # the liquid's surface, which all make together, by every reconstruction
     by() { echo "--set output.surface={method=\"$1\"${2:-}} --set output.every=0.03 --set time.end=0.03"; }
     has_surface() { [ "$(ls "$1"/frames/liquid_surface_*.vtp | wc -l)" -ge 2 ] || fail "$1 has no surfaces"; }
-    # what nobody has brought is not a number
-    poisoned() {
-        rm -rf surface surface_poisoned
-        ends 0 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out surface
-        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out surface_poisoned
-        alike surface surface_poisoned
-    }
     if [ $part = surfaces ]; then
         for method in zhu_bridson anisotropic density; do
             compare $method "$every" "$drops" $(by $method)
@@ -380,8 +403,8 @@ surfaces | surfaces_water) # the liquid's surface, which all make together, by e
         # as VTK's filters count, with several threads; and around the ends of the cut axis
         compare threads "1 2,2 2,4 2" "$drops_deep" $(by density ,cell=0.5)
         compare ring "3 1" "$drops_deep" --set 'sides={z_min={kind="periodic"},z_max={kind="periodic"}}' $(by anisotropic)
-        poisoned "$drops" $(by density)
-        poisoned "$drops_deep" $(by density)
+        poisoned 3 1 "$drops" $(by density)
+        poisoned 3 1 "$drops_deep" $(by density)
         exit 0
     fi
     for method in zhu_bridson anisotropic density; do
@@ -401,8 +424,8 @@ surfaces | surfaces_water) # the liquid's surface, which all make together, by e
     holds_own set-deep-4-2
     compare tall-deep "2 1,3 2" "$tall_deep" $(by level_set)
     compare tall "3 1" "$tall" $(by level_set)
-    poisoned "$water" $(by density)
-    poisoned "$water_deep" $(by density)
+    poisoned 3 1 "$water" $(by density)
+    poisoned 3 1 "$water_deep" $(by density)
     ends 0 over 2 "$weir" run "$water" $(by level_set) --explain
     says "a surface by level_set, each frame"
     ;;
@@ -417,7 +440,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
 	output = { every = 1.0 }
 	END
     ends 0 "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out one
-    one=$(grep -o '"solver_bytes": [0-9]*' one/run.json | cut -d' ' -f2)
+    one=$(holds one)
     cells=$((48 * 48)) # of a plane
     for ranks in 2 4; do
         ends 0 over $ranks "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
@@ -433,7 +456,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
             # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
             # beside it (3 + 1 + 2 numbers and a flag a cell, each), a page at both ends of less than 128 arrays; and of a frame the own part
             # of its largest array, three numbers a cell, and what the first rank puts into the file at once. A whole frame has 48 bytes a cell.
-            more=$(($(told parts-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+            more=$(peak_beyond tiny-$ranks parts-$ranks $rank)
             at_most $more $((held + (2 * 49 + 24) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
         done
     done
@@ -452,7 +475,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
         column=(column.toml --checkpoint-every 1000 --quiet --threads 1 --set solver=$solver)
         [ $solver = pbf ] && column+=(--set scheme={} --set time.dt=2e-3)
         ends 0 "$weir" run "${column[@]}" --out $solver
-        whole=$(grep -o '"solver_bytes": [0-9]*' $solver/run.json | cut -d' ' -f2) layers=$((512 * 64))
+        whole=$(holds $solver) layers=$((512 * 64))
         # a cell is as wide as the support: two spacings, or what pbf has without being told
         deep=$([ $solver = sph ] && echo 3 || echo 5) beside=$((2 * (deep * 64 + deep * deep * 8 + deep * deep * deep)))
         for ranks in 2 4; do
@@ -465,19 +488,10 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
                     $((whole * (layers / ranks + beside) / layers * 17 / 16 + 2 * 8 * 8 * beside + 12 * 4 * 16)) "$solver, rank $rank of $ranks"
             done
         done
-        continues 4 $solver-2 0 --set time.end=0.008
-        continues 2 $solver-4 0 --set time.end=0.008
-        ends 0 "$weir" run --restart $solver --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.008
-        alike $solver $solver-2
-        alike $solver $solver-4
+        continued_by_others $solver $solver 0 0 0.008
     done
-    # continued by others
-    # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more)
-    continues 4 parts-2 $((8 * cells)) --set time.end=0.004
-    continues 2 parts-4 $((8 * cells)) --set time.end=0.004
-    ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
-    alike one parts-2
-    alike one parts-4
+    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more
+    continued_by_others one parts $((8 * cells)) $((8 * cells)) 0.004
     ;;
 storage_water) # the same of liquid with markers, as much of it in every plane
     cat >pool.toml <<-END
@@ -492,24 +506,11 @@ storage_water) # the same of liquid with markers, as much of it in every plane
 	output = { every = 1.0 }
 	END
     cells=$((32 * 32)) # of a plane
-    # shared RANKS FOLDER OF PARTS [--set ...]: each holds its part of what one process has in the folder
-    shared() {
-        local ranks=$1 folder=$2 parts=$3 one rank
-        shift 3
-        one=$(grep -o '"solver_bytes": [0-9]*' "$folder/run.json" | cut -d' ' -f2)
-        ends 0 over "$ranks" "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out "$parts" "$@"
-        alike "$folder" "$parts"
-        holds_own "$parts"
-        for rank in $(seq 0 $((ranks - 1))); do
-            # Numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
-            # more than that). The pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row.
-            at_most "$(told "$parts" solver_bytes "$rank")" \
-                $((one * (256 / ranks + 9) / 256 + 14 * 8 * cells + 20000 * 8 / 7 * 128 + 64 * 32 * 256)) "$folder, rank $rank of $ranks"
-        done
-    }
+    # the pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row
+    pool="pool.toml $cells $((20000 * 8 / 7 * 128 + 64 * 32 * 256))"
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     for ranks in 2 4; do
-        shared $ranks one parts-$ranks
+        shared $pool $ranks one parts-$ranks
         ends 0 over $ranks "$weir" run pool.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,64]
         for rank in $(seq 0 $((ranks - 1))); do
             held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
@@ -517,25 +518,20 @@ storage_water) # the same of liquid with markers, as much of it in every plane
             # beside it (3 + 1 + 1 numbers, a flag and a layer of a cell, 6 numbers of 8 markers in each of the lower half, each), a page at
             # both ends of less than 128 arrays; and of a frame the own part of its largest array, three numbers a marker, and what the
             # first rank puts into the file at once. A whole frame has 40 bytes a cell and 48 a marker.
-            more=$(($(told parts-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+            more=$(peak_beyond tiny-$ranks parts-$ranks $rank)
             at_most $more $((held + (2 * (42 + 4 * 6 * 8) + 4 * 3 * 8) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
         done
     done
     # of friction too: weights, vectors and lists of faces; of a pool that begins to slosh
     slosh="$viscous --set effects.gravity.g=[1.0,-9.81,0.0]"
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out viscous $slosh
-    for ranks in 2 4; do shared $ranks viscous viscous-$ranks $slosh; done
+    for ranks in 2 4; do shared $pool $ranks viscous viscous-$ranks $slosh; done
     # in cells that are no cubes, half as many along x
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out flat --set grid.cells=[16,32,256]
-    for ranks in 2 4; do shared $ranks flat flat-$ranks --set grid.cells=[16,32,256]; done
-    # continued by others
-    # (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more; and before anything is made, each looks
-    # at its share of the level set, 8 bytes a cell, to find where planes are cut)
-    continues 4 parts-2 $((8 * cells + 8 * cells * 256 / 4)) --set time.end=0.004
-    continues 2 parts-4 $((8 * cells + 8 * cells * 256 / 2)) --set time.end=0.004
-    ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
-    alike one parts-2
-    alike one parts-4
+    for ranks in 2 4; do shared $pool $ranks flat flat-$ranks --set grid.cells=[16,32,256]; done
+    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more; and before anything is made, each looks
+    # at its share of the level set, 8 bytes a cell, to find where planes are cut
+    continued_by_others one parts $((8 * cells + 8 * cells * 256 / 4)) $((8 * cells + 8 * cells * 256 / 2)) 0.004
     ;;
 storage_tall) # the same of tall cells: planes of the lattice, and lines of the pressure's matrix and of its levels
     cat >deep.toml <<-END
@@ -550,26 +546,12 @@ storage_tall) # the same of tall cells: planes of the lattice, and lines of the 
 	output = { every = 1.0 }
 	END
     cells=$((32 * 48)) # of a plane
-    # shared RANKS FOLDER OF PARTS [--set ...]: each holds its part of what one process has in the folder
-    shared() {
-        local ranks=$1 folder=$2 parts=$3 one rank
-        shift 3
-        one=$(grep -o '"solver_bytes": [0-9]*' "$folder/run.json" | cut -d' ' -f2)
-        ends 0 over "$ranks" "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out "$parts" "$@"
-        alike "$folder" "$parts"
-        holds_own "$parts"
-        for rank in $(seq 0 $((ranks - 1))); do
-            # Numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
-            # more than that); lines 2. Whole are the pressure's levels of fewer than 20,000 unknowns, of 4/3 as many in all: 9 numbers, 11 of
-            # single precision and a flag, less than 128 bytes, in rows half as long again; and of a row of cells where the band begins and ends
-            # in it.
-            at_most "$(told "$parts" solver_bytes "$rank")" \
-                $((one * (256 / ranks + 9) / 256 + 14 * 8 * cells + 20000 * 4 / 3 * 128 * 3 / 2 + 8 * 48 * 256)) "$folder, rank $rank of $ranks"
-        done
-    }
+    # Lines 2 beyond the cuts. Whole are the pressure's levels of fewer than 20,000 unknowns, of 4/3 as many in all: 9 numbers, 11 of single
+    # precision and a flag, less than 128 bytes, in rows half as long again; and of a row of cells where the band begins and ends in it.
+    deep="deep.toml $cells $((20000 * 4 / 3 * 128 * 3 / 2 + 8 * 48 * 256))"
     ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     for ranks in 2 4; do
-        shared $ranks one parts-$ranks
+        shared $deep $ranks one parts-$ranks
         ends 0 over $ranks "$weir" run deep.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,12,64]
         for rank in $(seq 0 $((ranks - 1))); do
             held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
@@ -577,20 +559,16 @@ storage_tall) # the same of tall cells: planes of the lattice, and lines of the 
             # beside it (3 + 1 + 1 numbers, a flag and a layer of a cell, each), a page at both ends of less than 128 arrays; and of a frame
             # the own part of its largest array, three numbers a cell, and what the first rank puts into the file at once. A whole frame
             # has 48 bytes a cell.
-            more=$(($(told parts-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+            more=$(peak_beyond tiny-$ranks parts-$ranks $rank)
             at_most $more $((held + (2 * 42 + 24) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
         done
     done
     # where the pressure is most of it: no tall cell anywhere
     regular='--set scheme.columns=uniform --set solids=[]'
     ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out regular $regular
-    for ranks in 2 4; do shared $ranks regular regular-$ranks $regular; done
-    # continued by others (a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more)
-    continues 4 parts-2 $((8 * cells)) --set time.end=0.004
-    continues 2 parts-4 $((8 * cells)) --set time.end=0.004
-    ends 0 "$weir" run --restart one --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.004
-    alike one parts-2
-    alike one parts-4
+    for ranks in 2 4; do shared $deep $ranks regular regular-$ranks $regular; done
+    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more
+    continued_by_others one parts $((8 * cells)) $((8 * cells)) 0.004
     ;;
 storage_heightfield) # the same of rows of columns, with rain over a part of them, and of varied depth where they pull their neighbours
     cat >lake.toml <<-END
@@ -608,7 +586,7 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
         lake=(lake.toml --quiet --threads 1 --set scheme.model=$model)
         [ $model = columns ] || lake+=($rain)
         ends 0 "$weir" run "${lake[@]}" --checkpoint-every 1000 --out $model
-        one=$(grep -o '"solver_bytes": [0-9]*' $model/run.json | cut -d' ' -f2)
+        one=$(holds $model)
         for ranks in 2 4; do
             ends 0 over $ranks "$weir" run "${lake[@]}" --checkpoint-every 1000 --out $model-$ranks
             alike $model $model-$ranks
@@ -621,16 +599,11 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
                 # As the system sees it, at any time of the run, beyond what a run of a few columns takes: that, the last good state and a
                 # checkpoint beside it (4 numbers a column, each), a page at both ends of less than 32 arrays; and of a frame the own part
                 # of its array, a number a column, and what the first rank puts into the file at once.
-                more_held=$(($(told $model-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+                more_held=$(peak_beyond tiny-$ranks $model-$ranks $rank)
                 at_most $more_held $((held + (2 * 4 + 1) * 8 * 512 * rows + 32 * 2 * 4096 + handed)) "$model peak, rank $rank of $ranks"
             done
         done
-        # continued by others
-        continues 4 $model-2 0 --set time.end=0.09
-        continues 2 $model-4 0 --set time.end=0.09
-        ends 0 "$weir" run --restart $model --checkpoint-every 1000 --quiet --threads 1 --set time.end=0.09
-        alike $model $model-2
-        alike $model $model-4
+        continued_by_others $model $model 0 0 0.09
     done
     ;;
 storage_waves) # the same of a sea: rows of the sheet, and its waves by columns of wavenumbers; with water below it, layers of rows; of a basin
@@ -649,7 +622,7 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
         read -r name more <<<"$sea"
         cells=$([ $name = choppy ] && echo 512 || echo $((256 * 8))) points=$([ $name = choppy ] && echo 512 || echo 256) # of a plane
         ends 0 "$weir" run sea.toml $more --checkpoint-every 1000 --quiet --threads 1 --out $name
-        one=$(grep -o '"solver_bytes": [0-9]*' $name/run.json | cut -d' ' -f2)
+        one=$(holds $name)
         for ranks in 2 4; do
             ends 0 over $ranks "$weir" run sea.toml $more --checkpoint-every 1000 --quiet --threads 1 --out $name-$ranks
             alike $name $name-$ranks
@@ -665,7 +638,7 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
                 at_most "$held" $((one * (rows + 3) / 512 + more_columns + 2 * 16 * (waves / ranks + 512))) "$name, rank $rank of $ranks"
                 # As the system sees it, at any time of the run: that, a page at both ends of less than 32 arrays; and of a frame the own part of
                 # its largest array, 3 numbers a cell or 4 corners between points, and what the first rank puts into the file at once.
-                more_held=$(($(told $name-$ranks peak_bytes $rank) - $(told tiny-$ranks peak_bytes $rank)))
+                more_held=$(peak_beyond tiny-$ranks $name-$ranks $rank)
                 array=$((3 * cells > 4 * points ? 3 * cells : 4 * points))
                 at_most $more_held $((held + 8 * array * rows + 32 * 2 * 4096 + handed)) "$name peak, rank $rank of $ranks"
             done
@@ -674,7 +647,7 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
     ;;
 storage_surface) # of the liquid's surface too each rank holds its part: its own planes and particles, those that it reads beside them, its mesh
     # extra RANKS RANK FOLDER: what the surface adds to a rank's peak, beyond what it adds to that of a few cells (VTK's filters themselves)
-    extra() { echo $(($(told "$3-$1" peak_bytes $2) - $(told "$3-plain-$1" peak_bytes $2) - $(told "$3-tiny-$1" peak_bytes $2) + $(told "$3-tiny-plain-$1" peak_bytes $2))); }
+    extra() { echo $(($(peak_beyond "$3-plain-$1" "$3-$1" "$2") - $(peak_beyond "$3-tiny-plain-$1" "$3-tiny-$1" "$2"))); }
     # made NAME SURFACE "TINY" SCENE: with a surface and without, in a tank and in a part of it
     made() {
         local name=$1 surface=$2 tiny=$3 ranks
@@ -726,42 +699,17 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
     done
     ;;
 halo) # NaN in every plane that no one has brought, whenever something is brought
-    ends 0 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 1 --out one
-    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$flat" --checkpoint-every 1000 --quiet --threads 2 --out poisoned
-    alike one poisoned
-    ends 0 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out one_3d
-    ends 0 over 2 WEIR_HALO_POISON=1 "$weir" run "$deep" --checkpoint-every 1000 --quiet --threads 1 --out poisoned_3d
-    alike one_3d poisoned_3d
-    ends 0 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid
-    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
-    alike liquid liquid_poisoned
-    rm -rf liquid liquid_poisoned
-    ends 0 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid
-    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water" "${frictionless[@]}" --checkpoint-every 1000 --quiet --threads 1 --out liquid_poisoned
-    alike liquid liquid_poisoned
+    poisoned 3 2 "$flat"
+    poisoned 2 1 "$deep"
+    poisoned 3 1 "$water"
+    poisoned 3 1 "$water" "${frictionless[@]}"
     for case in "" "--set grid.cells=[28,40,26]" "$viscous" "$viscous --set scheme.transfer=apic $water_ring $even" "--set scheme.transfer=apic $water_ring $even" "--set time.cfl=2 $water_ring" "--set scheme.transfer=grid"; do
-        rm -rf liquid_3d liquid_3d_poisoned
-        ends 0 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d
-        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run "$water_deep" $case --checkpoint-every 1000 --quiet --threads 1 --out liquid_3d_poisoned
-        alike liquid_3d liquid_3d_poisoned
+        poisoned 3 1 "$water_deep" $case
     done
-    for case in "$shallow" "$columns" "$sea" "$trains" "$below" "$below $basin"; do
-        rm -rf field field_poisoned
-        ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field
-        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out field_poisoned
-        alike field field_poisoned
-    done
-    for case in "$tall_deep" "$tall_deep --set solids=[] $water_ring --set time.cfl=2" "$tall_deep $fast" "$tall"; do
-        rm -rf tall tall_poisoned
-        ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out tall
-        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out tall_poisoned
-        alike tall tall_poisoned
-    done
-    for case in "$drops" "$drops_deep" "$drops $sph" "$drops_deep $sph" "$drops $sph --set scheme.density=summation"; do
-        rm -rf drops drops_poisoned
-        ends 0 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops
-        ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $case --checkpoint-every 1000 --quiet --threads 1 --out drops_poisoned
-        alike drops drops_poisoned
+    for case in "$shallow" "$columns" "$sea" "$trains" "$below" "$below $basin" \
+        "$tall_deep" "$tall_deep --set solids=[] $water_ring --set time.cfl=2" "$tall_deep $fast" "$tall" \
+        "$drops" "$drops_deep" "$drops $sph" "$drops_deep $sph" "$drops $sph --set scheme.density=summation"; do
+        poisoned 3 1 $case
     done
     ;;
 ends)
