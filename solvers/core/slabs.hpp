@@ -185,10 +185,12 @@ private:
     detail::OwnShare before_;
 };
 
-/// While it lives, every rank does everything: the same work, with the same answer.
+/// While it lives, every rank does everything: the same work, with the same answer. Not `really`: nothing changes.
 class AllPlanes {
 public:
-    AllPlanes() : before_(detail::own_share) { detail::own_share = {}; }
+    explicit AllPlanes(bool really = true) : before_(detail::own_share) {
+        if (really) detail::own_share = {};
+    }
     ~AllPlanes() { detail::own_share = before_; }
     AllPlanes(const AllPlanes&) = delete;
     AllPlanes& operator=(const AllPlanes&) = delete;

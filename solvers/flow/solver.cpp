@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 namespace weir::flow {
 
@@ -370,8 +369,7 @@ void FlowSolver<D>::place_solids(real t, real dt) {
     const auto timed = passes_.time("solids");
     if (bodies_) bodies_->fly(solids_, dt);
     if (!solids_.moving()) return;
-    std::optional<AllPlanes> all;
-    if (!held_.alone()) all.emplace();
+    const AllPlanes all(!held_.alone());
     solids_.place(state_, t);
     projection_.set_matrix(state_);
 }

@@ -32,10 +32,6 @@ struct Neighbours {
     }
 };
 
-}  // namespace
-
-namespace {
-
 /// Points of the layers beside this rank's, from their owners.
 void bring_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut& cut) {
     const auto [begin, end] = layers_of(cut, slabs().rank());

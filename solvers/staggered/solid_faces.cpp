@@ -106,8 +106,7 @@ template <int D>
 void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
     const bool alone = corner_.store().windowed();
-    std::optional<AllPlanes> all;
-    if (!alone) all.emplace();  // over ranks: of what a rank holds, it finds everything
+    const AllPlanes all(!alone);  // over ranks: of what a rank holds, it finds everything
     solids_.set_time(time_ = t);
     find_changed(s);
     for (std::size_t box = 0; box < changed_.size(); ++box) {

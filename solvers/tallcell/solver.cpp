@@ -3,7 +3,6 @@
 #include "core/error.hpp"
 #include "staggered/inflow.hpp"
 
-#include <optional>
 
 namespace weir::tallcell {
 
@@ -37,8 +36,7 @@ StepReport TallCells<D>::step(real dt) {
 template <int D>
 void TallCells<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    std::optional<AllPlanes> all;
-    if (!held_.alone()) all.emplace();
+    const AllPlanes all(!held_.alone());
     solids_.place(state_, t);
     for_each_held(closed_, Index<D>{}, frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
     surface_.set_closed(closed_);

@@ -2,7 +2,6 @@
 
 #include "staggered/inflow.hpp"
 
-#include <optional>
 
 namespace weir::water {
 
@@ -56,8 +55,7 @@ void Water<D>::move_solids(real t) {
 template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    std::optional<AllPlanes> all;
-    if (!held_.alone()) all.emplace();
+    const AllPlanes all(!held_.alone());
     solids_.place(state_, t);
     mark_closed();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
