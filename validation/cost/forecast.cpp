@@ -39,12 +39,20 @@ double median(std::vector<double> list) {
     return *middle;
 }
 
-/// The scene with each axis divided by `by`, where that leaves whole numbers of cells.
-std::optional<scene::Scene> divided(const scene::Scene& scene, int by, const std::vector<scene::SolverSchema>& schemas) {
+/// How many times coarser a copy is along each axis: a ratio, so that cells stay whole.
+struct Coarser {
+    int times, over;
+    double by() const { return static_cast<double>(times) / over; }
+};
+/// 4/3, 3/2, 2, 3, 4, ..
+Coarser coarser(int number) { return number == 0 ? Coarser{4, 3} : number == 1 ? Coarser{3, 2} : Coarser{number, 1}; }
+
+/// The scene so many times coarser along each axis, where that leaves whole numbers of cells.
+std::optional<scene::Scene> divided(const scene::Scene& scene, const Coarser& part, const std::vector<scene::SolverSchema>& schemas) {
     std::vector<std::string> cells;
     for (const double n : scene.root().numbers("grid.cells")) {
-        if (n != 1 && (std::fmod(n, by) != 0 || n / by < 4)) return std::nullopt;  // 1: columns
-        cells.push_back(fmt::format("{:.0f}", n == 1 ? n : n / by));
+        if (n != 1 && (std::fmod(n * part.over, part.times) != 0 || n / part.by() < 4)) return std::nullopt;  // 1: columns
+        cells.push_back(fmt::format("{:.0f}", n == 1 ? n : n / part.by()));
     }
     auto overrides = scene.overrides();
     overrides.push_back({"grid.cells", fmt::format("[{}]", fmt::join(cells, ", "))});
@@ -70,10 +78,11 @@ std::vector<Rates> measure_copies(const scene::Scene& scene, double units, const
     const auto schemas = scene::schemas_of(kinds);
     const auto part = [&](double by) { return units / std::pow(by, scene.dim()); };
     std::vector<Rates> list;
-    double last = 1;
-    for (int by = 2; list.size() < 2 && part(by) >= fewest_units; ++by) {
+    double last = 0;
+    for (int number = 0; list.size() < 2 && part(coarser(number).by()) >= fewest_units; ++number) {
+        const double by = coarser(number).by();
         if (by < 1.5 * last || part(by) > largest) continue;
-        const auto copy = divided(scene, by, schemas);
+        const auto copy = divided(scene, coarser(number), schemas);
         if (copy && measure_copy(*copy, kinds, list)) last = by;
     }
     if (list.size() == 2 || units <= largest) return list.size() == 2 ? list : std::vector<Rates>{measure_rates(scene, kinds, enough)};

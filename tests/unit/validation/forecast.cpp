@@ -48,26 +48,29 @@ TEST("a scene of 500^3 cells is foretold without being built, its steps as a ran
 }
 
 // The bar is 30 per cent. The forecast and the run are measured one after the other, three times, and the median of their ratio counts: a
-// disturbance that is over within a second spoils one of them. Tall cells in 3D do not reach it, and are held to a factor of 2 either way:
-// a copy of half the rows has no tall cells, or far fewer, so that its cost says little (0.6 to 0.7 of the step at 32 cells an axis, 1.8
-// times it at 48).
+// disturbance that is over within a second spoils one of them. Where that median is beyond the bar, six times more: the median of nine
+// counts. Tall cells in 3D are held to a factor of 1.4
+// either way: a coarser copy has other columns, with fewer tall cells (1.15 to 1.22 measured).
 TEST_IN_2D_AND_3D("a step takes within 30 per cent of the time foretold") {
     set_threads(1);
     for (const auto& kind : sim::registry()) {
         if (kind.plain.scene.empty()) continue;
         const scene::Scene scene = scene_of(kind, D);
         std::vector<double> ratios;
-        for (int round = 0; round < 3; ++round) {
-            const double foretold = forecast(scene).ms;
-            ratios.push_back(foretold / measure_rates(scene, sim::registry(), 0.5).ms);
-        }
-        std::sort(ratios.begin(), ratios.end());
-        testing::Test::RecordProperty(std::string(kind.schema.name), std::to_string(ratios[1]));
-        if (D == 3 && kind.schema.name == "tallcell") {
-            EXPECT_NEAR(std::log2(ratios[1]), 0, 1) << kind.schema.name;
-        } else {
-            EXPECT_NEAR(ratios[1], 1, 0.3) << kind.schema.name;
-        }
+        const bool rough = D == 3 && kind.schema.name == "tallcell";
+        const auto holds = [&](double ratio) { return rough ? std::abs(std::log2(ratio)) <= 0.5 : std::abs(ratio - 1) <= 0.3; };
+        const auto median_of = [&](std::size_t rounds) {
+            while (ratios.size() < rounds) {
+                const double foretold = forecast(scene).ms;
+                ratios.push_back(foretold / measure_rates(scene, sim::registry(), 0.5).ms);
+            }
+            std::sort(ratios.begin(), ratios.end());
+            return ratios[rounds / 2];
+        };
+        double ratio = median_of(3);
+        if (!holds(ratio)) ratio = median_of(9);
+        testing::Test::RecordProperty(std::string(kind.schema.name), std::to_string(ratio));
+        EXPECT_TRUE(holds(ratio)) << kind.schema.name << ": foretold over measured, median of " << ratios.size() << ": " << ratio;
     }
 }
 
