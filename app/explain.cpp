@@ -46,7 +46,9 @@ std::string fields_text(const Simulation& simulation) {
 }
 
 std::string called(const EffectPlan& effect) {
-    std::string text = effect.pass.empty() ? fmt::format("a term of pass \"{}\"", effect.inside) : fmt::format("pass \"{}\"", effect.pass);
+    std::string text = effect.pass.empty()
+                           ? fmt::format("a term of pass \"{}\"{}", effect.inside, effect.at_start ? ", of its numbers alone" : "")
+                           : fmt::format("pass \"{}\"", effect.pass);
     if (!effect.fields.empty()) text += fmt::format("; fields {}", fmt::join(effect.fields, ", "));
     if (!effect.scratch.empty()) text += fmt::format("; scratch {}", fmt::join(effect.scratch, ", "));
     if (effect.bytes > 0) text += fmt::format("; {} of its own", megabytes(effect.bytes));

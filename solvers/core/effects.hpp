@@ -41,6 +41,7 @@ struct EffectPlan {
     std::string name;
     std::string pass{};  // timed by this name; empty: it is a term of the pass `inside`
     std::string inside{};
+    bool at_start = false;  // it changes numbers that are found as the scene is read: a step does the same work with it as without
     std::vector<std::string> fields{};   // cell fields carried by the flow, shared with every other effect that asks for them
     std::vector<std::string> scratch{};  // others, shared too
     std::size_t bytes = 0;               // that it holds for itself alone

@@ -269,8 +269,8 @@ std::size_t Waves::bytes() const {
 
 std::vector<EffectPlan> Waves::effects() const {
     std::vector<EffectPlan> plans;
-    if (gravity_) plans.push_back({.name = "gravity", .inside = "surface"});
-    if (tension_) plans.push_back({.name = "surface_tension", .inside = "surface"});
+    if (gravity_) plans.push_back({.name = "gravity", .inside = "surface", .at_start = true});
+    if (tension_) plans.push_back({.name = "surface_tension", .inside = "surface", .at_start = true});
     if (foam_below_) plans.push_back({.name = "foam", .pass = effect_pass("foam"), .bytes = foam_.bytes(), .shown = {"foam"}});
     return plans;
 }
