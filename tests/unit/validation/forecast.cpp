@@ -49,8 +49,8 @@ TEST("a scene of 500^3 cells is foretold without being built, its steps as a ran
 
 // The bar is 30 per cent. The forecast and the run are measured one after the other, three times, and the median of their ratio counts: a
 // disturbance that is over within a second spoils one of them. Where that median is beyond the bar, six times more: the median of nine
-// counts. Tall cells in 3D are held to a factor of 1.4
-// either way: a coarser copy has other columns, with fewer tall cells (1.15 to 1.22 measured).
+// counts. Tall cells in 3D are held to a factor of 1.4 either way: a coarser copy has other columns, with fewer tall cells (1.15 to 1.22
+// measured).
 TEST_IN_2D_AND_3D("a step takes within 30 per cent of the time foretold") {
     set_threads(1);
     for (const auto& kind : sim::registry()) {
