@@ -3,7 +3,6 @@
 #include "core/error.hpp"
 #include "staggered/inflow.hpp"
 
-
 namespace weir::tallcell {
 
 /// One step of water on tall cells (Chentanez & Müller 2011, algorithm 1, in the order of this library's water). Enters and leaves with a

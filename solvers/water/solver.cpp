@@ -2,7 +2,6 @@
 
 #include "staggered/inflow.hpp"
 
-
 namespace weir::water {
 
 /// One step of the marker-and-cell method with a free surface. Enters and leaves with a velocity that is known throughout the band of
