@@ -143,6 +143,17 @@ shared() {
         at_most "$(told "$parts" solver_bytes "$rank")" $((one * (256 / ranks + 9) / 256 + 14 * 8 * plane + whole)) "$folder, rank $rank of $ranks"
     done
 }
+# peaks SCENE PLANE_CELLS BYTES RANKS PARTS TINY_CELLS: as the system sees it, at any time of a run of 256 planes, beyond what a run of a few
+# cells takes, each of so many ranks has what it holds; so many bytes for each cell of its own planes; a page at both ends of less than 128
+# arrays; and what the first rank puts into a file at once
+peaks() {
+    local scene=$1 plane=$2 bytes=$3 ranks=$4 parts=$5 tiny=$6 rank
+    ends 0 over "$ranks" "$weir" run "$scene" --quiet --threads 1 --out "tiny-$ranks" --set grid.cells="$tiny"
+    for rank in $(seq 0 $((ranks - 1))); do
+        at_most "$(peak_beyond "tiny-$ranks" "$parts" "$rank")" \
+            $(($(told "$parts" solver_bytes "$rank") + bytes * plane * (256 / ranks) + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
+    done
+}
 # pieces of a file between two ranks, and blocks that are being compressed
 handed=$((4 * 1048576 + 2 * 8 * 32768))
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
@@ -446,19 +457,15 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
         ends 0 over $ranks "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
         alike one parts-$ranks
         holds_own parts-$ranks
-        ends 0 over $ranks "$weir" run plume.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,32]
         for rank in $(seq 0 $((ranks - 1))); do
             # Nothing crosses a cell in a step: 4 planes beyond either cut, and one. Whole are the pressure's levels of fewer than 20,000 cells,
             # of 8/7 as many in all: 4 vectors, 1/diagonal, 6 weights of half the cells, faces, what leads to p = 0, flags: less than 64
             # bytes a cell in rows twice as long as they are full.
-            held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
-            at_most "$held" $((one * (planes + 9) / 256 + 20000 * 8 / 7 * 128)) "rank $rank of $ranks"
-            # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
-            # beside it (3 + 1 + 2 numbers and a flag a cell, each), a page at both ends of less than 128 arrays; and of a frame the own part
-            # of its largest array, three numbers a cell, and what the first rank puts into the file at once. A whole frame has 48 bytes a cell.
-            more=$(peak_beyond tiny-$ranks parts-$ranks $rank)
-            at_most $more $((held + (2 * 49 + 24) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
+            at_most "$(told parts-$ranks solver_bytes $rank)" $((one * (256 / ranks + 9) / 256 + 20000 * 8 / 7 * 128)) "rank $rank of $ranks"
         done
+        # The last good state and a checkpoint beside it: 3 + 1 + 2 numbers and a flag a cell, each; and of a frame the own part of its largest
+        # array, three numbers a cell. A whole frame has 48 bytes a cell.
+        peaks plume.toml $cells $((2 * 49 + 24)) $ranks parts-$ranks [8,8,32]
     done
     # Particles: a column of 512 layers of 64. Cells are two spacings wide; the first of an axis holds 3. A rank knows at most 3 layers, a row
     # and a cell beyond either cut.
@@ -511,16 +518,10 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     for ranks in 2 4; do
         shared $pool $ranks one parts-$ranks
-        ends 0 over $ranks "$weir" run pool.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,8,64]
-        for rank in $(seq 0 $((ranks - 1))); do
-            held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
-            # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
-            # beside it (3 + 1 + 1 numbers, a flag and a layer of a cell, 6 numbers of 8 markers in each of the lower half, each), a page at
-            # both ends of less than 128 arrays; and of a frame the own part of its largest array, three numbers a marker, and what the
-            # first rank puts into the file at once. A whole frame has 40 bytes a cell and 48 a marker.
-            more=$(peak_beyond tiny-$ranks parts-$ranks $rank)
-            at_most $more $((held + (2 * (42 + 4 * 6 * 8) + 4 * 3 * 8) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
-        done
+        # The last good state and a checkpoint beside it: 3 + 1 + 1 numbers, a flag and a layer of a cell, 6 numbers of 8 markers in each of the
+        # lower half, each; and of a frame the own part of its largest array, three numbers a marker. A whole frame has 40 bytes a cell and 48
+        # a marker.
+        peaks pool.toml $cells $((2 * (42 + 4 * 6 * 8) + 4 * 3 * 8)) $ranks parts-$ranks [8,8,64]
     done
     # of friction too: weights, vectors and lists of faces; of a pool that begins to slosh
     slosh="$viscous --set effects.gravity.g=[1.0,-9.81,0.0]"
@@ -552,16 +553,9 @@ storage_tall) # the same of tall cells: planes of the lattice, and lines of the 
     ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     for ranks in 2 4; do
         shared $deep $ranks one parts-$ranks
-        ends 0 over $ranks "$weir" run deep.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[8,12,64]
-        for rank in $(seq 0 $((ranks - 1))); do
-            held=$(told parts-$ranks solver_bytes $rank) planes=$((256 / ranks))
-            # As the system sees it, at any time of the run, beyond what a run of a few cells takes: that, the last good state and a checkpoint
-            # beside it (3 + 1 + 1 numbers, a flag and a layer of a cell, each), a page at both ends of less than 128 arrays; and of a frame
-            # the own part of its largest array, three numbers a cell, and what the first rank puts into the file at once. A whole frame
-            # has 48 bytes a cell.
-            more=$(peak_beyond tiny-$ranks parts-$ranks $rank)
-            at_most $more $((held + (2 * 42 + 24) * cells * planes + 128 * 2 * 4096 + handed)) "peak, rank $rank of $ranks"
-        done
+        # The last good state and a checkpoint beside it: 3 + 1 + 1 numbers, a flag and a layer of a cell, each; and of a frame the own part of
+        # its largest array, three numbers a cell. A whole frame has 48 bytes a cell.
+        peaks deep.toml $cells $((2 * 42 + 24)) $ranks parts-$ranks [8,12,64]
     done
     # where the pressure is most of it: no tall cell anywhere
     regular='--set scheme.columns=uniform --set solids=[]'
