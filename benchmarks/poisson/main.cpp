@@ -1,9 +1,11 @@
-// bench_poisson: our pressure methods against hypre's PFMG-CG, CHOLMOD, Eigen's ICCG and FFTW's DCT on the same numbers.
+// bench_poisson: our pressure methods against hypre's PFMG-CG, PETSc's, CHOLMOD, Eigen's ICCG and FFTW's DCT on the same numbers.
 //
 //     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] [--csv]
 //
-// --csv: comma-separated values in place of the table. Times are the least of K runs; a peer that would take minutes or more memory than
-// there is says "skipped" and why. Started by mpirun it shares `multigrid` between the ranks; the others are then left out.
+// --csv: comma-separated values in place of the table. Times are the least of K runs, of PETSc,
+// CHOLMOD and Eigen of two at most; a peer that would take minutes or more memory than there is says "skipped" and why. Without --solver
+// PETSc's methods are asked on one thread, of which they make use. Started by mpirun it shares `multigrid`, or PETSc's methods, between the
+// ranks; the others are then left out.
 #include "core/cut_by_work.hpp"
 #include "core/error.hpp"
 #include "core/slabs.hpp"
@@ -139,9 +141,10 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         p.fill(0);
         slabs().largest(0);  // nobody begins before all are here
         try {
-            const OwnPlanes own(cut);
+            const bool shares = method->shares_planes();
+            const OwnPlanes own(shares ? cut : Cut{});
             const auto& report = method->solve(p, problem.b);
-            gather(p);
+            if (shares) gather(p);
             row.setup_ms = std::min(row.setup_ms, 1e3 * report.setup_seconds);
             row.solve_ms = std::min(row.solve_ms, 1e3 * report.solve_seconds);
             row.iterations = report.iterations;
@@ -186,8 +189,9 @@ template <int D>
 void run_case(const std::string& name, int n, int threads, const Choice& choice) {
     std::vector<std::string> solvers = choice.solvers;
     if (slabs().several()) {
-        if (!solvers.empty() && solvers != std::vector<std::string>{"multigrid"}) throw BadInput("over ranks: --solver multigrid alone");
-        solvers = {"multigrid"};
+        const auto shared = [](const std::string& solver) { return solver == "multigrid" || solver.starts_with("petsc"); };
+        if (!std::all_of(solvers.begin(), solvers.end(), shared)) throw BadInput("over ranks: multigrid and PETSc's methods alone");
+        if (solvers.empty()) solvers = {"multigrid"};
     }
     if (solvers.empty()) {
         solvers = {"pfmg_cg", "multigrid", "cholmod"};

@@ -41,7 +41,6 @@ void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (Heat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts");
     scene::refuse_hand(scene);
-    scene::refuse_petsc(scene);
 }
 
 }  // namespace
@@ -63,6 +62,7 @@ scene::SolverKind kind() {
                           over_ranks};
     mac.holds_own_part = staggered::holds_own_planes;
     mac.sends = traffic_of_step;
+    mac.by_all_of = staggered::pressure_by_all;
     return mac;
 }
 

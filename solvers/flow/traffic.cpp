@@ -1,6 +1,7 @@
 // What a rank sends in a step of the solver "mac": the exchanges of solver.cpp, pass by pass.
 #include "poisson/traffic.hpp"
 #include "flow/solver.hpp"
+#include "staggered/own_planes.hpp"
 
 namespace weir::flow {
 
@@ -34,6 +35,7 @@ std::vector<std::string> not_counted(const scene::Scene& scene) {
         if (scene.effect(effect)) keys.push_back(std::string("effects.") + effect);
     if (lists("probes")) keys.emplace_back("probes");
     if (scene.root().number_or("time.stop_when_steady", 0) > 0) keys.emplace_back("time.stop_when_steady");
+    if (scene.text("scheme.poisson.method").starts_with("petsc")) keys.emplace_back("scheme.poisson.method");
     return keys;
 }
 
@@ -100,7 +102,7 @@ private:
         sync();
     }
     void project() {
-        bool shares = scene_.text("scheme.poisson.method") == "multigrid", closed = true;
+        bool closed = true;
         Vec<D> weight;
         std::array<bool, D> periodic;
         for (int a = 0; a < D; ++a) {
@@ -108,8 +110,7 @@ private:
             weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides_.periodic(a);
             closed = closed && !sides_.open(a, 0) && !sides_.open(a, 1);
         }
-        shares = shares && poisson::multigrid_shares<D>(lattice_.cells, periodic, weight, tally_.cut());
-        if (shares) {
+        if (staggered::could_hold_own_planes(scene_, tally_.cut())) {
             poisson::tally_multigrid<D>(lattice_.cells, periodic, weight, closed, shape_.iterations, tally_);
             tally_.refresh({size_.cells}, 1);
         } else {

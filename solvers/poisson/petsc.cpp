@@ -1,16 +1,25 @@
-// petsc_gamg, petsc_boomeramg, petsc_icc: PETSc's conjugate gradients, from a library that is loaded when one of them is named.
+// petsc_gamg, petsc_boomeramg, petsc_icc: PETSc's conjugate gradients, from a library that is loaded when one of them is named. Over ranks
+// each knows the whole system and PETSc shares its rows. Its sums depend on the number of ranks, so that answers differ within the
+// tolerance.
 #include "poisson/petsc_engine.hpp"
 
 #include "core/error.hpp"
 #include "core/library.hpp"
+#include "core/slabs.hpp"
 #include "poisson/factories.hpp"
 #include "poisson/list_solver.hpp"
+
+#include <dlfcn.h>
 
 namespace weir::poisson {
 
 namespace {
 
+/// Were the ranks started by another MPI than PETSc's? Then its library cannot even be loaded: parts of it call what they take for theirs.
+bool other_mpi() { return slabs().several() && (dlsym(RTLD_DEFAULT, "ompi_mpi_comm_world") != nullptr) != WEIR_PETSC_OPEN_MPI; }
+
 PetscEntry entry() {
+    if (other_mpi()) return nullptr;
     static const auto loaded = reinterpret_cast<PetscEntry>(entry_of_library("libweir_petsc.so", WEIR_PETSC_LIBRARY, petsc_entry));
     return loaded;
 }
@@ -19,17 +28,15 @@ template <int D>
 class Petsc final : public ListSolver<D> {
 public:
     Petsc(const std::string& preconditioner, const Options& options)
-        : ListSolver<D>(options), engine_(entry()(preconditioner.c_str(), D)) {}
+        : ListSolver<D>(options),
+          ranks_(slabs().builds_alone() ? 1 : slabs().ranks()),
+          engine_(entry()(preconditioner.c_str(), D, ranks_)) {}
 
 private:
     using ListSolver<D>::system_, ListSolver<D>::x_, ListSolver<D>::b_, ListSolver<D>::b_norm_;
 
     void prepare() override {
-        guarded([&] {
-            engine_->prepare(system_.A, system_.components.closed == 0 ? nullptr : std::function<void(Vector&)>([this](Vector& x) {
-                                 system_.components.remove_means(x);
-                             }));
-        });
+        guarded([&] { engine_->prepare(system_.A, system_.components); });
     }
     void iterate(Progress& progress) override {
         guarded([&] {
@@ -38,6 +45,10 @@ private:
                 return progress.wants_more(residual / b_norm_);
             });
         });
+        if (ranks_ == 1) return;
+        std::vector<std::size_t> begins;
+        for (int r = 0; r <= ranks_; ++r) begins.push_back(first_row_of_rank(x_.size(), r, ranks_));
+        slabs().gather_parts(x_.data(), sizeof(real), begins);
     }
     std::size_t own_bytes() const override { return engine_->bytes(); }
 
@@ -50,11 +61,15 @@ private:
         }
     }
 
+    int ranks_;
     std::unique_ptr<PetscEngine> engine_;
 };
 
 template <int D>
 Made<D> make(const char* preconditioner, const Options& options) {
+    if (other_mpi())
+        throw BadInput(std::string("the pressure method petsc_") + preconditioner +
+                       ": the ranks were started by another MPI than the one that PETSc was built with");
     if (!entry())
         throw BadInput(std::string("the pressure method petsc_") + preconditioner +
                        " needs PETSc, and this weir was built without it: install libpetsc-real-dev and configure again");

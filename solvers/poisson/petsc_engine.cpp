@@ -21,7 +21,7 @@ void check(PetscErrorCode code) {
     throw std::runtime_error(std::string("PETSc: ") + (text ? text : "unknown error"));
 }
 
-/// Once a process, on this process alone; signals stay weir's, and no file or variable of the user's changes what is solved.
+/// Once a process, without the others; signals stay weir's, and no file or variable of the user's changes what is solved.
 void start_petsc() {
     static const bool started = [] {
         PETSC_COMM_WORLD = MPI_COMM_SELF;
@@ -32,6 +32,8 @@ void start_petsc() {
         check(PetscOptionsSetValue(nullptr, "-skip_petscrc", "true"));
         check(PetscInitializeNoArguments());
         check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+        check(PetscOptionsSetValue(nullptr, "-weir_blocks_sub_pc_type", "icc"));
+        check(PetscOptionsSetValue(nullptr, "-weir_blocks_sub_pc_factor_shift_type", "positive_definite"));
         // What hypre's manual recommends in space: with the 0.25 of the plane the hierarchy fills.
         check(PetscOptionsSetValue(nullptr, "-weir_3d_pc_hypre_boomeramg_strong_threshold", "0.5"));
         if (!has_mpi)
@@ -52,16 +54,19 @@ std::size_t heap() {
 
 class Engine final : public PetscEngine {
 public:
-    Engine(const std::string& preconditioner, int dim) : preconditioner_(preconditioner), dim_(dim) { start_petsc(); }
+    Engine(const std::string& preconditioner, int dim, int ranks)
+        : preconditioner_(preconditioner), dim_(dim), ranks_(ranks), together_(ranks > 1 ? MPI_COMM_WORLD : MPI_COMM_SELF) {
+        start_petsc();
+    }
     ~Engine() override { clear(); }
 
-    void prepare(const Matrix& A, std::function<void(Vector&)> remove_means) override {
+    void prepare(const Matrix& A, const Components& components) override {
         clear();
         if (A.size() == 0) return;
         const std::size_t before = heap();
-        remove_means_ = std::move(remove_means);
+        components_ = &components;
         take(A);
-        check(KSPCreate(PETSC_COMM_SELF, &solver_));
+        check(KSPCreate(together_, &solver_));
         check(KSPSetType(solver_, KSPCG));
         check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
         check(KSPSetInitialGuessNonzero(solver_, PETSC_TRUE));
@@ -76,8 +81,8 @@ public:
     void solve(Vector& x, const Vector& b, const std::function<bool(real)>& wants_more) override {
         if (!solver_) return;
         wants_more_ = &wants_more;
-        check(VecPlaceArray(x_, x.data()));
-        check(VecPlaceArray(b_, b.data()));
+        check(VecPlaceArray(x_, x.data() + first_));
+        check(VecPlaceArray(b_, b.data() + first_));
         const PetscErrorCode code = KSPSolve(solver_, b_, x_);
         check(VecResetArray(x_));
         check(VecResetArray(b_));
@@ -87,12 +92,15 @@ public:
     std::size_t bytes() const override { return bytes_; }
 
 private:
-    /// Rows with their diagonal, as PETSc has them; it keeps these arrays as its own.
+    /// This rank's rows with their diagonal, as PETSc has them; alone it keeps these arrays as its own.
     void take(const Matrix& A) {
-        const int n = A.size();
+        const auto rows = static_cast<std::size_t>(A.size());
+        int rank = 0;
+        MPI_Comm_rank(together_, &rank);
+        first_ = first_row_of_rank(rows, rank, ranks_), end_ = first_row_of_rank(rows, rank + 1, ranks_);
         start_.assign(1, 0), column_.clear(), value_.clear();
-        for (int i = 0; i < n; ++i) {
-            const auto row = static_cast<std::size_t>(i);
+        for (std::size_t row = first_; row < end_; ++row) {
+            const auto i = static_cast<PetscInt>(row);
             bool has_diagonal = false;
             const auto diagonal = [&] {
                 has_diagonal = true;
@@ -105,17 +113,27 @@ private:
             if (!has_diagonal) diagonal();
             start_.push_back(static_cast<PetscInt>(column_.size()));
         }
-        check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, start_.data(), column_.data(), value_.data(), &matrix_));
-        check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
-        check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, nullptr, &x_));
-        check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, nullptr, &b_));
-        if (remove_means_) {
-            MatNullSpace null = nullptr;
-            check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, 0, nullptr, &null));
-            check(MatNullSpaceSetFunction(null, &Engine::take_means_out, this));
-            check(MatSetNullSpace(matrix_, null));
-            check(MatNullSpaceDestroy(&null));
+        hand_over(A.size(), static_cast<PetscInt>(end_ - first_));
+        if (components_->closed == 0) return;
+        MatNullSpace null = nullptr;
+        check(MatNullSpaceCreate(together_, PETSC_FALSE, 0, nullptr, &null));
+        check(MatNullSpaceSetFunction(null, &Engine::take_means_out, this));
+        check(MatSetNullSpace(matrix_, null));
+        check(MatNullSpaceDestroy(&null));
+    }
+
+    void hand_over(PetscInt n, PetscInt own) {
+        if (ranks_ == 1) {
+            check(MatCreateSeqAIJWithArrays(together_, n, n, start_.data(), column_.data(), value_.data(), &matrix_));
+            check(VecCreateSeqWithArray(together_, 1, n, nullptr, &x_));
+            check(VecCreateSeqWithArray(together_, 1, n, nullptr, &b_));
+        } else {
+            check(MatCreateMPIAIJWithArrays(together_, own, own, n, n, start_.data(), column_.data(), value_.data(), &matrix_));
+            start_ = {}, column_ = {}, value_ = {};
+            check(VecCreateMPIWithArray(together_, 1, own, n, nullptr, &x_));
+            check(VecCreateMPIWithArray(together_, 1, own, n, nullptr, &b_));
         }
+        check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
     }
 
     void choose_preconditioner() {
@@ -127,6 +145,10 @@ private:
             check(PCSetType(pc, PCHYPRE));
             check(PCHYPRESetType(pc, "boomeramg"));
             check(PCSetOptionsPrefix(pc, dim_ == 3 ? "weir_3d_" : "weir_2d_"));
+            check(PCSetFromOptions(pc));
+        } else if (ranks_ > 1) {  // each rank factors its own block
+            check(PCSetType(pc, PCBJACOBI));
+            check(PCSetOptionsPrefix(pc, "weir_blocks_"));
             check(PCSetFromOptions(pc));
         } else {
             check(PCSetType(pc, PCICC));
@@ -143,15 +165,23 @@ private:
         return 0;
     }
 
+    /// Subtracts from v its mean over each closed component, of all ranks' rows.
     static PetscErrorCode take_means_out(MatNullSpace, ::Vec v, void* self) {
         auto& engine = *static_cast<Engine*>(self);
         PetscScalar* values = nullptr;
-        PetscInt n = 0;
-        VecGetLocalSize(v, &n);
         VecGetArray(v, &values);
-        engine.work_.assign(values, values + n);
-        engine.remove_means_(engine.work_);
-        std::copy(engine.work_.begin(), engine.work_.end(), values);
+        const auto closed = static_cast<std::size_t>(engine.components_->closed);
+        const int* of = engine.components_->of.data() + engine.first_;
+        const std::size_t own = engine.end_ - engine.first_;
+        auto& sums = engine.sums_;  // of values, and then how many
+        sums.assign(2 * closed, 0);
+        for (std::size_t i = 0; i < own; ++i)
+            if (of[i] >= 0) sums[static_cast<std::size_t>(of[i])] += values[i], sums[closed + static_cast<std::size_t>(of[i])] += 1;
+        if (engine.ranks_ > 1)
+            MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, engine.together_);
+        for (std::size_t c = 0; c < closed; ++c) sums[c] /= sums[closed + c];
+        for (std::size_t i = 0; i < own; ++i)
+            if (of[i] >= 0) values[i] -= sums[static_cast<std::size_t>(of[i])];
         VecRestoreArray(v, &values);
         return 0;
     }
@@ -164,11 +194,13 @@ private:
     }
 
     std::string preconditioner_;
-    int dim_;
-    std::function<void(Vector&)> remove_means_;
+    int dim_, ranks_;
+    MPI_Comm together_;
+    std::size_t first_ = 0, end_ = 0;  // this rank's rows
+    const Components* components_ = nullptr;
     const std::function<bool(real)>* wants_more_ = nullptr;
     std::vector<PetscInt> start_, column_;
-    Vector value_, work_;
+    Vector value_, sums_;
     std::size_t bytes_ = 0;
     KSP solver_ = nullptr;
     Mat matrix_ = nullptr;
@@ -179,6 +211,6 @@ private:
 
 }  // namespace weir::poisson
 
-extern "C" weir::poisson::PetscEngine* weir_petsc_engine(const char* preconditioner, int dim) {
-    return new weir::poisson::Engine(preconditioner, dim);
+extern "C" weir::poisson::PetscEngine* weir_petsc_engine(const char* preconditioner, int dim, int ranks) {
+    return new weir::poisson::Engine(preconditioner, dim, ranks);
 }

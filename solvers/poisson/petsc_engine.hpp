@@ -11,17 +11,23 @@ namespace weir::poisson {
 class PetscEngine {
 public:
     virtual ~PetscEngine() = default;
-    /// Takes the matrix and sets the preconditioner up. `remove_means`, empty where no component is closed, takes from a vector what the
-    /// matrix maps to zero.
-    virtual void prepare(const Matrix& A, std::function<void(Vector&)> remove_means) = 0;
+    /// Takes its rank's rows of the matrix, and sets the preconditioner up. `components`: what the matrix maps to zero; they are to live as
+    /// long as solves go on.
+    virtual void prepare(const Matrix& A, const Components& components) = 0;
     /// Conjugate gradients from x on, until `wants_more`, asked with ‖b − A x‖₂ after each iteration, says no, or PETSc finds nothing to
-    /// gain. Throws std::runtime_error with PETSc's words.
+    /// gain. Over ranks each has improved its rows of x. Throws std::runtime_error with PETSc's words.
     virtual void solve(Vector& x, const Vector& b, const std::function<bool(real)>& wants_more) = 0;
     virtual std::size_t bytes() const = 0;
 };
 
-/// The name in the library of a function that makes an engine for "gamg", "boomeramg" or "icc" in `dim` dimensions.
+/// The first of the `n` rows that rank r of so many works on.
+inline std::size_t first_row_of_rank(std::size_t n, int r, int ranks) {
+    return n * static_cast<std::size_t>(r) / static_cast<std::size_t>(ranks);
+}
+
+/// The name in the library of a function that makes an engine for "gamg", "boomeramg" or "icc" in `dim` dimensions, for this process alone
+/// or for all of `ranks` together.
 inline constexpr const char* petsc_entry = "weir_petsc_engine";
-using PetscEntry = PetscEngine* (*)(const char* preconditioner, int dim);
+using PetscEntry = PetscEngine* (*)(const char* preconditioner, int dim, int ranks);
 
 }  // namespace weir::poisson

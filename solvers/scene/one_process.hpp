@@ -19,9 +19,4 @@ inline void refuse_bodies(const Scene& scene) {
     if (scene.has("bodies") && !scene.root().tables("bodies").empty()) one_process_only(scene, "bodies", "bodies move");
 }
 
-inline void refuse_petsc(const Scene& scene) {
-    if (scene.root().text("scheme.poisson.method").starts_with("petsc"))
-        one_process_only(scene, "scheme.poisson.method", "PETSc's methods are");
-}
-
 }  // namespace weir::scene

@@ -48,8 +48,8 @@ struct SolverKind {
     /// What a step takes of each plane of the slowest axis, in any unit: as a scene begins, or of a state (over ranks all ask together).
     /// None: as much of each.
     std::function<std::vector<std::int64_t>(const Scene&, const Checkpoint*)> work_of_planes{};
-    /// What of a step every rank does alone in 2D, beside `by_all`.
-    std::string by_all_flat{};
+    /// What more of a step every rank does alone, beside `by_all`, of such a scene that is cut so.
+    std::function<std::string(const Scene&, const Cut&)> by_all_of{};
 };
 
 /// What each may be told.

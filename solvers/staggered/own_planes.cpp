@@ -26,6 +26,11 @@ bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
     return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
 }
 
+std::string pressure_by_all(const scene::Scene& scene, const Cut& cut) {
+    if (could_hold_own_planes(scene, cut)) return "";
+    return scene.root().text("scheme.poisson.method").starts_with("petsc") ? "the matrix of the pressure" : "the pressure";
+}
+
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, int deep, int reach) {
     const Cut cut = cut_asked_for(scene.index<D>("grid.cells")[D - 1]);

@@ -4,12 +4,16 @@
 #include "core/held_planes.hpp"
 #include "scene/scene.hpp"
 
+#include <string>
+
 namespace weir::staggered {
 
 /// Not where somebody looks at whole fields on all ranks, nor where each solves for the pressure itself.
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 /// Where nobody but the scene asks for more.
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
+/// What of the pressure every rank does alone: all, unless "multigrid" shares it or PETSc its solution.
+std::string pressure_by_all(const scene::Scene& scene, const Cut& cut);
 /// As a solver of the scene holds them, where alone with `deep` planes beyond its cuts.
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, int deep, int reach = 1);

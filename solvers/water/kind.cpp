@@ -63,7 +63,6 @@ void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts or boils");
     scene::refuse_hand(scene);
-    scene::refuse_petsc(scene);
 }
 
 }  // namespace
@@ -103,6 +102,7 @@ scene::SolverKind kind() {
     water.holds_own_part = staggered::holds_own_planes;
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
+    water.by_all_of = staggered::pressure_by_all;
     return water;
 }
 

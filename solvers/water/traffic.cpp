@@ -19,6 +19,7 @@ std::vector<std::string> not_counted(const scene::Scene& scene) {
         if (lists(list)) keys.emplace_back(list);
     if (scene.effect("volume_control")) keys.emplace_back("effects.volume_control");
     if (scene.root().number_or("time.stop_when_steady", 0) > 0) keys.emplace_back("time.stop_when_steady");
+    if (scene.text("scheme.poisson.method").starts_with("petsc")) keys.emplace_back("scheme.poisson.method");
     return keys;
 }
 
@@ -124,8 +125,8 @@ private:
             const real ratio = lattice_.h[0] / lattice_.h[a];
             weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides_.periodic(a);
         }
-        if (windowed_) poisson::tally_multigrid_setup<D>(n_, periodic, weight, runs(), tally_);
-        if (scene_.text("scheme.poisson.method") == "multigrid" && poisson::multigrid_shares<D>(n_, periodic, weight, tally_.cut())) {
+        if (windowed_) {
+            poisson::tally_multigrid_setup<D>(n_, periodic, weight, runs(), tally_);
             poisson::tally_multigrid<D>(n_, periodic, weight, false, shape_.iterations, tally_);
             tally_.refresh({cells_}, 1);
         } else {

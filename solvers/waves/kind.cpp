@@ -240,7 +240,7 @@ scene::SolverKind kind() {
             traffic_of_step,
             [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); },
             {},
-            "the surface's one row"};
+            [](const scene::Scene& scene, const Cut&) { return scene.dim() == 2 ? std::string("the surface's one row") : std::string(); }};
 }
 
 }  // namespace weir::waves
