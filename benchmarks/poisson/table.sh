@@ -33,10 +33,13 @@ echo "GAMG, hypre's BoomerAMG and incomplete Cholesky. Left out: CHOLMOD in 3D (
 echo
 echo "## One thread"
 echo "$head"
-"$bench" --threads 1 --csv | rows
+{
+    "$bench" --threads 1 --csv --dim 2 --n 512
+    "$bench" --threads 1 --csv --dim 3 --n 96 | tail -n +2
+} | rows
 echo
 echo "## Two ranks"
 echo "\`petsc_icc\` factors each rank's rows for themselves."
 echo
 echo "$head"
-over 2 "$bench" --threads 1 --csv --dim 3 --solver multigrid --solver petsc_gamg --solver petsc_boomeramg --solver petsc_icc | rows
+over 2 "$bench" --threads 1 --csv --dim 3 --n 96 --solver multigrid --solver petsc_gamg --solver petsc_boomeramg --solver petsc_icc | rows
