@@ -2,7 +2,7 @@
 //
 //     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] [--csv]
 //
-// --csv: comma-separated values in place of the table. Times are the least of K runs, of PETSc,
+// --csv: comma-separated values in place of the table, and after a # what is skipped. Times are the least of K runs, of PETSc,
 // CHOLMOD and Eigen of two at most; a peer that would take minutes or more memory than there is says "skipped" and why. Without --solver
 // PETSc's methods are asked on one thread, of which they make use. Started by mpirun it shares `multigrid`, or PETSc's methods, between the
 // ranks; the others are then left out.
@@ -165,7 +165,9 @@ void print_head() {
 
 void print_csv(const Row& r) {
     const auto unknowns = static_cast<double>(r.unknowns);
-    if (r.skipped.empty())
+    if (!r.skipped.empty())
+        std::printf("# %s,%d,%d,%d,%s,%s\n", r.name.c_str(), r.dim, r.n, r.threads, r.solver.c_str(), r.skipped.c_str());
+    else
         std::printf("%s,%d,%d,%d,%s,%g,%g,%d,%g,%g,%g\n", r.name.c_str(), r.dim, r.n, r.threads, r.solver.c_str(), r.setup_ms, r.solve_ms,
                     r.iterations, r.residual, 1e6 * r.solve_ms / unknowns, r.bytes / unknowns);
     std::fflush(stdout);

@@ -11,12 +11,13 @@ rows() { # comma-separated values to lines of a table, problem by problem
     awk -F, '
         function tell(   i, f) {
             for (i = 1; i <= count; i++) {
-                split(line[i], f, ",")
-                printf "| `%s`, %d^%d | `%s` | %.0f | %.1f | %d | %.0e | %.1f | %.0f | %.1f |\n", f[1], f[3], f[2], f[5], f[6], f[7], f[8], f[9], f[10], f[11], f[7] / ours
+                if (split(line[i], f, ",") == 6) printf "| `%s`, %d^%d | `%s` | %s | | | | | | |\n", f[1], f[3], f[2], f[5], f[6]
+                else printf "| `%s`, %d^%d | `%s` | %.0f | %.1f | %d | %.0e | %.1f | %.0f | %.1f |\n", f[1], f[3], f[2], f[5], f[6], f[7], f[8], f[9], f[10], f[11], f[7] / ours
             }
             count = 0
         }
         NR == 1 { next }
+        { sub(/^# /, "") }
         $1 FS $2 != problem { tell(); problem = $1 FS $2 }
         { line[++count] = $0 }
         $5 == "multigrid" { ours = $7 }
@@ -29,7 +30,7 @@ echo "# The pressure equation: the multigrid and its peers"
 echo "Written by \`benchmarks/poisson/table.sh\`: $("$root"/build/release/weir --version | head -n 1); $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)."
 echo
 echo "Solved to 1e-8 of the right-hand side; the residual is the true one. \`pfmg_cg\` is hypre's, the \`petsc_\` ones PETSc's conjugate gradients with its"
-echo "GAMG, hypre's BoomerAMG and incomplete Cholesky. Left out: CHOLMOD in 3D (its factor takes more than 8 GB)."
+echo "GAMG, hypre's BoomerAMG and incomplete Cholesky."
 echo
 echo "## One thread"
 echo "$head"
