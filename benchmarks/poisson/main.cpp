@@ -141,8 +141,9 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         p.fill(0);
         slabs().largest(0);  // nobody begins before all are here
         try {
-            const bool shares = method->shares_planes();
-            const OwnPlanes own(shares ? cut : Cut{});
+            const OwnPlanes own(cut);
+            const bool shares = method->shares_planes();  // of those
+            const AllPlanes all(!shares);
             const auto& report = method->solve(p, problem.b);
             if (shares) gather(p);
             row.setup_ms = std::min(row.setup_ms, 1e3 * report.setup_seconds);
