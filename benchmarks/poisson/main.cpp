@@ -142,7 +142,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         slabs().largest(0);  // nobody begins before all are here
         try {
             const OwnPlanes own(cut);
-            const bool shares = method->shares_planes();  // of those
+            const bool shares = method->shares_planes();  // of a cut that is there: so asked after it
             const AllPlanes all(!shares);
             const auto& report = method->solve(p, problem.b);
             if (shares) gather(p);

@@ -16,7 +16,7 @@ rows() { # comma-separated values to lines of a table, problem by problem
             }
             count = 0
         }
-        NR == 1 { next }
+        $1 == "case" { next }
         { sub(/^# /, "") }
         $1 FS $2 != problem { tell(); problem = $1 FS $2 }
         { line[++count] = $0 }
@@ -36,7 +36,7 @@ echo "## One thread"
 echo "$head"
 {
     "$bench" --threads 1 --csv --dim 2 --n 512
-    "$bench" --threads 1 --csv --dim 3 --n 96 | tail -n +2
+    "$bench" --threads 1 --csv --dim 3 --n 96
 } | rows
 echo
 echo "## Two ranks"

@@ -62,7 +62,7 @@ scene::SolverKind kind() {
                           over_ranks};
     mac.holds_own_part = staggered::holds_own_planes;
     mac.sends = traffic_of_step;
-    mac.by_all_of = staggered::pressure_by_all;
+    mac.by_all = staggered::pressure_by_all;
     return mac;
 }
 

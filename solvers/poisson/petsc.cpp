@@ -45,10 +45,8 @@ private:
                 return progress.wants_more(residual / b_norm_);
             });
         });
-        if (ranks_ == 1) return;
-        std::vector<std::size_t> begins;
-        for (int r = 0; r <= ranks_; ++r) begins.push_back(first_row_of_rank(x_.size(), r, ranks_));
-        slabs().gather_parts(x_.data(), sizeof(real), begins);
+        const int rows = system_.A.size();
+        if (ranks_ > 1) slabs().gather(cut_of(rows, ranks_), {x_.data(), sizeof(real), rows});
     }
     std::size_t own_bytes() const override { return engine_->bytes(); }
 

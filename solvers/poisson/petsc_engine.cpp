@@ -2,6 +2,8 @@
 // incomplete Cholesky. None of weir's own arithmetic is in the way: an independent referee. Balay et al., PETSc/TAO Users Manual, 3.18.
 #include "poisson/petsc_engine.hpp"
 
+#include "core/halo.hpp"
+
 #include <petscksp.h>
 
 #include <malloc.h>
@@ -94,10 +96,12 @@ public:
 private:
     /// This rank's rows with their diagonal, as PETSc has them; alone it keeps these arrays as its own.
     void take(const Matrix& A) {
-        const auto rows = static_cast<std::size_t>(A.size());
-        int rank = 0;
-        MPI_Comm_rank(together_, &rank);
-        first_ = first_row_of_rank(rows, rank, ranks_), end_ = first_row_of_rank(rows, rank + 1, ranks_);
+        first_ = 0, end_ = static_cast<std::size_t>(A.size());
+        if (const Cut cut = cut_of(A.size(), ranks_); !cut.empty()) {
+            int rank = 0;
+            MPI_Comm_rank(together_, &rank);
+            first_ = static_cast<std::size_t>(cut.begin(rank)), end_ = static_cast<std::size_t>(cut.end(rank, A.size()));
+        }
         start_.assign(1, 0), column_.clear(), value_.clear();
         for (std::size_t row = first_; row < end_; ++row) {
             const auto i = static_cast<PetscInt>(row);

@@ -11,19 +11,14 @@ namespace weir::poisson {
 class PetscEngine {
 public:
     virtual ~PetscEngine() = default;
-    /// Takes its rank's rows of the matrix, and sets the preconditioner up. `components`: what the matrix maps to zero; they are to live as
-    /// long as solves go on.
+    /// Takes its rank's rows of the matrix, as cut_of cuts them, and sets the preconditioner up. `components`: what the matrix maps to
+    /// zero; they are to live as long as solves go on.
     virtual void prepare(const Matrix& A, const Components& components) = 0;
     /// Conjugate gradients from x on, until `wants_more`, asked with ‖b − A x‖₂ after each iteration, says no, or PETSc finds nothing to
     /// gain. Over ranks each has improved its rows of x. Throws std::runtime_error with PETSc's words.
     virtual void solve(Vector& x, const Vector& b, const std::function<bool(real)>& wants_more) = 0;
     virtual std::size_t bytes() const = 0;
 };
-
-/// The first of the `n` rows that rank r of so many works on.
-inline std::size_t first_row_of_rank(std::size_t n, int r, int ranks) {
-    return n * static_cast<std::size_t>(r) / static_cast<std::size_t>(ranks);
-}
 
 /// The name in the library of a function that makes an engine for "gamg", "boomeramg" or "icc" in `dim` dimensions, for this process alone
 /// or for all of `ranks` together.

@@ -36,8 +36,8 @@ struct SolverKind {
     std::function<void(const Scene&)> over_ranks{};
     /// What each of several ranks takes its share of.
     Shared shared = Shared::by_planes;
-    /// What of a step every rank does alone, in a few words; nothing: all of it is shared.
-    std::string by_all{};
+    /// What of a step of such a scene, cut so, every rank does alone, in a few words; nothing, or none: all of it is shared.
+    std::function<std::string(const Scene&, const Cut&)> by_all{};
     /// Whether each rank would hold its own part of a scene that is cut so alone. None: all hold everything.
     std::function<bool(const Scene&, const Cut&)> holds_own_part{};
     /// What a rank sends in such a step, by formula. None: not known.
@@ -48,8 +48,6 @@ struct SolverKind {
     /// What a step takes of each plane of the slowest axis, in any unit: as a scene begins, or of a state (over ranks all ask together).
     /// None: as much of each.
     std::function<std::vector<std::int64_t>(const Scene&, const Checkpoint*)> work_of_planes{};
-    /// What more of a step every rank does alone, beside `by_all`, of such a scene that is cut so.
-    std::function<std::string(const Scene&, const Cut&)> by_all_of{};
 };
 
 /// What each may be told.

@@ -67,7 +67,7 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
 }
 
 Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& kind) {
-    Shares shares{.shared = kind.shared, .by_all = kind.by_all};
+    Shares shares{.shared = kind.shared};
     if (ranks == 1 || shares.shared == scene::Shared::by_particles) return shares;
     if (kind.cut)
         shares.cut = kind.cut(scene, ranks);
@@ -75,11 +75,10 @@ Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& 
         shares.cut = cut_by_work(kind.work_of_planes(scene, nullptr), ranks);
     else
         shares.cut = cut_of(planes_of(scene), ranks);
-    if (shares.cut.empty()) {
+    if (shares.cut.empty())
         shares.by_all = "all of it";
-    } else if (const std::string more = kind.by_all_of ? kind.by_all_of(scene, shares.cut) : ""; !more.empty()) {
-        shares.by_all += (shares.by_all.empty() ? "" : ", ") + more;
-    }
+    else if (kind.by_all)
+        shares.by_all = kind.by_all(scene, shares.cut);
     return shares;
 }
 

@@ -27,8 +27,10 @@ bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
 }
 
 std::string pressure_by_all(const scene::Scene& scene, const Cut& cut) {
-    if (could_hold_own_planes(scene, cut)) return "";
-    return scene.root().text("scheme.poisson.method").starts_with("petsc") ? "the matrix of the pressure" : "the pressure";
+    if (could_hold_own_planes(scene, cut)) return "the levels of the pressure of fewer than 20,000 cells";
+    const std::string method = scene.root().text("scheme.poisson.method");
+    if (method == "multigrid") return "the levels of the pressure, all of them";
+    return method.starts_with("petsc") ? "the matrix of the pressure" : "the pressure";
 }
 
 template <int D>

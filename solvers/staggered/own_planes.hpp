@@ -12,7 +12,7 @@ namespace weir::staggered {
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 /// Where nobody but the scene asks for more.
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
-/// What of the pressure every rank does alone: all, unless "multigrid" shares it or PETSc its solution.
+/// What of the pressure every rank does alone: the small levels where "multigrid" shares it, the matrix where PETSc does, else all.
 std::string pressure_by_all(const scene::Scene& scene, const Cut& cut);
 /// As a solver of the scene holds them, where alone with `deep` planes beyond its cuts.
 template <int D>

@@ -92,8 +92,9 @@ scene::SolverKind kind() {
                             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
                            over_ranks,
                            scene::Shared::by_planes,
-                           "the levels of the pressure of fewer than 20,000 unknowns, the level set's "
-                           "continuation into solids"};
+                           [](const scene::Scene&, const Cut&) {
+                               return "the levels of the pressure of fewer than 20,000 unknowns, the level set's continuation into solids";
+                           }};
     tall.holds_own_part = holds_own_planes;
     tall.sends = traffic_of_step;
     tall.cut = cut_of_columns;

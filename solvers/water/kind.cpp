@@ -96,13 +96,13 @@ scene::SolverKind kind() {
                              {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project",
                               "extrapolate", "faces to markers"},
                              "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-                            over_ranks,
-                            scene::Shared::by_planes,
-                            "the levels of the pressure of fewer than 20,000 cells, the level set's continuation into solids"};
+                            over_ranks};
     water.holds_own_part = staggered::holds_own_planes;
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
-    water.by_all_of = staggered::pressure_by_all;
+    water.by_all = [](const scene::Scene& scene, const Cut& cut) {
+        return staggered::pressure_by_all(scene, cut) + ", the level set's continuation into solids";
+    };
     return water;
 }
 

@@ -235,12 +235,10 @@ scene::SolverKind kind() {
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
             over_ranks,
             scene::Shared::by_planes,
-            {},
+            [](const scene::Scene& scene, const Cut&) { return std::string(scene.dim() == 2 ? "the surface's one row" : ""); },
             holds_own_planes,
             traffic_of_step,
-            [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); },
-            {},
-            [](const scene::Scene& scene, const Cut&) { return scene.dim() == 2 ? std::string("the surface's one row") : std::string(); }};
+            [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }};
 }
 
 }  // namespace weir::waves
