@@ -145,6 +145,7 @@ std::string concern_text(const Solver& solver) {
 }  // namespace
 
 std::string explain(Simulation& simulation) {
+    const sim::NoThreadTrials no_trials;
     const scene::Scene& scene = simulation.scene();
     const scene::SolverSchema& schema = sim::kind_named(scene.solver()).schema;
     const std::string before =

@@ -78,7 +78,7 @@ void bound_spinning(char** argv) {
     const int threads = std::getenv("OMP_NUM_THREADS") ? 0 : weir::distributed::threads_of_rank();
     const bool bounded = std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT");
     if (bounded && threads == 0) return;
-    if (!bounded) setenv("GOMP_SPINCOUNT", "20000", 1);
+    if (!bounded) setenv("GOMP_SPINCOUNT", "1000", 1);
     if (threads > 0) setenv("OMP_NUM_THREADS", std::to_string(threads).c_str(), 1);
     execv("/proc/self/exe", argv);  // where that fails the run goes on as it is
 }

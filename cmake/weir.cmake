@@ -76,6 +76,6 @@ function(weir_test kind name)
     get_filename_component(stem ${source} NAME_WE)
     add_test(NAME ${kind}.${name}.${stem} COMMAND ${kind}_${name} --gtest_filter=${stem}.* --gtest_brief=1)
     set_tests_properties(${kind}.${name}.${stem} PROPERTIES LABELS "${kind};${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
-      SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_NUM_THREADS=1;GOMP_SPINCOUNT=20000;${arg_ENVIRONMENT}" FAIL_REGULAR_EXPRESSION "Running 0 tests")
+      SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_NUM_THREADS=1;GOMP_SPINCOUNT=1000;${arg_ENVIRONMENT}" FAIL_REGULAR_EXPRESSION "Running 0 tests")
   endforeach()
 endfunction()

@@ -11,7 +11,7 @@ NumericalFailure with its step, time and quantity.
 import os as _os
 
 if "OMP_WAIT_POLICY" not in _os.environ:  # how long a thread spins for the next loop: libgomp reads it when it is loaded
-    _os.environ.setdefault("GOMP_SPINCOUNT", "20000")
+    _os.environ.setdefault("GOMP_SPINCOUNT", "1000")
 
 from ._weir import BadInput, NumericalFailure, OutputError, StepReport, __version__, build, set_threads, threads
 from .fields import Edit, Field, StaleField

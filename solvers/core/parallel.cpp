@@ -1,5 +1,7 @@
 #include "core/parallel.hpp"
 
+#include "core/thread_count.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -22,6 +24,11 @@ ThreadsWorth::ThreadsWorth(long cells) : before_(worth_of_work) {
     worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_a_thread, 1, 1 << 20));
 }
 ThreadsWorth::~ThreadsWorth() { worth_of_work = before_; }
+
+bool thread_count_is_set() { return chosen_threads > 0; }
+
+ThreadCountScope::ThreadCountScope(int most) : before_(std::exchange(worth_of_work, std::max(1, most))) {}
+ThreadCountScope::~ThreadCountScope() { worth_of_work = before_; }
 
 namespace detail {
 std::vector<real>& reduction_scratch(std::size_t count) {

@@ -2,6 +2,7 @@
 
 #include "core/cut_by_work.hpp"
 #include "core/parallel.hpp"
+#include "core/thread_count.hpp"
 #include "geometry/mesh/mesh.hpp"
 #include "scene/given.hpp"
 #include "scene/names.hpp"
@@ -42,6 +43,12 @@ long cells_of(const scene::Scene& scene) {
     long cells = 1;
     for (const real n : scene.root().numbers("grid.cells")) cells *= static_cast<long>(n);
     return cells;
+}
+
+/// That a scene of so many cells has work for.
+int threads_for(const scene::Scene& scene) {
+    const ThreadsWorth worth(cells_of(scene));
+    return weir::threads();
 }
 
 std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Cut& cut) {
@@ -98,7 +105,8 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       probes_(scene_, *solver_),
       every_(scene_.root().number_or("output.every", infinity)),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
-      changes_(changes_in(scene_)) {
+      changes_(changes_in(scene_)),
+      threads_(threads_for(scene_)) {
     read_times();
     if (scene_.has("output.fields")) {
         const auto parts = static_cast<const Solver&>(*solver_).show_in_parts();
@@ -110,7 +118,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
 }
 
 int Simulation::threads() const {
-    const ThreadsWorth worth(cells_of(scene_));
+    const ThreadCountScope scope(threads_.count());
     return weir::threads();
 }
 
@@ -218,7 +226,8 @@ void Simulation::run_until(real t) {
 }
 
 StepReport Simulation::step_towards(real target) {
-    const ThreadsWorth worth(cells_of(scene_));
+    const ThreadCountScope scope(threads_.count());
+    const sim::StepClock clock;
     const real frame_target = next_frame();
     StepReport report;
     try {
@@ -236,6 +245,7 @@ StepReport Simulation::step_towards(real target) {
     }
     ++steps_;
     if (steady_rate_ > 0) steady_ = sim::change_and_keep(fields(), last_velocity_) <= steady_rate_ * report.dt;
+    choose_threads(clock.elapsed());
     if (std::string concern = concerned_ ? std::string() : solver_->concern(); !concern.empty()) {
         concerned_ = true;
         warnings_.push_back(scene_.file() + ": " + concern);
@@ -244,6 +254,13 @@ StepReport Simulation::step_towards(real target) {
     if (at_frame_) ++frame_;
     probes_.sample(*solver_);
     return report;
+}
+
+/// Over ranks a step waits for other processes, and its time says nothing about threads.
+void Simulation::choose_threads(const sim::StepTime& step) {
+    if (slabs().several()) return;
+    threads_.add(step);
+    if (const std::string warning = threads_.warning(); !warning.empty()) warnings_.push_back(scene_.file() + ": " + warning);
 }
 
 bool Simulation::reached(real t) const { return time() >= t - slack(t); }

@@ -9,6 +9,7 @@
 #include "scene/scene.hpp"
 #include "scene/solver_kind.hpp"
 #include "sim/probes.hpp"
+#include "sim/thread_choice.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -105,7 +106,8 @@ public:
     bool has_frames() const { return every_ < infinity; }  // others than the first and the last
     std::int64_t frame() const { return frame_; }
 
-    /// Threads that a step takes: as many as were set, else those that the scene has work for (ThreadsWorth).
+    /// Threads of the next step: as many as were set, else at most those that the scene has work for (ThreadsWorth), as measured times
+    /// choose (ThreadChoice).
     int threads() const;
     FieldSet fields() const { return static_cast<const Solver&>(*solver_).fields(); }
     Solver& solver() { return *solver_; }
@@ -142,6 +144,7 @@ private:
     real within_limit(real dt, const StepLimit& limit) const;
     void tell_of_parts(real wanted, real dt, const StepLimit& limit);
     StepReport step_towards(real target);
+    void choose_threads(const sim::StepTime& step);
     EditableField editable_named(std::string_view field);
     void change_state(const std::function<void(Solver&)>& change);
 
@@ -164,6 +167,7 @@ private:
         Observer observer;
     };
     std::vector<Watch> observers_;
+    sim::ThreadChoice threads_;
     real longest_dt_ = 0;  // that was wanted so far, before it was cut for a frame [s]
 };
 

@@ -111,6 +111,7 @@ double seconds_of(const Rates& r, const std::string& pass) {
 }  // namespace
 
 Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double enough_seconds) {
+    const sim::NoThreadTrials no_trials;
     Simulation simulation(scene, kinds);
     Rates r{.cells = cells_text(scene)};
     r.count = count_of(scene, simulation.fields()).first;

@@ -89,6 +89,7 @@ bool wants_more(const MeasureOptions& options, int done, double spent) {
 CostPoint measure_point(const Study& study, const Variant& method, std::size_t i, const MeasureOptions& options, const Solvers& solvers,
                         StudyResult& result) {
     const OwnThreads own(method.threads);
+    const sim::NoThreadTrials no_trials;
     CostPoint point{.method = method.name, .threads = threads()};
     if (method.sweep) point.setting = fmt::format("{:g}", method.sweep->values[i]);
     const auto schemas = scene::schemas_of(solvers);

@@ -59,6 +59,7 @@ double milliseconds(const ReportRow& row, Simulation& simulation) {
 
 json measure_row(const ReportRow& row, const Solvers& solvers, const Drawn& drawn) {
     const auto schemas = scene::schemas_of(solvers);
+    const sim::NoThreadTrials no_trials;
     Simulation simulation(scene_of(row.variant, 0, schemas), solvers);
     for (int i = 0; i < warm_up_steps; ++i) simulation.step();
     const Work before = work_so_far();

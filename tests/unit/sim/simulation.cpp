@@ -220,9 +220,10 @@ TEST("a small scene takes no more threads than it has work for, a large one all,
         const std::string text =
             "solver = \"fake\"\ndim = 2\ngrid = { cells = [" + std::to_string(cells) + ", 8], size = [1, 1] }\ntime = { end = 1 }";
         weir::Simulation simulation(weir::scene::parse(text, "fake.toml", {kinds[0].schema}), kinds);
+        const int next = simulation.threads();
         simulation.step();
         const auto& seen = static_cast<const Counting&>(simulation.solver()).seen;
-        EXPECT_EQ(simulation.threads(), seen.back());
+        EXPECT_EQ(next, seen.back());
         return seen;
     };
     const int available = std::max(1, omp_get_max_threads()), grain = weir::ThreadsWorth::cells_a_thread / 8;
