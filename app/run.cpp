@@ -253,7 +253,7 @@ void tell_results(const std::vector<std::filesystem::path>& series, const std::f
 /// A checkpoint at the end of its scene: there is nothing to continue.
 int tell_finished(const Simulation& simulation) {
     std::fprintf(stderr, "nothing is left to do: the run has reached its end at t = %.6g s; to go on: --set time.end=%.6g\n",
-                 simulation.time(), 2 * simulation.time());
+                 simulation.end_time(), 2 * simulation.end_time());
     return exit_success;
 }
 

@@ -282,7 +282,8 @@ Key probes() {
             .keys = {{.name = "name", .type = Type::text, .doc = "Name of the CSV file.", .required = true, .example = "name = \"front\""},
                      {.name = "every",
                       .type = Type::number,
-                      .doc = "Interval between measurements; each step where absent.",
+                      .doc = "Measurements at 0, every, 2 every, ..., linear in time between the steps before and after; after each step "
+                             "where absent.",
                       .unit = "s",
                       .min = 0,
                       .min_open = true}},
@@ -311,6 +312,13 @@ Key output() {
                       .unit = "s",
                       .min = 0,
                       .min_open = true},
+                     {.name = "at",
+                      .type = Type::choice,
+                      .doc = "step: a frame is the state after the first step that reaches its time, and the series (.pvd) has that step's "
+                             "time; the solution does not depend on `every`. exact: steps are shortened so that frames have exactly the "
+                             "times k every; the solution then depends on `every`.",
+                      .fallback = std::string("step"),
+                      .choices = {"step", "exact"}},
                      {.name = "fields",
                       .type = Type::texts,
                       .doc = "Fields to write; all that the solver has where empty.",

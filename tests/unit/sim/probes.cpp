@@ -1,7 +1,10 @@
 #include "sim/probes.hpp"
 
+#include "sim/registry.hpp"
 #include "support/fake_solver.hpp"
 #include "support/test.hpp"
+
+#include <cmath>
 
 namespace {
 
@@ -62,15 +65,12 @@ TEST("an integral is the solver's own by name, or a cell field summed times the 
     EXPECT_NEAR(field.probe_series("p").values[0][0], 0.5, 1e-14);  // the integral of 3 x - 2 y over the unit square
 }
 
-TEST("a probe is sampled at the start and at the first step at or after each multiple of its interval; steps are not cut for it") {
+TEST("a probe has rows at the multiples of its interval, between steps too, and steps are not shortened for it") {
     auto simulation = fake_simulation(
         "time = { end = 0.1, dt = 0.01 }\nprobes = [ { name = \"p\", kind = \"integral\", field = \"mass\", every = 0.025 } ]");
     while (!simulation.finished()) simulation.step();
-    const auto& times = simulation.probe_series("p").times;
     EXPECT_EQ(simulation.steps(), 10);
-    const std::vector<real> expected{0, 0.03, 0.05, 0.08, 0.1};
-    ASSERT_EQ(times.size(), expected.size());
-    for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-12);
+    EXPECT_EQ(simulation.probe_series("p").times, (std::vector<real>{0, 0.025, 0.05, 0.075, 0.1}));
 }
 
 TEST("a probe of what the solver does not have is refused, with the fields that there are") {
@@ -88,6 +88,86 @@ TEST("a probe outside the domain, twice the same name, and a name that is no fil
     const std::string p = "{ name = \"a\", kind = \"front\" }";
     EXPECT_THROW(fake_simulation("time = { end = 1 }\nprobes = [ " + p + ", " + p + " ]"), weir::scene::BadScene);
     EXPECT_THROW(fake_simulation("time = { end = 1 }\nprobes = [ { name = \"../a\", kind = \"front\" } ]"), weir::scene::BadScene);
+}
+
+/// Steps of 0.01 to 0.03 s, none of which ends at a multiple of 0.025 s.
+const std::string in_time =
+    "time = { end = 1.0 }\nprobes = [ { name = \"v\", kind = \"point\", field = \"velocity\", at = [0.33, 0.71], every = ";
+
+TEST("rows of a probe with an interval are at its times exactly, and linear in time between the steps around each of them") {
+    for (const real every : {0.1, 0.025, 0.002, 0.3}) {  // seldom, about every step, several times in a step, and the end is no multiple
+        auto simulation = fake_simulation(in_time + std::to_string(every) + " } ]");
+        while (!simulation.finished()) simulation.step();
+        const auto& series = simulation.probe_series("v");
+        ASSERT_EQ(series.times.size(), static_cast<std::size_t>(std::floor(1 / every + 1e-9)) + 1) << every;
+        for (std::size_t k = 0; k < series.times.size(); ++k) {
+            EXPECT_EQ(series.times[k], std::round(1000 * every) * static_cast<real>(k) / 1000) << every;
+            // the velocity there is linear in time, so that interpolation is exact to round-off
+            EXPECT_NEAR(series.values[k][0], FakeSolver::velocity(0, 0.33, series.times[k]), 1e-14) << every;
+        }
+    }
+}
+
+TEST("a row lies between the values of the two steps around its time, in proportion: of a quantity that jumps from step to step too") {
+    const std::string both =
+        "{ name = \"all\", kind = \"integral\", field = \"mass\" }, { name = \"m\", kind = \"integral\", field = "
+        "\"mass\", every = 0.035 }";
+    auto simulation = fake_simulation("time = { end = 1.0 }\nprobes = [ " + both + " ]");
+    while (!simulation.finished()) simulation.step();
+    const auto &steps = simulation.probe_series("all"), &rows = simulation.probe_series("m");
+    ASSERT_EQ(rows.times.size(), 29u);
+    for (std::size_t k = 0; k < rows.times.size(); ++k) {
+        std::size_t i = 0;
+        while (i + 2 < steps.times.size() && steps.times[i + 1] < rows.times[k]) ++i;
+        const real s = (rows.times[k] - steps.times[i]) / (steps.times[i + 1] - steps.times[i]);
+        EXPECT_NEAR(rows.values[k][0], (1 - s) * steps.values[i][0] + s * steps.values[i + 1][0], 1e-14) << k;
+    }
+}
+
+TEST("rows are bit for bit the same over a restart after any step, and a probe that begins later has the rows from there on") {
+    const std::string scene = in_time + "0.035 } ]";
+    auto whole = fake_simulation(scene), plain = fake_simulation("time = { end = 1.0 }");
+    while (!whole.finished()) whole.step();
+    const auto& expected = whole.probe_series("v");
+    for (int steps = 0; steps < 12; ++steps) {
+        auto first = fake_simulation(scene), second = fake_simulation(scene), late = fake_simulation(scene);
+        for (int i = 0; i < steps; ++i) first.step();
+        weir::Checkpoint state, without;
+        first.save(state);
+        second.restore(state);
+        while (!second.finished()) second.step();
+        EXPECT_EQ(second.probe_series("v").times, expected.times) << steps;
+        EXPECT_EQ(second.probe_series("v").values, expected.values) << steps;
+        plain.save(without);
+        late.restore(without);
+        while (!late.finished()) late.step();
+        const auto& rest = late.probe_series("v");
+        ASSERT_LT(rest.times.size(), expected.times.size() + 1);
+        const std::size_t skipped = expected.times.size() - rest.times.size();
+        for (std::size_t k = 0; k < rest.times.size(); ++k) {
+            EXPECT_EQ(rest.times[k], expected.times[k + skipped]);
+            EXPECT_EQ(rest.values[k], expected.values[k + skipped]);
+        }
+        EXPECT_GE(rest.times.front(), plain.time());
+        EXPECT_LT(rest.times.front(), plain.time() + 0.035);
+        plain.step();
+    }
+}
+
+TEST("a change of a key between two steps does not move the row between them, and an edit begins it anew") {
+    auto plain = fake_simulation(in_time + "0.1 } ]"), set = fake_simulation(in_time + "0.1 } ]");
+    while (!plain.finished()) plain.step();
+    while (!set.finished()) set.step(), set.set("time.cfl", 0.7);
+    EXPECT_EQ(set.probe_series("v").values, plain.probe_series("v").values);
+}
+
+TEST("an interval with more rows than memory holds is refused") {
+    try {
+        fake_simulation(in_time + "1e-9 } ]");
+        FAIL() << "taken";
+    } catch (const weir::BadInput& refused) {
+        EXPECT_NE(std::string(refused.what()).find("1e+09 rows"), std::string::npos) << refused.what();
+    }
 }
 
 }  // namespace
