@@ -256,16 +256,18 @@ Key probe_point(std::string name, std::string doc) {
 
 const std::vector<Variant>& probe_kinds() {
     static const std::vector<Variant> list = {
-        {"point", "A field at one point.", {probed_field(), probe_point("at", "The point.")}},
+        {"point", "A field at one point; nan while a solid that moves covers it.", {probed_field(), probe_point("at", "The point.")}},
         {"line",
-         "A field at points along a line.",
+         "A field at points along a line; nan where a solid covers one.",
          {probed_field(),
           probe_point("from", "First point."),
           probe_point("to", "Last point."),
           {.name = "count", .type = Type::integer, .doc = "Number of points.", .fallback = std::int64_t{64}, .min = 2, .max = 1e6}}},
         {"gauge",
-         "On a line along y: the height of the uppermost liquid, be it a drop, and the depth, how much of the line lies in liquid.",
-         {probe_point("at", "Any point of the vertical line.")}},
+         "On a line along an axis: the height of the uppermost liquid above the domain's lower side, be it a drop, and the depth, how much "
+         "of the line lies in liquid.",
+         {probe_point("at", "Any point of the line."),
+          {.name = "axis", .type = Type::choice, .doc = "The line's axis.", .fallback = std::string("y"), .choices = {"x", "y", "z"}}}},
         {"wall_pressure", "Pressure on a wall or solid, at its point nearest to `at`.", {probe_point("at", "The point.")}},
         {"integral", "A field summed over the fluid.", {probed_field()}},
         {"front",

@@ -170,4 +170,103 @@ TEST("an interval with more rows than memory holds is refused") {
     }
 }
 
+/// Smoke in a box of 1 m with a disc of 0.1 m at x = 0.3 that rests, or moves by 1 m/s.
+weir::Simulation beside_disc(const std::string& probe, const std::string& motion) {
+    const std::string text =
+        "solver = \"mac\"\ndim = 2\ngrid = { cells = [16, 16], size = [1, 1] }\ntime = { end = 0.3, dt = 0.02 }\n"
+        "initial.velocity = { name = \"constant\", value = [0, 0] }\n"
+        "solids = [ { shape = \"sphere\", centre = [0.3, 0.5], radius = 0.1" +
+        motion + " } ]\nprobes = [ { name = \"p\", " + probe + " } ]\n";
+    return weir::Simulation(weir::scene::parse(text, "disc.toml", weir::sim::schemas()));
+}
+const std::string moves = ", motion = { kind = \"constant\", velocity = [1.0, 0.0] }";
+
+TEST("a probe inside a solid that does not move is refused; on its surface and beside it none is") {
+    const auto refused = [](const std::string& probe, const std::string& motion) {
+        try {
+            beside_disc("field = \"pressure\", " + probe, motion);
+            return std::string();
+        } catch (const weir::BadInput& error) {
+            return std::string(error.what());
+        }
+    };
+    for (const std::string at : {"[0.3, 0.5]", "[0.39, 0.5]", "[0.25, 0.45]"})
+        EXPECT_NE(refused("kind = \"point\", at = " + at, "").find("the probe is inside a solid that does not move"), std::string::npos)
+            << refused("kind = \"point\", at = " + at, "");
+    for (const std::string at : {"[0.4, 0.5]", "[0.3, 0.4]", "[0.41, 0.5]"}) EXPECT_EQ(refused("kind = \"point\", at = " + at, ""), "");
+    EXPECT_NE(refused("kind = \"line\", from = [0.25, 0.5], to = [0.35, 0.5]", "").find("all points"), std::string::npos);
+    EXPECT_EQ(refused("kind = \"point\", at = [0.3, 0.5]", moves), "");
+}
+
+TEST("a line through a solid has no number inside it, and numbers on both sides; that is said once") {
+    auto simulation = beside_disc("kind = \"line\", field = \"pressure\", from = [0.05, 0.5], to = [0.55, 0.5], count = 11", "");
+    while (!simulation.finished()) simulation.step();
+    for (const auto& row : simulation.probe_series("p").values)
+        for (std::size_t i = 0; i < 11; ++i) EXPECT_EQ(std::isnan(row[i]), i >= 4 && i <= 6) << i;  // 0.25, 0.3 and 0.35 m
+    ASSERT_EQ(simulation.warnings().size(), 1u);
+    EXPECT_NE(simulation.warnings()[0].find("disc.toml: 3 of the 11 points of probe \"p\" lie inside solids"), std::string::npos)
+        << simulation.warnings()[0];
+}
+
+TEST("a solid that moves over a probe leaves not a number while it covers it, between steps too, and that is said once with its time") {
+    auto simulation = beside_disc("kind = \"point\", field = \"velocity\", at = [0.5, 0.5], every = 0.01", moves);
+    while (!simulation.finished()) simulation.step();
+    const auto& series = simulation.probe_series("p");
+    ASSERT_EQ(series.times.size(), 31u);
+    for (std::size_t k = 0; k < 31; ++k)  // the disc's edge is there at 0.1 s and leaves at 0.3 s
+        EXPECT_EQ(std::isnan(series.values[k][0]), series.times[k] > 0.105 && series.times[k] < 0.295) << series.times[k];
+    ASSERT_EQ(simulation.warnings().size(), 1u);
+    EXPECT_NE(simulation.warnings()[0].find("probe \"p\" lies inside a solid at t = 0.12 s"), std::string::npos)
+        << simulation.warnings()[0];
+}
+
+TEST_IN_2D_AND_3D("a gauge along any axis reads the depth of water that rests on that side, of particles and of grids") {
+    for (int axis = 0; axis < D; ++axis)
+        for (const std::string solver : {"mac_water", "tallcell", "sph", "pbf"}) {
+            const auto vec = [&](auto&& f) {
+                std::string list;
+                for (int a = 0; a < D; ++a) list += (a == 0 ? "[" : ", ") + f(a);
+                return list + "]";
+            };
+            const auto same = [](const char* value) { return [value](int) { return std::string(value); }; };
+            const std::string text =
+                "solver = \"" + solver + "\"\ndim = " + std::to_string(D) + "\ngrid = { cells = " + vec(same("8")) +
+                ", size = " + vec(same("1")) + " }\ntime = { end = 1 }\nliquid = [ { shape = \"box\", min = " + vec(same("0")) +
+                ", max = " + vec([&](int a) { return std::string(a == axis ? "0.5" : "1"); }) +
+                " } ]\neffects.gravity.g = " + vec([&](int a) { return std::string(a == axis ? "-10" : "0"); }) +
+                (solver == "pbf" ? "\nscheme.settle = 0" : "") + "\nprobes = [ { name = \"p\", kind = \"gauge\", axis = \"" + "xyz"[axis] +
+                "\", at = " + vec(same("0.3")) + " } ]\n";
+            const weir::Simulation simulation(weir::scene::parse(text, "axes.toml", weir::sim::schemas()));
+            EXPECT_NEAR(simulation.probe_series("p").values[0][0], 0.5, 1e-10) << text;
+            EXPECT_NEAR(simulation.probe_series("p").values[0][1], 0.5, 1e-10) << text;
+        }
+}
+
+TEST_IN_2D_AND_3D("still water of particles stays as high as it is deep, and a symmetric collapse is never dry on its axis") {
+    const bool flat = D == 2;
+    const std::string ends = flat ? "[0.0, 0.0]" : "[0.0, 0.0, 0.0]", cells = flat ? "[20, 20]" : "[12, 12, 12]";
+    const real spacing = flat ? 1.0 / 20 : 1.0 / 12;
+    const auto run = [&](const std::string& solver, const std::string& liquid) {
+        const std::string text = "solver = \"" + solver + "\"\ndim = " + std::to_string(D) + "\ngrid = { cells = " + cells +
+                                 ", size = " + (flat ? "[1, 1]" : "[1, 1, 1]") +
+                                 " }\ntime = { end = 0.6 }\nfluid.density = 1000\nliquid = [ " + liquid +
+                                 " ]\neffects.gravity.g = " + (flat ? "[0, -9.81]" : "[0, -9.81, 0]") +
+                                 "\nprobes = [ { name = \"g\", kind = \"gauge\", at = " + (flat ? "[0.5, 0.1]" : "[0.5, 0.1, 0.5]") +
+                                 ", every = 0.1 }, { name = \"f\", kind = \"front\", every = 0.1 } ]\n";
+        weir::Simulation simulation(weir::scene::parse(text, "column.toml", weir::sim::schemas()));
+        while (!simulation.finished()) simulation.step();
+        for (const auto& row : simulation.probe_series("f").values) EXPECT_LE(row[0], 1.0) << solver;
+        return simulation.probe_series("g");
+    };
+    for (const std::string solver : {"sph", "pbf"}) {
+        const auto still = run(solver, "{ shape = \"box\", min = " + ends + ", max = " + (flat ? "[1, 0.5]" : "[1, 0.5, 1]") + " }");
+        ASSERT_EQ(still.values.size(), 7u);
+        for (const auto& row : still.values) EXPECT_NEAR(row[0], 0.5, 0.5 * spacing) << solver;  // as near as particles tell a surface
+        const auto falls = run(solver, std::string("{ shape = \"box\", min = ") + (flat ? "[0.25, 0]" : "[0.25, 0, 0.25]") +
+                                           ", max = " + (flat ? "[0.75, 0.5]" : "[0.75, 0.5, 0.75]") + " }");
+        for (std::size_t k = 0; k < 4; ++k) EXPECT_GT(falls.values[k][0], spacing) << solver << ' ' << k;
+        for (std::size_t k = 1; k < 4; ++k) EXPECT_LT(falls.values[k][0], falls.values[k - 1][0] + 0.5 * spacing) << solver << ' ' << k;
+    }
+}
+
 }  // namespace
