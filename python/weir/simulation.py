@@ -102,8 +102,9 @@ class Simulation:
 
     def run_until(self, t: float, on_step: "Callable[[Simulation, StepReport], object] | None" = None,
                   on_frame: "Callable[[Simulation], object] | None" = None) -> np.ndarray:
-        """Steps until time t [s] is reached exactly, for which the last one or two steps are shortened. on_step(sim, report) is called after every step, on_frame(sim) at frames: True ends
-        the run there. Returns the reports as a structured array (step, time, dt, cfl, iterations, ...)."""
+        """Steps until time t [s] is reached exactly, for which the last one or two are shortened. on_step(sim, report) is called after
+        every step, on_frame(sim) at frames: True ends the run there. Returns the reports as a structured array (step, time, dt, cfl,
+        iterations, ...)."""
         core, rows = self._core, []
         while not core.reached(t):
             report = core.step_until(t)
