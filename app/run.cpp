@@ -1,4 +1,5 @@
 // weir run SCENE: simulates a scene and writes frames, probes and run.json.
+#include "app/balance.hpp"
 #include "app/commands.hpp"
 #include "app/explain.hpp"
 #include "app/interrupt.hpp"
@@ -126,6 +127,8 @@ public:
     /// checkpoint: what was read of the one that is continued [bytes]; 0: none.
     Recorder(const Simulation& simulation, const std::filesystem::path& folder, std::size_t checkpoint, bool quiet)
         : checkpoint_(checkpoint),
+          balance_(simulation),
+          quiet_(quiet),
           probes_(folder / "probes"),
           log_(folder / "run.json", simulation.scene()),
           progress_(simulation.time(), simulation.end_time(), quiet) {
@@ -140,9 +143,14 @@ public:
     void measure(Measured& measured) { measured_ = &measured; }
     void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
         if (measured_) measured_->on_step(report, seconds);
+        spent_.stepping += seconds;
+        balance_.on_step(report);
+        const auto start = clock::now();
         by_first_rank([&] { tell_step(simulation, report, seconds); });
+        spent_.writing += seconds_since(start);
     }
     void on_frame(const Simulation& simulation) override {
+        const auto start = clock::now();
         if (frames_) {
             const auto parts = simulation.solver().show_in_parts();
             frames_->write(simulation.fields(), simulation.time());
@@ -153,16 +161,23 @@ public:
             const auto now = clock::now();
             if (now - written_ > 20 * write_time_) write_log("running");
         });
+        balance_.on_frame(simulation);
+        spent_.writing += seconds_since(start);
     }
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
         const auto sent = of_ranks(slabs().traffic());  // before what this takes
         tell_ranks(simulation, sent, of_ranks(memory_of(simulation, checkpoint_)));
         if (measured_) log_.set_measured(measured_->values());
+        const sim::BalanceOfRun balance = balance_.of_run(simulation);
+        log_.set_balance(balance_json(balance, spent_));
         by_first_rank([&] {
             probes_.update(simulation.probes());
             log_.set_solver_bytes(simulation.solver().bytes());
+            log_.set_warnings(simulation.warnings());
             write_log(status);
+            if (!quiet_) std::fputs(balance_text(balance, spent_).c_str(), stdout);
+            for (const std::string& warning : balance.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
         });
     }
     /// The run broke off: that is said if nothing else can be written any more.
@@ -179,6 +194,7 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
+    static double seconds_since(clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); }
     void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankMemory>& memory) {
         if (!slabs().several()) return;
         const sim::Shares& shares = simulation.shares();
@@ -208,6 +224,9 @@ private:
         write_time_ = written_ - start;
     }
     std::size_t checkpoint_;
+    sim::Balance balance_;
+    TimeSpent spent_;
+    bool quiet_;
     std::optional<output::Frames> frames_;
     sim::ProbeFiles probes_;
     output::RunLog log_;
@@ -253,7 +272,7 @@ void tell_results(const std::vector<std::filesystem::path>& series, const std::f
 /// A checkpoint at the end of its scene: there is nothing to continue.
 int tell_finished(const Simulation& simulation) {
     std::fprintf(stderr, "nothing is left to do: the run has reached its end at t = %.6g s; to go on: --set time.end=%.6g\n",
-                 simulation.time(), 2 * simulation.time());
+                 simulation.end_time(), 2 * simulation.end_time());
     return exit_success;
 }
 
@@ -356,7 +375,7 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--ranks", arguments->planned_ranks, "With --explain: over so many ranks, their memory and messages")
         ->check(CLI::PositiveNumber);
     run->add_flag("--any-size", arguments->any_size, "Begin though the frames may not fit on the disk");
-    run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files");
+    run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files, no balance; warnings are printed all the same");
     run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }
 

@@ -102,8 +102,9 @@ class Simulation:
 
     def run_until(self, t: float, on_step: "Callable[[Simulation, StepReport], object] | None" = None,
                   on_frame: "Callable[[Simulation], object] | None" = None) -> np.ndarray:
-        """Steps until time t [s] is reached exactly. on_step(sim, report) is called after every step, on_frame(sim) at frames: True ends
-        the run there. Returns the reports as a structured array (step, time, dt, cfl, iterations, ...)."""
+        """Steps until time t [s] is reached exactly, for which the last one or two are shortened. on_step(sim, report) is called after
+        every step, on_frame(sim) at frames: True ends the run there. Returns the reports as a structured array (step, time, dt, cfl,
+        iterations, ...)."""
         core, rows = self._core, []
         while not core.reached(t):
             report = core.step_until(t)
@@ -128,7 +129,8 @@ class Simulation:
         return self.run_until(self.end_time, watch, on_frame)
 
     def frames(self) -> "Iterator[Simulation]":
-        """Steps from frame to frame, as output.every says; at each, the first one too, the simulation itself."""
+        """Steps from frame to frame: after the first step that reaches each multiple of output.every. At each, the first one too, the
+        simulation itself."""
         yield self
         while not self.finished:
             self.step()

@@ -125,6 +125,7 @@ void RunLog::write() const {
     json measured = json::object();
     for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);
     if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();
+    if (!balance_.empty()) text += ",\n \"balance\": " + balance_;
     if (!ranks_.empty()) text += ",\n \"ranks\": " + ranks_;
     text += ",\n \"steps\": [";
     for (std::size_t i = 0; i < steps_.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + steps_[i];

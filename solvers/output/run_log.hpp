@@ -26,6 +26,8 @@ public:
     /// What was said of the run while it ran (Simulation::warnings).
     void set_warnings(std::vector<std::string> warnings) { warnings_ = std::move(warnings); }
     void set_solver_bytes(std::size_t bytes) { solver_bytes_ = bytes; }
+    /// The balance of the run that has ended, one JSON object.
+    void set_balance(std::string balance) { balance_ = std::move(balance); }
     /// What was measured of the finished run, by name. Numbers that are not finite are left out.
     void set_measured(std::map<std::string, double> values) { measured_ = std::move(values); }
     /// Of a rank: what its solver holds, what of the process stands in memory that no file backs, and what it has read of the checkpoint
@@ -56,7 +58,8 @@ private:
     std::vector<std::string> warnings_;
     std::size_t solver_bytes_ = 0;
     std::map<std::string, double> measured_;
-    std::string ranks_;  // one JSON object, or nothing
+    std::string balance_;  // one JSON object, or nothing
+    std::string ranks_;    // one JSON object, or nothing
 };
 
 }  // namespace weir::output

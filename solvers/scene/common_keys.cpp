@@ -256,16 +256,18 @@ Key probe_point(std::string name, std::string doc) {
 
 const std::vector<Variant>& probe_kinds() {
     static const std::vector<Variant> list = {
-        {"point", "A field at one point.", {probed_field(), probe_point("at", "The point.")}},
+        {"point", "A field at one point; nan while a solid that moves covers it.", {probed_field(), probe_point("at", "The point.")}},
         {"line",
-         "A field at points along a line.",
+         "A field at points along a line; nan where a solid covers one.",
          {probed_field(),
           probe_point("from", "First point."),
           probe_point("to", "Last point."),
           {.name = "count", .type = Type::integer, .doc = "Number of points.", .fallback = std::int64_t{64}, .min = 2, .max = 1e6}}},
         {"gauge",
-         "On a line along y: the height of the uppermost liquid, be it a drop, and the depth, how much of the line lies in liquid.",
-         {probe_point("at", "Any point of the vertical line.")}},
+         "On a line along an axis: the height of the uppermost liquid above the domain's lower side, be it a drop, and the depth, how much "
+         "of the line lies in liquid.",
+         {probe_point("at", "Any point of the line."),
+          {.name = "axis", .type = Type::choice, .doc = "The line's axis.", .fallback = std::string("y"), .choices = {"x", "y", "z"}}}},
         {"wall_pressure", "Pressure on a wall or solid, at its point nearest to `at`.", {probe_point("at", "The point.")}},
         {"integral", "A field summed over the fluid.", {probed_field()}},
         {"front",
@@ -282,7 +284,8 @@ Key probes() {
             .keys = {{.name = "name", .type = Type::text, .doc = "Name of the CSV file.", .required = true, .example = "name = \"front\""},
                      {.name = "every",
                       .type = Type::number,
-                      .doc = "Interval between measurements; each step where absent.",
+                      .doc = "Measurements at 0, every, 2 every, ..., linear in time between the steps before and after; after each step "
+                             "where absent.",
                       .unit = "s",
                       .min = 0,
                       .min_open = true}},
@@ -311,6 +314,13 @@ Key output() {
                       .unit = "s",
                       .min = 0,
                       .min_open = true},
+                     {.name = "at",
+                      .type = Type::choice,
+                      .doc = "step: a frame is the state after the first step that reaches its time, and the series (.pvd) has that step's "
+                             "time; the solution does not depend on `every`. exact: steps are shortened so that frames have exactly the "
+                             "times k every; the solution then depends on `every`.",
+                      .fallback = std::string("step"),
+                      .choices = {"step", "exact"}},
                      {.name = "fields",
                       .type = Type::texts,
                       .doc = "Fields to write; all that the solver has where empty.",

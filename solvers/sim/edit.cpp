@@ -72,6 +72,7 @@ void Simulation::change_state(const std::function<void(Solver&)>& change) {
         solver_->restore(before);
         throw;
     }
+    probes_.forget();
     steady_ = false;
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }

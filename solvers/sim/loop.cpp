@@ -80,22 +80,29 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
     if (!options.restarted) watcher.on_frame(simulation);
     GoodState good;
     good.keep(simulation);
+    bool before_end = false;  // the good state is the one before the steps that are shortened for the end
     while (!simulation.finished()) {
         const auto start = clock::now();
         StepReport report;
         try {
+            if (options.checkpoint_every > 0 && !before_end && simulation.shortens_for_end()) before_end = true, good.keep(simulation);
             report = simulation.step();
         } catch (const NumericalFailure& failure) {
             fail(failure, good, options.folder);
         }
         watcher.on_step(simulation, report, std::chrono::duration<double>(clock::now() - start).count());
         if (simulation.at_frame()) watcher.on_frame(simulation);
-        if (simulation.at_frame() || simulation.steps() % good_state_every == 0) good.keep(simulation);
-        const bool asked = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 ||
-                                                            simulation.finished());  // so that a later end can be asked for
+        if (!before_end && (simulation.at_frame() || simulation.steps() % good_state_every == 0)) good.keep(simulation);
+        const bool finished = simulation.finished();
+        const bool asked = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 || finished);
         const int stops = options.stop_requests();
-        const bool stop = !simulation.finished() && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
-        if (asked || stop) save(simulation, options.folder, !stop && !simulation.finished());
+        const bool stop = !finished && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
+        if (asked && finished && before_end && !simulation.steady()) {  // so that a later end can be asked for
+            put_ended(good.state, simulation.end_time());
+            good.state.write(checkpoint_file(options.folder));
+        } else if (asked || stop) {
+            save(simulation, options.folder, !stop && !finished);
+        }
         if (stop) return Ending::interrupted;
     }
     return Ending::finished;

@@ -19,9 +19,11 @@ public:
 enum class Ending { finished, interrupted };
 
 struct LoopOptions {
-    std::filesystem::path folder;       // of checkpoints
-    std::int64_t checkpoint_every = 0;  // steps; 0: only when the run ends early
-    bool restarted = false;             // the frame of the present state has been written already
+    std::filesystem::path folder;  // of checkpoints
+    /// Steps; 0: only when the run ends early. No step is changed for it. That of the end is of the state before the steps that are
+    /// shortened for the end: continued to a later one, the run is bit for bit the one that had it from the start.
+    std::int64_t checkpoint_every = 0;
+    bool restarted = false;  // the frame of the present state has been written already
     /// How often the user has asked to stop: once, and the run ends with the next frame; twice, with the present step.
     std::function<int()> stop_requests = [] { return 0; };
 };

@@ -4,11 +4,15 @@
 #include "rigid/bodies.hpp"
 #include "sim/owners.hpp"
 #include "sim/sampling.hpp"
+#include "sim/solids_around.hpp"
 #include "sim/surface.hpp"
 #include "sim/wall_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace weir::sim {
 
@@ -27,10 +31,16 @@ real sum_of(const FieldSet& fields, const FieldView& view, std::size_t component
     });
 }
 
-/// A grid field at fixed points.
+/// A point inside a solid, and not on its surface.
+bool is_inside(real distance, const GridView& grid) { return distance < -1e-9 * grid.spacing[0]; }
+
+/// A grid field at fixed points; not a number where a solid covers one.
 class Points final : public ProbeKind {
 public:
-    Points(const FieldView& field, std::vector<Vec<3>> points) : field_(field), points_(std::move(points)) { field_.data.clear(); }
+    Points(const FieldView& field, std::vector<Vec<3>> points, const scene::Scene& scene, std::string name)
+        : field_(field), points_(std::move(points)), name_(std::move(name)), solids_(solids_around(scene)) {
+        field_.data.clear();
+    }
     void describe(ProbeSeries& series) const override {
         for (std::size_t i = 0; i < points_.size(); ++i)
             for (int c = 0; c < components_; ++c) {
@@ -54,42 +64,72 @@ public:
                                      : 0);
             }
         }
-        return fields.cut ? of_owners(row, owners) : row;
+        if (fields.cut) row = of_owners(row, owners);
+        if (solids_) leave_out_covered(row, fields, solver.time());
+        return row;
     }
+    std::string remark() const override { return std::exchange(remark_, {}); }
 
 private:
+    void leave_out_covered(std::vector<real>& row, const FieldSet& fields, real t) const {
+        solids_->place(fields, t);
+        std::size_t covered = 0;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (!is_inside(solids_->distance(points_[i]), fields.grid)) continue;
+            ++covered;
+            std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(i) * components_, components_, not_applicable);
+        }
+        if (covered == 0 || std::exchange(told_, true)) return;
+        remark_ = fmt::format("{} at t = {:.4g} s: nan is written while a solid covers {}",
+                              points_.size() == 1
+                                  ? fmt::format("probe \"{}\" lies inside a solid", name_)
+                                  : fmt::format("{} of the {} points of probe \"{}\" lie inside solids", covered, points_.size(), name_),
+                              t, points_.size() == 1 ? "it" : "them");
+    }
+
     FieldView field_;
     std::vector<Vec<3>> points_;
+    std::string name_;
+    std::unique_ptr<SolidsAround> solids_;  // none: the scene has no solids
+    mutable std::string remark_;
+    mutable bool told_ = false;
     int components_ = field_.components();
 };
 
-/// On a vertical line (along y, the axis that notation.md calls up): the height of the uppermost liquid above the domain's floor, be it a
-/// drop, and the depth, how much of the line lies in liquid.
+/// On a line along an axis (y, which notation.md calls up, where the scene says none): the height of the uppermost liquid above the
+/// domain's lower side, be it a drop, and the depth, how much of the line lies in liquid.
 class Gauge final : public ProbeKind {
 public:
-    explicit Gauge(const Vec<3>& at) : at_(at) {}
+    Gauge(const Vec<3>& at, int axis) : at_(at), axis_(axis) {}
     void describe(ProbeSeries& series) const override {
         series.columns = {"height [m]", "depth [m]"};
         series.positions = {at_, at_};
     }
     std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
-        if (real height = 0; solver.answer(surface_height_name, at_, {&height, 1}))
-            return {height - fields.grid.origin[1], std::max(0.0, height - fields.grid.origin[1])};
-        return {highest_liquid(fields, at_, 1) - fields.grid.origin[1], liquid_depth(fields, at_, 1)};
+        const real floor = fields.grid.origin[static_cast<std::size_t>(axis_)];
+        if (real height = 0; axis_ == 1 && solver.answer(surface_height_name, at_, {&height, 1}))
+            return {height - floor, std::max(0.0, height - floor)};
+        return {highest_liquid(fields, at_, axis_) - floor, liquid_depth(fields, at_, axis_)};
     }
 
 private:
     Vec<3> at_;
+    int axis_;
 };
 
 class Front final : public ProbeKind {
 public:
-    explicit Front(int axis) : axis_(axis) {}
+    Front(int axis, const scene::Scene& scene) : axis_(axis), solids_(solids_around(scene)) {}
     void describe(ProbeSeries& series) const override { series.columns = {std::string("front_") + "xyz"[axis_] + " [m]"}; }
-    std::vector<real> measure(const Solver&, const FieldSet& fields) const override { return {front(fields, axis_)}; }
+    std::vector<real> measure(const Solver& solver, const FieldSet& fields) const override {
+        if (!solids_) return {front(fields, axis_)};
+        solids_->place(fields, solver.time());
+        return {front(fields, axis_, [this](const Vec<3>& x) { return solids_->distance(x); })};
+    }
 
 private:
     int axis_;
+    std::unique_ptr<SolidsAround> solids_;
 };
 
 /// An integral that the solver states, or a cell field summed over the cells times their volume.
@@ -168,10 +208,10 @@ public:
     std::unique_ptr<ProbeKind> make() const {
         const std::string& kind = table_.text("kind");
         if (fields_.grid.dim == 0) scene_.refuse(path_, "solver \"" + scene_.solver() + "\" has no grid to measure on");
-        if (kind == "point") return std::make_unique<Points>(grid_field(), std::vector{inside("at")});
+        if (kind == "point") return point();
         if (kind == "line") return line();
-        if (kind == "gauge") return surface(), std::make_unique<Gauge>(inside("at"));
-        if (kind == "front") return surface(), std::make_unique<Front>(static_cast<int>(table_.text("axis")[0] - 'x'));
+        if (kind == "gauge") return surface(), gauge();
+        if (kind == "front") return surface(), std::make_unique<Front>(axis(), scene_);
         if (kind == "integral") return integral();
         if (kind == "wall_pressure") return wall_pressure();
         if (kind == "body") return body();
@@ -179,6 +219,24 @@ public:
     }
 
 private:
+    std::unique_ptr<ProbeKind> point() const {
+        const Vec<3> at = inside("at");
+        if (const auto solids = solids_around(scene_); solids && is_inside(solids->distance_to_still(at), fields_.grid))
+            scene_.refuse(path_ + ".at", "the probe is inside a solid that does not move: there is no fluid to measure",
+                          "a point in the fluid, or kind = \"wall_pressure\" for the pressure on the solid");
+        return std::make_unique<Points>(grid_field(), std::vector{at}, scene_, table_.text("name"));
+    }
+    std::unique_ptr<ProbeKind> gauge() const {
+        const int along = axis();
+        if (along != 1 && (fields_.find("", surface_height_name) || fields_.find(column_depth_name)))
+            scene_.refuse(path_ + ".axis", "solver \"" + scene_.solver() + "\" has its surface over y", "axis = \"y\"");
+        return std::make_unique<Gauge>(inside("at"), along);
+    }
+    int axis() const {
+        const int axis = static_cast<int>(table_.text("axis")[0] - 'x');
+        if (axis >= fields_.grid.dim) scene_.refuse(path_ + ".axis", "a scene in 2D has no z axis", "\"x\" or \"y\"");
+        return axis;
+    }
     std::unique_ptr<ProbeKind> line() const {
         const Vec<3> from = inside("from"), to = inside("to");
         const auto count = table_.integer("count");
@@ -187,7 +245,12 @@ private:
             const real s = static_cast<real>(i) / static_cast<real>(count - 1);
             points.push_back((1 - s) * from + s * to);
         }
-        return std::make_unique<Points>(grid_field(), std::move(points));
+        const auto solids = solids_around(scene_);
+        if (solids && std::all_of(points.begin(), points.end(),
+                                  [&](const Vec<3>& x) { return is_inside(solids->distance_to_still(x), fields_.grid); }))
+            scene_.refuse(path_, "all points of the probe are inside solids that do not move: there is no fluid to measure",
+                          "a line through the fluid");
+        return std::make_unique<Points>(grid_field(), std::move(points), scene_, table_.text("name"));
     }
     std::unique_ptr<ProbeKind> integral() const {
         const std::string& name = table_.text("field");

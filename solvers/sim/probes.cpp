@@ -1,9 +1,11 @@
 #include "sim/probes.hpp"
 
+#include "sim/asked_times.hpp"
 #include "sim/probe_kinds.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <limits>
 
 namespace weir {
 
@@ -26,8 +28,24 @@ namespace weir::sim {
 
 namespace {
 
-/// A step ends "at" a sampling time when only rounding separates them.
-constexpr real rounding = 64 * std::numeric_limits<real>::epsilon();
+/// More rows than anybody reads, and than memory holds of many columns: an interval that was meant otherwise.
+constexpr real most_rows = 1e7;
+
+void require_rows(const scene::Scene& scene, std::size_t probe, real every) {
+    const real rows = scene.number("time.end") / every;
+    if (rows > most_rows)
+        scene.refuse("probes[" + std::to_string(probe) + "].every", fmt::format("until time.end these are {:.3g} rows", rows),
+                     fmt::format("at most {:.0e}", most_rows));
+}
+
+bool is_at(real t, real asked) { return std::abs(t - asked) <= same_time(asked); }
+
+/// Between the values at the beginning and at the end of a step; s = 0 is the beginning.
+std::vector<real> between(const std::vector<real>& begin, const std::vector<real>& end, real s) {
+    std::vector<real> row(end.size());
+    for (std::size_t c = 0; c < row.size(); ++c) row[c] = (1 - s) * begin[c] + s * end[c];
+    return row;
+}
 
 }  // namespace
 
@@ -45,21 +63,81 @@ Probes::Probes(const scene::Scene& scene, const Solver& solver) {
         kinds_.push_back(make_probe(scene, i, solver));
         kinds_.back()->describe(series);
         series_.push_back(std::move(series));
-        clocks_.push_back({.every = tables[i].number_or("every", 0), .next = -infinity});
+        clocks_.push_back({.every = tables[i].number_or("every", 0), .begin = {}});
+        if (clocks_.back().every > 0) require_rows(scene, i, clocks_.back().every);
     }
 }
 
+/// The fields are asked for once, by the first probe that needs them.
+std::vector<real> Probes::measured(std::size_t probe, const Solver& solver, FieldSet& fields) const {
+    if (fields.fields.empty()) fields = solver.fields();
+    return kinds_[probe]->measure(solver, fields);
+}
+
+/// A probe that a continued run has and the first run had not: its first row is of now, where now is one of its times.
+void Probes::join(std::size_t probe, const Solver& solver, FieldSet& fields) {
+    Clock& clock = clocks_[probe];
+    clock.joins = false;
+    clock.next = first_after(clock.every, solver.time());
+    if (clock.next == 0 || !is_at(solver.time(), asked_time(clock.every, clock.next - 1))) return;
+    if (clock.begin.empty()) clock.begin = measured(probe, solver, fields);
+    series_[probe].times.push_back(asked_time(clock.every, clock.next - 1));
+    series_[probe].values.push_back(clock.begin);
+}
+
+void Probes::before_step(const Solver& solver, real dt) {
+    began_ = solver.time();
+    const real end = began_ + dt;
+    FieldSet fields;
+    for (std::size_t i = 0; i < clocks_.size(); ++i) {
+        Clock& clock = clocks_[i];
+        if (clock.every == 0) continue;
+        if (clock.joins) join(i, solver, fields);
+        const real due = asked_time(clock.every, clock.next);
+        if (clock.begin.empty() && due <= end && !is_at(end, due)) clock.begin = measured(i, solver, fields);
+    }
+}
+
+void Probes::add_rows(std::size_t probe, const Solver& solver, FieldSet& fields) {
+    Clock& clock = clocks_[probe];
+    const real end = solver.time();
+    std::vector<real> after;
+    for (real due = asked_time(clock.every, clock.next); due <= end + same_time(due); due = asked_time(clock.every, ++clock.next)) {
+        if (after.empty()) after = measured(probe, solver, fields);
+        const bool passed = !clock.begin.empty() && !is_at(end, due);
+        series_[probe].times.push_back(due);
+        series_[probe].values.push_back(passed ? between(clock.begin, after, (due - began_) / (end - began_)) : after);
+    }
+    clock.begin.clear();
+}
+
 void Probes::sample(const Solver& solver) {
-    const real t = solver.time();
     FieldSet fields;
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
-        Clock& clock = clocks_[i];
-        if (t * (1 + rounding) < clock.next) continue;
-        if (fields.fields.empty()) fields = solver.fields();
-        series_[i].times.push_back(t);
-        series_[i].values.push_back(kinds_[i]->measure(solver, fields));
-        if (clock.every > 0) clock.next = (std::floor(t * (1 + rounding) / clock.every * (1 + rounding)) + 1) * clock.every;
+        if (clocks_[i].every > 0) {
+            add_rows(i, solver, fields);
+        } else {
+            series_[i].times.push_back(solver.time());
+            series_[i].values.push_back(measured(i, solver, fields));
+        }
     }
+}
+
+void Probes::keep(const Solver& solver) {
+    FieldSet fields;
+    for (std::size_t i = 0; i < clocks_.size(); ++i)
+        if (clocks_[i].every > 0 && clocks_[i].begin.empty()) clocks_[i].begin = measured(i, solver, fields);
+}
+
+void Probes::forget() {
+    for (Clock& clock : clocks_) clock.begin.clear();
+}
+
+std::vector<std::string> Probes::remarks() const {
+    std::vector<std::string> list;
+    for (const auto& kind : kinds_)
+        if (std::string remark = kind->remark(); !remark.empty()) list.push_back(std::move(remark));
+    return list;
 }
 
 const ProbeSeries& Probes::series(std::string_view name) const {
@@ -68,14 +146,17 @@ const ProbeSeries& Probes::series(std::string_view name) const {
     throw BadInput("the scene has no probe \"" + std::string(name) + "\"");
 }
 
-void Probes::save(Checkpoint& to) const {
+void Probes::save(Checkpoint& to, const Solver& solver) const {
+    FieldSet fields;
     for (std::size_t i = 0; i < series_.size(); ++i) {
         const std::string key = "probe." + series_[i].name + '.';
         std::vector<real> rows;
         for (const auto& row : series_[i].values) rows.insert(rows.end(), row.begin(), row.end());
         to.put(key + "times", series_[i].times);
         to.put(key + "values", rows);
-        to.put_value(key + "next", clocks_[i].next);
+        if (clocks_[i].every == 0) continue;
+        to.put_value(key + "row", clocks_[i].next);
+        to.put(key + "begin", clocks_[i].begin.empty() ? measured(i, solver, fields) : clocks_[i].begin);
     }
 }
 
@@ -85,8 +166,9 @@ void Probes::restore(const Checkpoint& from) {
         const std::string key = "probe." + series.name + '.';
         series.times.clear();
         series.values.clear();
-        clocks_[i].next = -infinity;
-        if (!from.has(key + "times")) continue;  // a probe that the first run did not have begins now
+        clocks_[i].begin.clear();
+        clocks_[i].joins = !from.has(key + "row");  // a probe that the first run did not have begins now
+        if (!from.has(key + "times")) continue;
         std::vector<real> rows;
         from.get(key + "times", series.times);
         from.get(key + "values", rows);
@@ -95,7 +177,9 @@ void Probes::restore(const Checkpoint& from) {
         for (std::size_t r = 0; r < series.times.size(); ++r)
             series.values.emplace_back(rows.begin() + static_cast<std::ptrdiff_t>(r * width),
                                        rows.begin() + static_cast<std::ptrdiff_t>((r + 1) * width));
-        clocks_[i].next = from.get_value<real>(key + "next");
+        if (clocks_[i].every == 0 || clocks_[i].joins) continue;
+        clocks_[i].next = from.get_value<std::int64_t>(key + "row");
+        from.get(key + "begin", clocks_[i].begin);
     }
 }
 

@@ -1,10 +1,12 @@
-// Probes: what a scene measures while it runs. A probe is sampled at the first step at or after each multiple of its interval, and the
-// time of that step is recorded: steps are never cut for a probe, and nothing is interpolated in time.
+// Probes: what a scene measures while it runs. A probe with an interval has rows at 0, every, 2 every, ..., each linear in time between the
+// states before and after the step that passes that time; a probe without one has a row after each step. Steps are never shortened for a
+// probe.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
 #include "scene/scene.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,7 +14,7 @@
 
 namespace weir {
 
-/// Samples of one probe. Row i of `values` was taken at times[i] [s] and has one entry a column.
+/// Samples of one probe. Row i of `values` is of times[i] [s] and has one entry a column.
 struct ProbeSeries {
     std::string name;
     std::string kind;                  // point, line, gauge, wall_pressure, integral, body, front
@@ -33,6 +35,8 @@ public:
     virtual ~ProbeKind() = default;
     virtual void describe(ProbeSeries& series) const = 0;
     virtual std::vector<real> measure(const Solver& solver, const FieldSet& fields) const = 0;
+    /// What a user should know of the last measurement, said once; empty where nothing is.
+    virtual std::string remark() const { return {}; }
 };
 
 class Probes {
@@ -40,21 +44,37 @@ public:
     Probes() = default;
     /// The scene's probes; those that ask for what the solver does not have are refused (BadScene).
     Probes(const scene::Scene& scene, const Solver& solver);
-    /// Measures with every probe that is due at this time.
+    /// Measures, before a step of dt [s], with the probes that have a time within it.
+    void before_step(const Solver& solver, real dt);
+    /// Measures, at the start and after each step, with every probe that is due.
     void sample(const Solver& solver);
+    /// Measures now for the rows of the next step, which begins at the present time: the solver is about to be replaced by one that has
+    /// the same state, and need not show the same fields before it has stepped.
+    void keep(const Solver& solver);
+    /// The state was changed: what was measured of it is no longer where the next step begins.
+    void forget();
+    /// What there is to say of measurements since the last call, one line each.
+    std::vector<std::string> remarks() const;
     const std::vector<ProbeSeries>& series() const { return series_; }
     const ProbeSeries& series(std::string_view name) const;
-    void save(Checkpoint& to) const;
+    void save(Checkpoint& to, const Solver& solver) const;
     void restore(const Checkpoint& from);
 
 private:
     struct Clock {
-        real every = 0;  // 0: each step
-        real next = 0;   // due at or after [s]
+        real every = 0;           // 0: each step
+        std::int64_t next = 0;    // the row that is due is number `next`, at asked_time(every, next)
+        bool joins = false;       // the probe begins in the middle of a run: `next` is not known yet
+        std::vector<real> begin;  // measured where the step begins; empty: it was not
     };
+    void join(std::size_t probe, const Solver& solver, FieldSet& fields);
+    std::vector<real> measured(std::size_t probe, const Solver& solver, FieldSet& fields) const;
+    void add_rows(std::size_t probe, const Solver& solver, FieldSet& fields);
+
     std::vector<std::unique_ptr<ProbeKind>> kinds_;
     std::vector<Clock> clocks_;
     std::vector<ProbeSeries> series_;
+    real began_ = 0;  // the present or the last step [s]
 };
 
 }  // namespace sim

@@ -7,6 +7,7 @@
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
+#include "sim/asked_times.hpp"
 #include "sim/finite.hpp"
 #include "sim/foretold.hpp"
 #include "sim/registry.hpp"
@@ -17,19 +18,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace weir {
 
 namespace {
 
-/// Times closer than this are the same time: what rounding leaves of t + (T - t).
-real slack(real t) { return 16 * std::numeric_limits<real>::epsilon() * std::max(std::abs(t), std::numeric_limits<real>::min()); }
-
 /// A step may be this much longer than asked for, so that a sum of rounded steps leaves no sliver before a frame: n steps round n times,
 /// by n ε t / 2 at most, which is n² ε / 2 of a step; 1e-6 is beyond what a hundred thousand leave.
 constexpr real stretch = 1 + 1e-6;
+
+/// The end that a run has reached, in a checkpoint of the state before the steps that were shortened for it.
+constexpr const char* ended_at = "sim.ended";
 
 void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
 
@@ -104,6 +104,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       solver_(make_solver(scene_, kind_, shares_->cut)),
       probes_(scene_, *solver_),
       every_(scene_.root().number_or("output.every", infinity)),
+      meets_frames_(scene_.text("output.at") == "exact"),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
       changes_(changes_in(scene_)),
       threads_(threads_for(scene_)) {
@@ -113,7 +114,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
         check_output_fields(scene_, solver_->fields());
     }
     refuse_ignored(scene_, kind_);
-    probes_.sample(*solver_);
+    measure();
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }
 
@@ -133,6 +134,7 @@ void Simulation::read_times() {
 /// what it derives from its scene fits the scene.
 void Simulation::steer(const scene::Override& change) {
     scene::Scene changed = unread(scene_.steered(change, {kind_.schema}));
+    probes_.keep(*solver_);
     Checkpoint state;
     solver_->save(state);
     std::unique_ptr<Solver> solver = make_solver(changed, kind_, shares_->cut);
@@ -169,6 +171,7 @@ bool Simulation::asks_for_other_cut(const Checkpoint& state) const { return !bet
 void Simulation::cut_anew(const Checkpoint& state) {
     Cut cut = better_cut(state);
     if (cut.empty()) return;
+    probes_.keep(*solver_);
     std::unique_ptr<Solver> solver = make_solver(scene_, kind_, cut);
     solver->restore(state);
     replace(std::move(solver));
@@ -236,6 +239,7 @@ StepReport Simulation::step_towards(real target) {
         const StepLimit stable = limit();
         const real dt = within_limit(wanted, stable);
         if (dt < wanted && !split_) tell_of_parts(wanted, dt, stable);
+        probes_.before_step(*solver_, dt);
         report = solver_->step(dt);
         sim::check_finite(solver_->checks_itself() ? FieldSet{} : fields(), report);
     } catch (NumericalFailure& failure) {
@@ -252,10 +256,11 @@ StepReport Simulation::step_towards(real target) {
     }
     at_frame_ = reached(frame_target) || steady_;
     if (at_frame_) ++frame_;
-    probes_.sample(*solver_);
+    measure();
     return report;
 }
 
+<<<<<<< HEAD
 /// Over ranks a step waits for other processes, and its time says nothing about threads.
 void Simulation::choose_threads(const sim::StepTime& step) {
     if (slabs().several()) return;
@@ -264,21 +269,41 @@ void Simulation::choose_threads(const sim::StepTime& step) {
 }
 
 bool Simulation::reached(real t) const { return time() >= t - slack(t); }
+=======
+void Simulation::measure() {
+    probes_.sample(*solver_);
+    for (const std::string& remark : probes_.remarks()) warnings_.push_back(scene_.file() + ": " + remark);
+}
+>>>>>>> sim
 
-/// The next frame, the end or a change, whichever comes first.
+bool Simulation::reached(real t) const { return time() >= t - sim::same_time(t); }
+
+/// What steps are shortened for: the end or a change, whichever comes first, and a frame where the scene says so.
 real Simulation::next_target() const {
-    real target = next_frame();
+    real target = meets_frames_ ? next_frame() : end_;
     for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
         if (!reached(changes_[at].time)) return std::min(target, changes_[at].time);
     return target;
 }
 
+/// The same as if the scene had no end.
+real Simulation::next_target_but_end() const {
+    real target = meets_frames_ && every_ < infinity ? sim::asked_time(every_, sim::first_after(every_, time())) : infinity;
+    for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
+        if (!reached(changes_[at].time)) return std::min(target, changes_[at].time);
+    return target;
+}
+
+bool Simulation::shortens_for_end() const {
+    if (finished()) return false;
+    const StepLimit stable = limit();
+    return within_limit(wanted_dt(next_target()), stable) != within_limit(wanted_dt(next_target_but_end()), stable);
+}
+
 /// The next frame, or the end where that comes first. A frame that rounding puts just before the end is the end.
 real Simulation::next_frame() const {
     if (every_ == infinity || finished()) return end_;
-    real k = std::floor(time() / every_) + 1;
-    while (reached(k * every_)) ++k;
-    const real frame = k * every_;
+    const real frame = sim::asked_time(every_, sim::first_after(every_, time()));
     return frame >= end_ - 1e-9 * every_ ? end_ : frame;
 }
 
@@ -288,7 +313,7 @@ real Simulation::wanted_dt(real target) const {
     const real remaining = target - time();
     const bool fixed = fixed_dt_ > 0;
     const real dt = uncut_dt();
-    if (!(dt > slack(time())) && remaining > 0)
+    if (!(dt > sim::same_time(time())) && remaining > 0)
         throw NumericalFailure("time step", "the advised time step is " + scene::number_text(dt) + " s: time no longer advances");
     if (remaining <= 0) return dt;
     if (dt * stretch >= remaining) return remaining;
@@ -299,7 +324,7 @@ real Simulation::wanted_dt(real target) const {
 real Simulation::within_limit(real dt, const StepLimit& limit) const {
     if (!(dt > limit.dt * stretch)) return dt;
     const real part = dt / std::ceil(dt / limit.dt);
-    if (!(part > slack(time())))
+    if (!(part > sim::same_time(time())))
         throw NumericalFailure("time step", "the longest stable step is " + scene::number_text(limit.dt) + " s: time no longer advances");
     return part;
 }
@@ -323,7 +348,7 @@ void Simulation::save(Checkpoint& to) const {
     to.put_value("sim.frame", frame_);
     to.put_value("sim.at_frame", at_frame_);
     if (changed_ > 0) to.put_value("sim.changed", changed_);
-    probes_.save(to);
+    probes_.save(to, *solver_);
     solver_->save(to);
 }
 
@@ -350,6 +375,7 @@ void Simulation::restore(const Checkpoint& from) {
         steps_ = from.get_value<std::int64_t>("sim.steps");
         frame_ = from.get_value<std::int64_t>("sim.frame");
         at_frame_ = from.get_value<bool>("sim.at_frame");
+        ended_ = from.has(ended_at) ? from.get_value<real>(ended_at) : -infinity;
         if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
     } catch (const BadInput&) {
         throw;
@@ -357,6 +383,8 @@ void Simulation::restore(const Checkpoint& from) {
         throw BadInput(std::string("the checkpoint does not fit the scene: ") + error.what());
     }
 }
+
+void put_ended(Checkpoint& to, real end) { to.put_value(ended_at, end); }
 
 scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Override>& more) {
     std::vector<scene::Override> overrides;

@@ -52,13 +52,14 @@ public:
     StepReport step();
     /// One step that does not pass t [s], which has not been reached; past the end of the scene too.
     StepReport step_until(real t);
-    /// Steps until time t [s] is reached exactly; past the end of the scene too.
+    /// Steps until time t [s] is reached exactly, for which the last one or two are shortened; past the end of the scene too.
     void run_until(real t);
-    /// time.dt, or what solver and effects advise and time.max_dt allows; cut or halved so that frames and the end are hit exactly; where
-    /// that is longer than the solver is stable for, an equal part of it (time.guard).
+    /// time.dt, or what solver and effects advise and time.max_dt allows; shortened or halved so that the end and the scene's changes are
+    /// met exactly, and frames with output.at = "exact"; where that is longer than the solver is stable for, an equal part of it
+    /// (time.guard). Nothing else shortens a step: frames, probes, checkpoints and observers do not change the solution.
     real next_dt() const { return within_limit(wanted_dt(next_target()), limit()); }
     /// What a user should know, one line each, each kind once: the first step that was longer than the solver is stable for, with its
-    /// limit and why; the solver's own concern about the state.
+    /// limit and why; the solver's own concern about the state; a probe that a solid covers.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
     /// Changes a key that the schema marks as steerable, from the next step on: as if the run went on from a checkpoint with another
@@ -68,6 +69,8 @@ public:
     void set(const std::string& key, std::span<const real> values);
     /// The same at a time that is not over yet: steps meet it exactly, as if the scene had named it in its `changes`.
     void set_at(real time, const scene::Override& change);
+    /// Whether the next step is another one than it would be if the scene ended later.
+    bool shortens_for_end() const;
     /// A time that no step up to now would have been cut for, had it been known that something happens there.
     real horizon() const { return time() + 2.5 * std::max(longest_dt_, uncut_dt()); }
     /// Every change that the run is to meet, those that it has met included.
@@ -93,7 +96,7 @@ public:
     void observe_frames(Observer observer) { observers_.push_back({0, std::move(observer)}); }
     void observe_steps(Observer observer, std::int64_t every = 1);
 
-    bool finished() const { return reached(end_) || steady_; }
+    bool finished() const { return reached(end_) || steady_ || end_ <= ended_; }
     /// The run ended because nothing changed any more (time.stop_when_steady).
     bool steady() const { return steady_; }
     real time() const { return solver_->time(); }  // [s]
@@ -101,7 +104,8 @@ public:
     bool reached(real t) const;
     real end_time() const;  // as far as is known now [s]
     std::int64_t steps() const { return steps_; }
-    /// Frames stand at 0, every output.every seconds, and at the end. frame() counts them from 0; it is the last one that was reached.
+    /// Frames stand at 0, after the first step that reaches each multiple of output.every, and at the end. frame() counts them from 0; it
+    /// is the last one that was reached.
     bool at_frame() const { return at_frame_; }
     bool has_frames() const { return every_ < infinity; }  // others than the first and the last
     std::int64_t frame() const { return frame_; }
@@ -132,6 +136,7 @@ public:
 private:
     real next_frame() const;
     real next_target() const;
+    real next_target_but_end() const;
     real uncut_dt() const;
     void read_times();
     void steer(const scene::Override& change);
@@ -144,7 +149,11 @@ private:
     real within_limit(real dt, const StepLimit& limit) const;
     void tell_of_parts(real wanted, real dt, const StepLimit& limit);
     StepReport step_towards(real target);
+<<<<<<< HEAD
     void choose_threads(const sim::StepTime& step);
+=======
+    void measure();
+>>>>>>> sim
     EditableField editable_named(std::string_view field);
     void change_state(const std::function<void(Solver&)>& change);
 
@@ -154,6 +163,8 @@ private:
     std::unique_ptr<Solver> solver_;
     sim::Probes probes_;
     real end_ = 0, every_ = infinity, fixed_dt_ = 0, max_dt_ = infinity;  // fixed_dt_ 0: the solver advises
+    bool meets_frames_ = false;                                           // output.at = "exact": steps are shortened for frames
+    real ended_ = -infinity;                                              // the end of the run that this one continues [s]
     std::int64_t steps_ = 0, frame_ = 0;
     bool at_frame_ = true, guard_ = true, steady_ = false;
     real steady_rate_ = 0;                          // [m/s^2]; 0: not asked for
@@ -167,9 +178,17 @@ private:
         Observer observer;
     };
     std::vector<Watch> observers_;
+<<<<<<< HEAD
     sim::ThreadChoice threads_;
     real longest_dt_ = 0;  // that was wanted so far, before it was cut for a frame [s]
+=======
+    real longest_dt_ = 0;  // that was wanted so far, before it was shortened [s]
+>>>>>>> sim
 };
+
+/// Says in a checkpoint that the run reached this end [s], to which the steps after the checkpoint were shortened: it continues to a later
+/// end as if that had been the scene's from the start, and with the same end nothing is left to do.
+void put_ended(Checkpoint& to, real end);
 
 /// The scene that a checkpoint was made from, as its text and overrides. Throws BadInput.
 scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Override>& more = {});

@@ -1,6 +1,7 @@
 #include "sim/surface.hpp"
 
 #include "sim/owners.hpp"
+#include "sim/particle_surface.hpp"
 #include "sim/sampling.hpp"
 
 #include <algorithm>
@@ -28,59 +29,12 @@ real coordinate(const Lattice& lattice, int axis, real index) {
     return lattice.first[axis] + index * lattice.spacing[static_cast<std::size_t>(axis)];
 }
 
-/// The points that stand for liquid, and how far it reaches beyond them: a marker is a point, a particle's own volume half a spacing.
-struct Wet {
-    const FieldView* position = nullptr;
-    real reach = 0;
-};
-Wet wet_points(const FieldSet& fields) {
-    if (const FieldView* markers = fields.find(marker_set_name, "position")) return {markers, 0};
-    return {fields.find(particle_set_name, "position"), 0.5 * fields.grid.spacing[0]};
-}
-
 /// A number that is known where x stands; where each rank holds its own planes alone, all get it from the owner of the place.
 template <class F>
 real known_at(const FieldSet& fields, const Vec<3>& x, F&& number) {
     if (!fields.cut) return number();
     const int owner = owner_of(*fields.cut, plane_below(Lattice::of_cells(fields.grid), fields.grid.dim - 1, x));
     return of_owners({owner == slabs().rank() ? number() : 0}, {owner})[0];
-}
-
-/// Whether a distance across the line is no more than half a spacing, but for round-off: on the face between two cells both are near.
-bool within_half(real distance, real spacing) { return std::abs(distance) <= 0.5 * spacing * (1 + 1e-9); }
-
-/// Highest marker or particle no farther than half a cell from the line through x along `axis`.
-real highest_point(const FieldSet& fields, const Vec<3>& x, int axis) {
-    const Wet wet = wet_points(fields);
-    const auto& position = wet.position->data;
-    real highest = fields.grid.origin[static_cast<std::size_t>(axis)];
-    for (std::size_t m = 0; m < position[0].size(); ++m) {
-        bool near = true;
-        for (std::size_t a = 0; a < position.size(); ++a)
-            if (static_cast<int>(a) != axis && !within_half(position[a][m] - x[a], fields.grid.spacing[a])) near = false;
-        if (near) highest = std::max(highest, position[static_cast<std::size_t>(axis)][m] + wet.reach);
-    }
-    return highest;
-}
-
-/// Particles near the line, each with its own length and the weights of linear interpolation across: on a lattice these sum to one.
-real depth_of_points(const FieldSet& fields, const Vec<3>& x, int axis) {
-    const auto& position = wet_points(fields).position->data;
-    const auto& spacing = fields.grid.spacing;
-    real depth = 0;
-    for (std::size_t m = 0; m < position[0].size(); ++m) {
-        real weight = 1;
-        for (std::size_t a = 0; a < position.size(); ++a)
-            if (static_cast<int>(a) != axis) {
-                // beyond the outermost layer of a lattice, half a spacing from a side, there is no other to share with
-                const real lower = fields.grid.origin[a] + 0.5 * spacing[a],
-                           upper = upper_corner(fields.grid)[static_cast<int>(a)] - 0.5 * spacing[a];
-                weight *= std::max(
-                    0.0, 1 - std::abs(position[a][m] - std::clamp(x[static_cast<int>(a)], lower, std::max(lower, upper))) / spacing[a]);
-            }
-        depth += weight * spacing[static_cast<std::size_t>(axis)];
-    }
-    return depth;
 }
 
 /// Length of [i, i + 1] on which the line from a to b is negative.
@@ -150,6 +104,22 @@ real front_of_level_set(const FieldSet& fields, std::span<const real> phi, int a
     return largest_of_owners(fields, farthest);
 }
 
+/// The farthest particle and its own volume, half a spacing, as far as there is room for it.
+real front_of_particles(const FieldSet& fields, int axis, const Room& room) {
+    const auto& position = fields.find(particle_set_name, "position")->data;
+    const auto a = static_cast<std::size_t>(axis);
+    const real own = 0.5 * fields.grid.spacing[a], wall = upper_corner(fields.grid)[axis];
+    real farthest = fields.grid.origin[a];
+    for (std::size_t m = 0; m < position[a].size(); ++m) {
+        const real at = position[a][m];
+        if (std::min(at + own, wall) <= farthest) continue;
+        Vec<3> x{};
+        for (std::size_t d = 0; d < position.size(); ++d) x[d] = position[d][m];
+        farthest = std::max(farthest, std::min(at + (room ? std::clamp(room(x), 0.0, own) : own), wall));
+    }
+    return farthest;
+}
+
 /// Columns of water, each with one depth and one surface.
 struct WaterColumns {
     const FieldView *depth, *surface;
@@ -193,7 +163,8 @@ real front_of_columns(const FieldSet& fields, const WaterColumns& water, int axi
 }  // namespace
 
 bool has_surface(const FieldSet& fields) {
-    return fields.find("", surface_height_name) || fields.find(level_set_name) || columns_of(fields) || wet_points(fields).position;
+    return fields.find("", surface_height_name) || fields.find(level_set_name) || columns_of(fields) ||
+           fields.find(particle_set_name, "position");
 }
 
 real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
@@ -207,7 +178,7 @@ real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis) {
     const FieldView* level_set = fields.find(level_set_name);
     if (const FieldView* height = fields.find("", surface_height_name); height && axis == 1)
         return known_at(fields, x, [&] { return sample(*height, fields.grid, 0, x); });
-    if (!level_set) return highest_point(fields, x, axis);
+    if (!level_set) return highest_of_particles(fields, x, axis);
     const Along phi(fields, x, axis);
     const real zero = uppermost_zero(0, phi.size(), phi.size(), phi);
     return zero < 0 ? fields.grid.origin[static_cast<std::size_t>(axis)] : coordinate(Lattice::of_cells(fields.grid), axis, zero);
@@ -219,7 +190,7 @@ real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
     const FieldView* level_set = fields.find(level_set_name);
     if (const FieldView* height = fields.find("", surface_height_name); height && axis == 1)
         return known_at(fields, x, [&] { return std::max(0.0, sample(*height, fields.grid, 0, x) - fields.grid.origin[1]); });
-    if (!level_set) return depth_of_points(fields, x, axis);
+    if (!level_set) return depth_of_particles(fields, x, axis);
     const Along phi(fields, x, axis);
     const int last = phi.size() - 1;
     real cells = 0.5 * (phi(0) < 0) + 0.5 * (phi(last) < 0);
@@ -227,7 +198,7 @@ real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis) {
     return cells * Lattice::of_cells(fields.grid).spacing[static_cast<std::size_t>(axis)];
 }
 
-real front(const FieldSet& fields, int axis) {
+real front(const FieldSet& fields, int axis, const Room& room) {
     if (const WaterColumns water = columns_of(fields)) return front_of_columns(fields, water, axis);
     const auto a = static_cast<std::size_t>(axis);
     real farthest = fields.grid.origin[a];
@@ -236,9 +207,7 @@ real front(const FieldSet& fields, int axis) {
         return largest(fields, height->data[0], farthest);
     }
     if (const FieldView* level_set = fields.find(level_set_name)) return front_of_level_set(fields, level_set->data[0], axis);
-    const Wet wet = wet_points(fields);
-    for (const real x : wet.position->data[a]) farthest = std::max(farthest, x + wet.reach);
-    return farthest;
+    return front_of_particles(fields, axis, room);
 }
 
 }  // namespace weir::sim

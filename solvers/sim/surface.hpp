@@ -1,10 +1,11 @@
-// Where the free surface stands: from the solver's heights, from its level set (both linear between cell centres), or from its markers or
-// particles where it has neither.
+// Where the free surface stands: from the solver's heights, from its level set (both linear between cell centres), or from its particles
+// (particle_surface.hpp).
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
 
 #include <array>
+#include <functional>
 
 namespace weir::sim {
 
@@ -13,7 +14,10 @@ bool has_surface(const FieldSet& fields);
 real highest_liquid(const FieldSet& fields, const Vec<3>& x, int axis);
 /// How much of the line through x along that axis lies in liquid [m]: a drop in the air counts for itself alone.
 real liquid_depth(const FieldSet& fields, const Vec<3>& x, int axis);
-/// The highest coordinate along `axis` that liquid reaches anywhere [m]; the lower end of the domain where there is none.
-real front(const FieldSet& fields, int axis);
+/// How far a place is from the nearest solid [m].
+using Room = std::function<real(const Vec<3>& x)>;
+/// The highest coordinate along `axis` that liquid reaches anywhere [m]; the lower end of the domain where there is none. A particle
+/// reaches half a spacing beyond its centre, but not into walls, nor into solids where `room` tells of them.
+real front(const FieldSet& fields, int axis, const Room& room = {});
 
 }  // namespace weir::sim

@@ -229,10 +229,52 @@ TEST("a finished run says how to see it; to restart it finds nothing left to do,
     EXPECT_EQ(text_of(out / "run.json"), before);
     run({"run", "--restart", out, "--threads", "1", "--set", "time.end=0.6"}, folder.path() / "log");
     EXPECT_EQ(weir::test::read_whole_series(out / "grid.pvd"), weir::test::read_whole_series(whole_run("smoke") / "grid.pvd"));
+    EXPECT_EQ(weir::test::first_difference(whole_run("smoke"), out), "");  // bit for bit the run that had this end from the start
     fs::remove(out / "checkpoint.weir");
     Process third({"run", "--restart", out}, folder.path() / "log");
     EXPECT_EQ(third.wait(), 2);
     EXPECT_NE(third.said().find("has no checkpoint to continue from"), std::string::npos) << third.said();
+}
+
+TEST("a run ends with its balance, which run.json has too; --quiet prints none of it") {
+    TemporaryFolder folder;
+    Process loud({"run", scene("water"), "--out", folder.path() / "loud", "--threads", "1"}, folder.path() / "log");
+    EXPECT_EQ(loud.wait(), 0) << loud.said();
+    const std::string said = loud.said();
+    const auto at = said.find("balance from t = 0 to ");
+    ASSERT_NE(at, std::string::npos) << said;
+    for (const char* row : {"\n  volume ", "; unexplained ", "\n  energy ", "\n  corrected ", "\n  time "})
+        EXPECT_NE(said.find(row, at), std::string::npos) << row << said;
+    const auto j = nlohmann::json::parse(text_of(folder.path() / "loud/run.json"))["balance"];
+    const auto& volume = j["quantities"]["volume"];
+    EXPECT_NEAR(volume["unexplained"].get<double>(),
+                (volume["end"].get<double>() - volume["start"].get<double>() - volume["net_inflow"].get<double>()) /
+                    (volume["start"].get<double>() + std::max(0.0, volume["net_inflow"].get<double>())),
+                1e-12);
+    EXPECT_GT(j["stepping_seconds"].get<double>(), 0);
+    EXPECT_GT(j["real_time_factor"].get<double>(), 0);
+    Process quiet({"run", scene("water"), "--out", folder.path() / "quiet", "--threads", "1", "--quiet"}, folder.path() / "log2");
+    EXPECT_EQ(quiet.wait(), 0) << quiet.said();
+    EXPECT_EQ(quiet.said().find("balance"), std::string::npos) << quiet.said();
+    EXPECT_EQ(weir::test::first_difference(folder.path() / "loud", folder.path() / "quiet"), "");
+}
+
+TEST("frames, checkpoints and probes change no step: the last frame and the steps are the same bytes, however often frames are written") {
+    TemporaryFolder folder;
+    const auto steps_of = [&](const std::string& every, bool saves) {
+        const auto out = folder.path() / every;
+        std::vector<std::string> words{"run", scene("water"), "--out", out, "--threads", "1", "--set", "output.every=" + every};
+        if (saves) words.insert(words.end(), {"--checkpoint-every", "2"});
+        run(words, folder.path() / "log");
+        std::vector<double> dt;
+        for (const auto& step : nlohmann::json::parse(text_of(out / "run.json"))["steps"]) dt.push_back(step["dt"]);
+        const std::string pvd = text_of(out / "grid.pvd");
+        const auto file = pvd.rfind("file=\"") + 6;
+        return std::pair{dt, text_of(out / pvd.substr(file, pvd.find('"', file) - file))};
+    };
+    const auto seldom = steps_of("100", false);
+    EXPECT_EQ(steps_of("0.01", false), seldom);
+    EXPECT_EQ(steps_of("0.037", true), seldom);
 }
 
 TEST("a case is run by its name from anywhere; another name is refused with where was looked") {

@@ -26,7 +26,7 @@ const std::vector<std::string> of_the_run{
     "time.dt = 0.001",
     "time.max_dt = 0.001\ntime.guard = \"off\"",
     "changes = [ { time = 0.5, key = \"time.max_dt\", value = 0.1 } ]",
-    "output = { every = 0.5, fields = [], faces = true, precision = \"single\", compression = \"none\" }",
+    "output = { every = 0.5, at = \"exact\", fields = [], faces = true, precision = \"single\", compression = \"none\" }",
 };
 const std::string hand =
     "effects.hand = { rate = 10, keyframes = [ { time = 0, kind = \"push\", centre = [0.5, 0.5], radius = 0.1, velocity = [1, 0], speed = "
@@ -38,7 +38,7 @@ std::vector<std::string> probes(const std::string& field) {
             "probes = [ { name = \"a\", kind = \"line\", from = [0.1, 0.1], to = [0.9, 0.9], count = 9" + of + " } ]",
             "probes = [ { name = \"a\", kind = \"integral\"" + of + " } ]"};
 }
-const std::vector<std::string> of_the_surface{"probes = [ { name = \"a\", kind = \"gauge\", at = [0.5, 0.5] } ]",
+const std::vector<std::string> of_the_surface{"probes = [ { name = \"a\", kind = \"gauge\", axis = \"y\", at = [0.5, 0.5] } ]",
                                               "probes = [ { name = \"a\", kind = \"front\", axis = \"x\" } ]"};
 const std::string in_space = "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [0.5, 0.5, 0.5] } ]\noutput.surface = ";
 const std::vector<std::string> of_surfaces{in_space + "{ method = \"zhu_bridson\", cell = 0.5 }",
@@ -342,9 +342,11 @@ std::map<std::string, Said> everything() {
         {},
         {},
         {},
-        all(of_surfaces, Lines{of_surfaces[0] + "\ntitle = \"a\"\ngrid.origin = [0, 0, 0]\njitter = 0.1\ntime.dt = 0.5",
-                               of_surfaces[0] + "\ntime.max_dt = 0.5\ntime.guard = \"off\"\noutput.every = 0.5\noutput.fields = []\n" +
-                                   "output.faces = true\noutput.precision = \"single\"\noutput.compression = \"none\""})};
+        all(of_surfaces,
+            Lines{of_surfaces[0] + "\ntitle = \"a\"\ngrid.origin = [0, 0, 0]\njitter = 0.1\ntime.dt = 0.5",
+                  of_surfaces[0] +
+                      "\ntime.max_dt = 0.5\ntime.guard = \"off\"\noutput.every = 0.5\noutput.at = \"exact\"\noutput.fields = []\n" +
+                      "output.faces = true\noutput.precision = \"single\"\noutput.compression = \"none\""})};
     return said;
 }
 

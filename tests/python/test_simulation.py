@@ -49,7 +49,12 @@ def test_run_until_is_exact_and_may_be_stopped():
 
 
 def test_frames_come_as_the_scene_says():
-    assert [round(sim.time, 9) for sim in weir.Simulation(dam).frames()] == [0, 0.05, 0.1, 0.15, 0.2]
+    exact = weir.Simulation(changed(output={"every": 0.05, "at": "exact"}))
+    assert [round(sim.time, 9) for sim in exact.frames()] == [0, 0.05, 0.1, 0.15, 0.2]
+    alone = weir.Simulation(changed(output={}))
+    times = [0.0, *alone.run()["time"]]
+    expected = [0.0] + [next(t for t in times if t >= k / 20 - 1e-12) for k in range(1, 5)]
+    assert [sim.time for sim in weir.Simulation(dam).frames()] == expected  # the steps of a run without frames
 
 
 def test_a_file_a_case_and_a_dict_are_the_same_scene(tmp_path):

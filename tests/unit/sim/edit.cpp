@@ -340,7 +340,7 @@ TEST("from a checkpoint that was made after an edit the run goes on bit for bit 
 }
 
 TEST("observers are called at frames and every so many steps, may steer, and what they throw comes out of the step") {
-    auto simulation = fake_simulation("time = { end = 1.0, dt = 0.1 }\noutput.every = 0.25\n");
+    auto simulation = fake_simulation("time = { end = 1.0, dt = 0.1 }\noutput = { every = 0.25, at = \"exact\" }\n");
     std::vector<real> frames;
     std::vector<std::int64_t> steps;
     simulation.observe_frames([&](Simulation& s, const StepReport& report) {

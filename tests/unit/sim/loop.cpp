@@ -27,7 +27,7 @@ std::string text_of(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-const std::string scene = "time = { end = 1.0 }\noutput = { every = 0.25 }\n";
+const std::string scene = "time = { end = 1.0 }\noutput = { every = 0.25, at = \"exact\" }\n";
 
 TEST("a run tells of each step, and of frames at the start, at each output time and at the end") {
     auto simulation = fake_simulation(scene);
@@ -107,13 +107,44 @@ TEST("a time step that vanishes is a failure like any other: step, time, quantit
 
 TEST("checkpoints are saved every so many steps, and at the end, so that a later end can be asked for") {
     TemporaryFolder folder;
-    auto simulation = fake_simulation("time = { end = 1.0, dt = 0.1 }");
+    auto simulation = fake_simulation("time = { end = 1.0, dt = 0.125 }");  // eighths add up without rounding: none is shortened
     Counter counter;
     weir::sim::LoopOptions options;
     options.folder = folder;
-    options.checkpoint_every = 4;
+    options.checkpoint_every = 3;
     weir::sim::run(simulation, counter, options);
-    EXPECT_EQ(weir::Checkpoint::read(weir::sim::checkpoint_file(folder)).get_value<std::int64_t>("sim.steps"), 10);
+    EXPECT_EQ(weir::Checkpoint::read(weir::sim::checkpoint_file(folder)).get_value<std::int64_t>("sim.steps"), 8);
+}
+
+TEST("a run continued beyond its end is bit for bit the run that had the later end: steps advised and given, frames at steps and exact") {
+    const std::string probe = "probes = [ { name = \"m\", kind = \"integral\", field = \"mass\", every = 0.03 } ]\n";
+    for (const std::string step : {"", ", dt = 0.01", ", dt = 0.1", ", dt = 0.07"})
+        for (const std::string output : {"", "output.every = 0.1\n", "output = { every = 0.1, at = \"exact\" }\n"}) {
+            TemporaryFolder folder;
+            const auto until = [&](const std::string& end) {
+                return fake_simulation("time = { end = " + end + step + " }\n" + probe + output);
+            };
+            auto whole = until("0.6"), first = until("0.3"), same = until("0.3"), rest = until("0.6");
+            Counter counter;
+            weir::sim::run(whole, counter, {});
+            weir::sim::LoopOptions options;
+            options.folder = folder;
+            options.checkpoint_every = 1000;
+            weir::sim::run(first, counter, options);
+            EXPECT_EQ(first.time(), 0.3);
+            const auto state = weir::Checkpoint::read(weir::sim::checkpoint_file(folder));
+            same.restore(state);
+            EXPECT_TRUE(same.finished()) << step << output;  // nothing is left to do
+            rest.restore(state);
+            options.restarted = true;
+            weir::sim::run(rest, counter, options);
+            EXPECT_EQ(rest.steps(), whole.steps()) << step << output;
+            EXPECT_EQ(rest.time(), whole.time()) << step << output;
+            EXPECT_EQ(rest.frame(), whole.frame()) << step << output;
+            EXPECT_EQ(rest.solver().advised_dt(), whole.solver().advised_dt()) << step << output;  // of all steps so far
+            EXPECT_EQ(rest.probe_series("m").times, whole.probe_series("m").times) << step << output;
+            EXPECT_EQ(rest.probe_series("m").values, whole.probe_series("m").values) << step << output;
+        }
 }
 
 TEST("probe files appended to step by step equal those written at once, and hold every digit") {

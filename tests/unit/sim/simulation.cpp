@@ -1,6 +1,7 @@
 #include "sim/simulation.hpp"
 
 #include "core/parallel.hpp"
+#include "sim/asked_times.hpp"
 #include "sim/registry.hpp"
 #include "support/fake_solver.hpp"
 #include "support/test.hpp"
@@ -21,8 +22,8 @@ std::vector<real> times_of_frames(weir::Simulation& simulation) {
     return times;
 }
 
-TEST("every frame and the end are hit: to the last bit or, where t + (T - t) rounds, to the one before") {
-    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.1 }");
+TEST("with output.at = exact every frame and the end are hit: to the last bit or, where t + (T - t) rounds, to the one before") {
+    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.1, at = \"exact\" }");
     const auto times = times_of_frames(simulation);
     ASSERT_EQ(times.size(), 11u);
     for (std::size_t k = 0; k < times.size(); ++k) EXPECT_DOUBLE_EQ(times[k], 0.1 * static_cast<real>(k));
@@ -30,8 +31,58 @@ TEST("every frame and the end are hit: to the last bit or, where t + (T - t) rou
 }
 
 TEST("a run whose last frame falls just before the end, by rounding, has no frame too many") {
-    auto simulation = fake_simulation("time = { end = 0.3 }\noutput = { every = 0.1 }");  // 3 * 0.1 > 0.3 in double precision
-    EXPECT_EQ(times_of_frames(simulation).size(), 4u);
+    for (const std::string at : {"step", "exact"}) {
+        auto simulation =
+            fake_simulation("time = { end = 0.3 }\noutput = { every = 0.1, at = \"" + at + "\" }");  // 3 * 0.1 > 0.3 in doubles
+        EXPECT_EQ(times_of_frames(simulation).size(), 4u) << at;
+    }
+}
+
+TEST("a frame is the state after the first step that reaches its time, a step that reaches several is one frame, and the end is one") {
+    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.1 }");  // steps of 0.01 to 0.03 s
+    std::vector<real> times{0}, before{0}, frames{0};
+    while (!simulation.finished()) {
+        before.push_back(simulation.time());
+        simulation.step();
+        times.push_back(simulation.time());
+        if (simulation.at_frame()) frames.push_back(simulation.time());
+    }
+    std::vector<real> expected{0};
+    for (int k = 1; k <= 10; ++k)
+        for (std::size_t i = 1; i < times.size(); ++i)
+            if (before[i] < k / 10.0 && times[i] >= k / 10.0) expected.push_back(times[i]);
+    EXPECT_EQ(frames, expected);
+    EXPECT_EQ(simulation.frame(), 10);
+    auto often = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.001 }");
+    const std::size_t written = times_of_frames(often).size();
+    EXPECT_EQ(written, static_cast<std::size_t>(often.steps()) + 1);
+}
+
+TEST("steps do not depend on frames: the same times, to the bit, with frames often, seldom and never") {
+    const auto steps = [](const std::string& output) {
+        auto simulation = fake_simulation("time = { end = 1.0 }\n" + output);
+        std::vector<real> times;
+        while (!simulation.finished()) simulation.step(), times.push_back(simulation.time());
+        return times;
+    };
+    const auto never = steps("");
+    for (const std::string every : {"0.001", "0.02", "0.1", "0.7", "5"}) EXPECT_EQ(steps("output.every = " + every), never) << every;
+    EXPECT_NE(steps("output = { every = 0.1, at = \"exact\" }"), never);
+    EXPECT_EQ(never.back(), 1.0);
+}
+
+TEST("times of frames and probes are the doubles of decimal products: three times 0.1 is 0.3") {
+    for (int k = 0; k < 2000; ++k) {
+        EXPECT_EQ(weir::sim::asked_time(0.1, k), k / 10.0);
+        EXPECT_EQ(weir::sim::asked_time(0.609, k), k * 609 / 1000.0);
+        EXPECT_EQ(weir::sim::asked_time(2.5e-5, k), k * 25 / 1e6);
+    }
+    EXPECT_NE(3 * 0.1, 0.3);
+    EXPECT_EQ(weir::sim::asked_time(1.0 / 3, 5), 5 * (1.0 / 3));
+    EXPECT_EQ(weir::sim::first_after(0.1, 0.3), 4);
+    EXPECT_EQ(weir::sim::first_after(0.1, std::nextafter(0.3, 0)), 4);  // rounding is no difference
+    EXPECT_EQ(weir::sim::first_after(0.1, 0.29), 3);
+    EXPECT_EQ(weir::sim::first_after(1e-300, 1.0) > 0, true);
 }
 
 TEST("a fixed step is taken as given, and cut only before a frame or the end") {
@@ -113,7 +164,7 @@ TEST("nor do a hundred thousand of them: what each rounds by adds up") {
 }
 
 TEST("an advised step that would leave a sliver is halved with the rest, so no step is below half the advice") {
-    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.033 }");
+    auto simulation = fake_simulation("time = { end = 1.0 }\noutput = { every = 0.033, at = \"exact\" }");
     while (!simulation.finished()) {
         const real advised = simulation.solver().advised_dt();
         const real remaining = std::min(0.033 * static_cast<real>(simulation.frame() + 1), 1.0) - simulation.time();
