@@ -1,6 +1,8 @@
 #include "water/solver.hpp"
 
+#include "core/parallel.hpp"
 #include "staggered/inflow.hpp"
+#include "water/curvature.hpp"
 
 namespace weir::water {
 
@@ -280,32 +282,16 @@ void Water<D>::control_volume() {
     volume_shift_ += std::abs(surface_.regain(missing));
 }
 
-/// κ = ∇·(∇φ/|∇φ|) [1/m], central differences of the face normals' components.
+/// In the cells beside the surface, between which the pressure jumps.
 template <int D>
 void Water<D>::curvature() {
     if (options_.sigma == 0) return;
     const auto timed = passes_.time("effect surface_tension");
-    const auto& phi = surface_.phi;
-    for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        curvature_(I) = 0;
-        if (std::abs(phi(I)) > 2 * norm(frame_.h)) return;
-        Vec<D> g;
-        real laplacian = 0, bending = 0, g2 = 0;
-        for (int a = 0; a < D; ++a) {
-            const real lower = phi(frame_.near(I, a, -1)), upper = phi(frame_.near(I, a, 1));
-            g[a] = 0.5 * (upper - lower) * frame_.inv_h[a];
-            g2 += g[a] * g[a];
-        }
-        for (int a = 0; a < D; ++a)
-            for (int b = 0; b < D; ++b) {
-                const auto at = [&](int i, int j) { return phi(frame_.near(frame_.near(I, a, i), b, j)); };
-                const real second = a == b ? (at(1, 0) - 2 * phi(I) + at(-1, 0)) * frame_.inv_h[a] * frame_.inv_h[a]
-                                           : 0.25 * (at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) * frame_.inv_h[a] * frame_.inv_h[b];
-                if (a == b) laplacian += second;
-                bending += g[a] * g[b] * second;
-            }
-        const real limit = (D - 1) / frame_.h_min();  // of a drop as small as a cell
-        if (g2 > 1e-6) curvature_(I) = std::clamp((laplacian - bending / g2) / std::sqrt(g2), -limit, limit);
+    curvature_.fill(0);
+    const auto& band = surface_.band();
+    parallel_for(0, static_cast<int>(surface_.layer_end(1)), [&](int i) {
+        const Index<D>& I = band[static_cast<std::size_t>(i)];
+        if (is_own_plane(I[D - 1])) curvature_(I) = curvature_near(surface_.phi, frame_, I);
     });
     refresh(curvature_, frame_.periodic(D - 1));
 }
