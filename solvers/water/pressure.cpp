@@ -205,22 +205,38 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
     }
     const poisson::Report& report =  // the last pressure is the first guess
         bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
-    subtract_gradient(state, dt);
-    if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature);
+    subtract(state, surface, dt, sigma, curvature, state.u.face);
     return report;
+}
+
+template <int D>
+const poisson::Report& SurfacePressure<D>::project_again(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                                         const Grid<real, D>* curvature) {
+    if (!has_liquid_) return nothing_to_do_;
+    set_rhs(state, surface, dt, sigma, curvature);
+    const poisson::Report& report = solve(state);
+    subtract(state, surface, dt, sigma, curvature, state.u.face);
+    return report;
+}
+
+template <int D>
+void SurfacePressure<D>::subtract(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature,
+                                  std::array<Grid<real, D>, D>& u) const {
+    subtract_gradient(state, dt, u);
+    if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature, u);
 }
 
 /// u −= (dt/ρ) ∇p on every face of liquid that is not closed. p is zero outside the liquid, so where the surface cuts the line between two
 /// centres the weight makes the difference of p the gradient.
 template <int D>
-void SurfacePressure<D>::subtract_gradient(MacState<D>& state, real dt) const {
+void SurfacePressure<D>::subtract_gradient(const MacState<D>& state, real dt, std::array<Grid<real, D>, D>& of) const {
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a), stride = static_cast<std::size_t>(A_.cells.stride(a));
         const real scale = dt / state.rho * frame_.inv_h[a];
         for_faces_of_liquid(
             a,
             [&](std::size_t face, std::size_t cell, int count) {
-                real* u = state.u[a].data() + face;
+                real* u = of[at].data() + face;
                 const real *above = state.p.data() + cell, *below = above - stride, *w = A_.weight[at].data() + face;
                 if (state.solid.any()) {
                     const real* open = state.solid.open[at].data() + face;
@@ -237,15 +253,15 @@ void SurfacePressure<D>::subtract_gradient(MacState<D>& state, real dt) const {
                 if (joins && state.solid.any()) w = per_open(w, state.solid.open[at][face]);
                 const real above = joins || I[a] == 0 ? state.p(frame_.near(I, a, 0)) : 0;
                 const real below = joins || I[a] > 0 ? state.p(frame_.near(I, a, -1)) : 0;
-                state.u[a][face] -= scale * w * (above - below);
+                of[at][face] -= scale * w * (above - below);
             });
     }
 }
 
 /// What p = σ κ on the surface adds to that.
 template <int D>
-void SurfacePressure<D>::subtract_surface_gradient(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
-                                                   const Grid<real, D>& curvature) const {
+void SurfacePressure<D>::subtract_surface_gradient(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                                   const Grid<real, D>& curvature, std::array<Grid<real, D>, D>& u) const {
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a), stride = static_cast<std::size_t>(A_.cells.stride(a));
         const real scale = dt / state.rho * frame_.inv_h[a];
@@ -254,7 +270,7 @@ void SurfacePressure<D>::subtract_surface_gradient(MacState<D>& state, const Lev
             if (below == above || A_.weight[at][face] == 0) return;
             const real w = state.solid.any() ? per_open(A_.weight[at][face], state.solid.open[at][face]) : A_.weight[at][face];
             const real p = surface_pressure(surface, below ? lower : upper, below ? upper : lower, sigma, curvature);
-            state.u[a][face] -= scale * w * (below ? p : -p);
+            u[at][face] -= scale * w * (below ? p : -p);
         };
         for_faces_of_liquid(
             a,

@@ -33,6 +33,12 @@ public:
     /// nullptr, get their velocities by the same pressure.
     const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature,
                                    BodiesInFlow<D>* bodies = nullptr, SolidPlacement<D>* solids = nullptr);
+    /// The same once more in the same step, with state.p as the first guess: of an operator that has been set up.
+    const poisson::Report& project_again(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                         const Grid<real, D>* curvature);
+    /// u −= (dt/ρ) ∇p with p = state.p, σ κ on the surface.
+    void subtract(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature,
+                  std::array<Grid<real, D>, D>& u) const;
     /// Largest |∇·u| over liquid cells [1/s], open fractions counted.
     real max_divergence(const MacState<D>& state) const;
     /// The part of a line of faces along a, which begins at I and lies on no side across it, that has liquid on one side or the other.
@@ -53,9 +59,9 @@ private:
                           const Grid<real, D>& curvature) const;
     void set_rhs(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
     real surface_tension(const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature, const Index<D>& I) const;
-    void subtract_gradient(MacState<D>& state, real dt) const;
-    void subtract_surface_gradient(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
-                                   const Grid<real, D>& curvature) const;
+    void subtract_gradient(const MacState<D>& state, real dt, std::array<Grid<real, D>, D>& u) const;
+    void subtract_surface_gradient(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
+                                   const Grid<real, D>& curvature, std::array<Grid<real, D>, D>& u) const;
 
     Frame<D> frame_;
     poisson::Operator<D> A_;  // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere

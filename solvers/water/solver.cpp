@@ -1,6 +1,8 @@
 #include "water/solver.hpp"
 
+#include "core/parallel.hpp"
 #include "staggered/inflow.hpp"
+#include "water/curvature.hpp"
 
 namespace weir::water {
 
@@ -18,7 +20,7 @@ StepReport Water<D>::step(real dt) {
     correct_surface(dt);                          // φ joins escaped markers, and is a distance again
     conduct(dt);                                  // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
     momentum_to_faces(dt);                        // u* = what the markers carry, or D u/Dt = 0 on the grid
-    forces(dt);                                   // (I − dt ν∇²) u* = ..., u* += dt f
+    forces(dt);                                   // u* += dt f, (I − dt ν∇²) u* = ...
     const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
@@ -150,30 +152,32 @@ void Water<D>::momentum_to_faces(real dt) {
     }
 }
 
-template <int D>
-void Water<D>::rub(real dt) {
-    const auto timed = passes_.time("effect viscosity");
-    if (state_.grip) bodies_->grip(state_, solids_, dt);
-    viscosity_->apply(state_, surface_, closed_, dt);
-}
-
-/// Friction acts on the motion as it was; forces come after it and meet the pressure that holds them, so that water at rest feels none.
-/// A steady flow is then that of the forces plus θ dt times them (Lie's splitting, first order).
+/// What friction feels of the forces it takes from the last pressure, so that water at rest feels none; project() sees to the rest.
 template <int D>
 void Water<D>::forces(real dt) {
-    if (viscosity_) rub(dt);
+    if (viscosity_) remember_velocity();
     effects_.apply(Stage::force, state_, dt, passes_);
-    const auto timed = passes_.time("walls");
-    set_fixed_faces();
+    {
+        const auto timed = passes_.time("walls");
+        set_fixed_faces();
+    }
+    if (viscosity_) rub(dt);
+}
+
+template <int D>
+poisson::Report Water<D>::project_once(real dt, bool again) {
+    const auto timed = passes_.time("project");
+    impose_emitters(dt, &Emitter<D>::Face::pours);
+    const Grid<real, D>* curvature = options_.sigma > 0 ? &curvature_ : nullptr;
+    if (again) return pressure_.project_again(state_, surface_, dt, options_.sigma, curvature);
+    return pressure_.project(state_, surface_, dt, options_.sigma, curvature, bodies_.get(), &solids_);
 }
 
 template <int D>
 poisson::Report Water<D>::project(real dt) {
     slow(dt);
-    const auto timed = passes_.time("project");
-    impose_emitters(dt, &Emitter<D>::Face::pours);
-    const auto& report =
-        pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr, bodies_.get(), &solids_);
+    poisson::Report report = project_once(dt, false);
+    if (viscosity_ && !bodies_) report = balance_friction(dt, report);
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);
     refresh(state_.u[D - 1], frame_.periodic(D - 1));
     return report;
@@ -278,32 +282,16 @@ void Water<D>::control_volume() {
     volume_shift_ += std::abs(surface_.regain(missing));
 }
 
-/// κ = ∇·(∇φ/|∇φ|) [1/m], central differences of the face normals' components.
+/// In the cells beside the surface, between which the pressure jumps.
 template <int D>
 void Water<D>::curvature() {
     if (options_.sigma == 0) return;
     const auto timed = passes_.time("effect surface_tension");
-    const auto& phi = surface_.phi;
-    for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        curvature_(I) = 0;
-        if (std::abs(phi(I)) > 2 * norm(frame_.h)) return;
-        Vec<D> g;
-        real laplacian = 0, bending = 0, g2 = 0;
-        for (int a = 0; a < D; ++a) {
-            const real lower = phi(frame_.near(I, a, -1)), upper = phi(frame_.near(I, a, 1));
-            g[a] = 0.5 * (upper - lower) * frame_.inv_h[a];
-            g2 += g[a] * g[a];
-        }
-        for (int a = 0; a < D; ++a)
-            for (int b = 0; b < D; ++b) {
-                const auto at = [&](int i, int j) { return phi(frame_.near(frame_.near(I, a, i), b, j)); };
-                const real second = a == b ? (at(1, 0) - 2 * phi(I) + at(-1, 0)) * frame_.inv_h[a] * frame_.inv_h[a]
-                                           : 0.25 * (at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) * frame_.inv_h[a] * frame_.inv_h[b];
-                if (a == b) laplacian += second;
-                bending += g[a] * g[b] * second;
-            }
-        const real limit = (D - 1) / frame_.h_min();  // of a drop as small as a cell
-        if (g2 > 1e-6) curvature_(I) = std::clamp((laplacian - bending / g2) / std::sqrt(g2), -limit, limit);
+    curvature_.fill(0);
+    const auto& band = surface_.band();
+    parallel_for(0, static_cast<int>(surface_.layer_end(1)), [&](int i) {
+        const Index<D>& I = band[static_cast<std::size_t>(i)];
+        if (is_own_plane(I[D - 1])) curvature_(I) = curvature_near(surface_.phi, frame_, I);
     });
     refresh(curvature_, frame_.periodic(D - 1));
 }
@@ -353,7 +341,9 @@ real Water<D>::max_speed_rate() const {
 }
 
 /// CFL with the speed that gravity adds within the step, the gravity wave of two cells (ω dt ≤ 1, where explicit coupling of surface and
-/// pressure is stable to 2), and the capillary wave of two cells (Brackbill, Kothe & Zemach 1992: dt ≤ √(ρ h³ / (4π σ)) for one fluid).
+/// pressure is stable to 2), half of what has passed since a thick liquid began to flow,
+/// which it does within h²/ν and more, and the capillary wave of two cells (Brackbill, Kothe & Zemach 1992: dt ≤ √(ρ h³ / (4π σ)) for one
+/// fluid).
 template <int D>
 real Water<D>::advised_dt() const {
     const real h = frame_.h_min(), g = norm(gravity_);
@@ -367,6 +357,7 @@ real Water<D>::advised_dt() const {
         if (emitter.works(state_.time, state_.time + dt))
             for (int a = 0; a < D; ++a)
                 if (emitter.velocity[a] != 0) dt = std::min(dt, options_.cfl * frame_.h[a] / std::abs(emitter.velocity[a]));
+    if (viscosity_) dt = std::min(dt, std::max(0.5 * state_.time, h * h / state_.nu));
     if (heat_) dt = std::min(dt, heat_->max_dt(state_, surface_.area()));
     if (bodies_) dt = bodies_->time_to_land(state_, surface_.phi, surface_.cap(), rate_ * h, dt);
     return std::min(dt, effects_.max_dt(state_));

@@ -18,6 +18,7 @@
 #include "surface/start.hpp"
 #include "water/emitters.hpp"
 #include "water/heat.hpp"
+#include "water/mixing.hpp"
 #include "water/pressure.hpp"
 #include "water/transfer.hpp"
 #include "water/viscosity.hpp"
@@ -56,6 +57,18 @@ struct WaterOptions {
     real viscosity = 0;  // θ of the viscous solve: ½ Crank–Nicolson, 1 implicit; 0: no viscosity
     bool volume_control = false;
     explicit WaterOptions(const scene::Scene& scene);
+};
+
+/// What the solves for friction and for pressure of one step have in common (friction.cpp).
+template <int D>
+struct StepOfFriction {
+    MacVelocity<D> before, forces;  // u as the step begins; dt f
+    std::array<Grid<real, D>, D> felt;
+    Grid<real, D> p, residual;  // the pressure that felt is of; F(p) − p
+    AndersonMixing<D> mixing;
+    int turns = 0;  // after the first
+    explicit StepOfFriction(const MacState<D>& state);
+    std::size_t bytes() const;
 };
 
 template <int D>
@@ -118,7 +131,13 @@ private:
     void conduct(real dt);
     void slow(real dt);
     void momentum_to_faces(real dt);
+    void remember_velocity();
     void rub(real dt);
+    poisson::Report balance_friction(real dt, poisson::Report report);
+    void what_friction_feels(real dt);
+    void rub_again(real dt);
+    void mix_pressures();
+    poisson::Report project_once(real dt, bool again);
     void forces(real dt);
     poisson::Report project(real dt);
     void extend_velocity(real dt);
@@ -170,8 +189,9 @@ private:
     MacVelocity<D> before_;  // faces as the markers left them, or as they were before advection
     Grid<real, D> curvature_;
     std::unique_ptr<SurfaceViscosity<D>> viscosity_;
-    std::unique_ptr<LiquidHeat<D>> heat_;  // none where the scene names no substance
-    real volume_target_ = 0;               // what the ledger says: start + poured in − drained [m^D]
+    std::unique_ptr<StepOfFriction<D>> friction_;  // none without viscosity
+    std::unique_ptr<LiquidHeat<D>> heat_;          // none where the scene names no substance
+    real volume_target_ = 0;                       // what the ledger says: start + poured in − drained [m^D]
     std::int64_t steps_ = 0;
     real rate_ = 0;                            // max |u|/h over known faces [1/s]
     int up_ = 1;                               // the axis that gravity is most along

@@ -48,7 +48,8 @@ Water<D>::Water(const scene::Scene& scene)
     }
     if (options_.viscosity > 0 && state_.nu > 0) {
         viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));
-        effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes()});
+        friction_ = std::make_unique<StepOfFriction<D>>(state_);
+        effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes() + friction_->bytes()});
     }
     if (options_.volume_control) effects_.declare({.name = "volume_control", .pass = effect_pass("volume_control")});
     read_emitters(scene);
@@ -83,7 +84,7 @@ void Water<D>::stick_to_bodies(const scene::Scene& scene) {
     for_each_cell(state_.extent(), [&](const Index<D>& I) {
         if (is_liquid(I)) state_.p(I) -= least;
     });
-    viscosity_->hold_bodies(state_, gravity_);
+    viscosity_->hold_bodies(state_);
 }
 
 /// Emitters, and sides through which liquid flows in: those are emitters of one layer of cells.

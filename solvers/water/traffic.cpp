@@ -39,7 +39,12 @@ public:
           surface_(n_, lattice_.h, scene.number("time.cfl"), ring_),
           cells_(surface_.cells),
           faces_(surface_.faces),
-          tally_(of.cut, of.rank, ring_) {}
+          tally_(of.cut, of.rank, ring_) {
+        for (int a = 0; a < D; ++a) {
+            const real ratio = lattice_.h[0] / lattice_.h[a];
+            weight_[a] = ratio * ratio, periodic_[static_cast<std::size_t>(a)] = sides_.periodic(a);
+        }
+    }
 
     StepTraffic sent() {
         move();
@@ -47,8 +52,8 @@ public:
         sync();  // what the markers brought, beside walls
         surface_.continue_velocity(tally_, 2);
         if (transfer_ == "flip") sync();
-        if (scene_.effect("viscosity") && scene_.number("fluid.viscosity") > 0) rub();
         sync();  // what forces leave
+        if (viscous()) rub();
         project();
         surface_.continue_velocity(tally_, surface_.layers - 1);
         sync();
@@ -61,6 +66,9 @@ public:
     }
 
 private:
+    /// Of friction and pressure, which the shape of a step does not say.
+    int further_turns() const { return 0; }
+    bool viscous() const { return scene_.effect("viscosity") && scene_.number("fluid.viscosity") > 0; }
     void sync() { tally_.refresh({faces_[D - 1]}, 1); }
     void largest(int planes) { tally_.gather({sizeof(real), planes}); }
 
@@ -104,9 +112,27 @@ private:
     void rub() {
         tally_.refresh(faces_, 1);
         tally_.refresh({cells_}, 2);
+        continue_felt();
         tally_.refresh(faces_, 1, shape_.viscous_iterations);
-        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + 2 * shape_.viscous_iterations);
-        sync();
+        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + further_turns() + 2 * shape_.viscous_iterations);
+        sync(), sync();
+    }
+    /// Marks and values, two layers.
+    void continue_felt() { tally_.refresh(faces_, 1, 4); }
+    /// Friction and pressure by turns: what is compared, how pressures are mixed, the velocity on both sides of cuts.
+    void balance_friction() {
+        const int turns = further_turns();
+        for (int turn = 0; turn <= turns; ++turn) {
+            continue_felt();
+            tally_.gather({sizeof(real), faces_[D - 1].count}, 4);
+            tally_.refresh(faces_, 1);
+            if (turn == turns) return;
+            const int mixed = std::min(turn - 1, AndersonMixing<D>::depth);
+            if (turn > 0) tally_.gather({sizeof(real), n_[D - 1]}, mixed * (mixed + 3) / 2);
+            if (turn > 0) tally_.refresh({cells_}, 1), continue_felt();
+            sync(), sync(), sync();
+            solve(1);
+        }
     }
     /// Wet rows of this rank, one run each, as the scene begins; and those of the plane below it.
     poisson::Runs runs() const {
@@ -118,20 +144,15 @@ private:
         if (tally_.rank() > 0) runs.below = static_cast<std::size_t>(wet(first - 1));
         return runs;
     }
+    void solve(int iterations) {
+        if (!windowed_) return tally_.gather(cells_, 2);  // right-hand side and guess: each solves for itself
+        poisson::tally_multigrid<D>(n_, periodic_, weight_, false, iterations, tally_);
+        tally_.refresh({cells_}, 1);
+    }
     void project() {
-        Vec<D> weight;
-        std::array<bool, D> periodic;
-        for (int a = 0; a < D; ++a) {
-            const real ratio = lattice_.h[0] / lattice_.h[a];
-            weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides_.periodic(a);
-        }
-        if (windowed_) {
-            poisson::tally_multigrid_setup<D>(n_, periodic, weight, runs(), tally_);
-            poisson::tally_multigrid<D>(n_, periodic, weight, false, shape_.iterations, tally_);
-            tally_.refresh({cells_}, 1);
-        } else {
-            tally_.gather(cells_, 2);  // right-hand side and guess: each solves for itself
-        }
+        if (windowed_) poisson::tally_multigrid_setup<D>(n_, periodic_, weight_, runs(), tally_);
+        solve(shape_.iterations - further_turns());
+        if (viscous()) balance_friction();
         sync();
         largest(n_[D - 1]);  // of what diverges
     }
@@ -147,6 +168,8 @@ private:
     SurfaceTally<D> surface_;
     PlaneSize cells_;
     std::array<PlaneSize, D> faces_;
+    Vec<D> weight_;
+    std::array<bool, D> periodic_;
     Tally tally_;
 };
 

@@ -9,24 +9,13 @@ namespace weir::water {
 
 template <int D>
 SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick)
-    : frame_(frame), sides_(&state.sides), theta_(theta), solids_stick_(solids_stick), cell_(frame.cells) {
+    : frame_(frame), sides_(&state.sides), least_theta_(theta), theta_(theta), solids_stick_(solids_stick), cell_(frame.cells) {
     for (int a = 0; a < D; ++a)
-        for (Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_})
+        for (Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_, &felt_})
             (*faces)[static_cast<std::size_t>(a)] = Grid<real, D>(state.u[a].extent());
     reserve_unknowns();
     for (int a = 0; a < D; ++a)
         for (int b = a + 1; b < D; ++b) edge_[static_cast<std::size_t>(a + b - 1)] = Grid<real, D>(frame.cells + e<D>(a) + e<D>(b));
-}
-
-/// f(a, I) may write what belongs to the face I of axis a only.
-template <int D>
-template <class F>
-void SurfaceViscosity<D>::for_each_unknown(F&& f) const {
-    parallel_for(0, static_cast<int>(blocks_.size()), [&](int i) {
-        const Block& block = blocks_[static_cast<std::size_t>(i)];
-        const auto& list = unknown_[static_cast<std::size_t>(block.axis)];
-        for (std::size_t k = block.begin; k < block.end; ++k) f(block.axis, list[k]);
-    });
 }
 
 /// ∂_b u_a + ∂_a u_b at the edge on the lower sides of cell I along a and b.
@@ -192,14 +181,21 @@ real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
     });
 }
 
-/// Conjugate gradients with the diagonal as preconditioner: ν dt/h² is moderate, a few iterations do.
 template <int D>
-void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu) {
-    const real s = theta_ * dt_nu;
+void SurfaceViscosity<D>::set_diagonal(real s) {
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
         diagonal_[at](I) = mass_[at](I) + s * diagonal_[at](I);
-        x_[at](I) = 0;
+    });
+}
+
+/// Conjugate gradients with the diagonal as preconditioner, on from x_ with its residual r_ until that is `reduction` times as large
+/// (squared).
+template <int D>
+void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu, real reduction) {
+    const real s = theta_ * dt_nu;
+    for_each_unknown([&](int a, const Index<D>& I) {
+        const auto at = static_cast<std::size_t>(a);
         p_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
     });
     real rz = dot(r_, p_);
@@ -207,10 +203,11 @@ void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu) {
         rz += bodies_->precondition();
         bodies_->turn(state, 0, p_);
     }
-    const real target = target_ * rz;
-    iterations_ = 0;
+    const real target = reduction * rz;
+    int count = 0;
     while (rz > target && rz > 0) {
-        if (++iterations_ > 1000) throw NumericalFailure("velocity", "the viscous solve missed its tolerance after 1000 iterations");
+        ++iterations_;
+        if (++count > 1000) throw NumericalFailure("velocity", "the viscous solve missed its tolerance after 1000 iterations");
         refresh_faces<D>(p_, frame_, 1);
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
@@ -244,21 +241,8 @@ void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu) {
 }
 
 template <int D>
-void SurfaceViscosity<D>::hold_bodies(const MacState<D>& state, const Vec<D>& gravity) {
+void SurfaceViscosity<D>::hold_bodies(const MacState<D>& state) {
     bodies_ = std::make_unique<BodyRows<D>>(state);
-    gravity_ = gravity;
-}
-
-/// u += dt (g − ∇p/ρ), of the pressure of before, as deep in the liquid as no surface has passed since.
-template <int D>
-void SurfaceViscosity<D>::push(MacState<D>& state, const LevelSet<D>& surface, real dt) const {
-    const real deep = -1.5 * frame_.h_max();
-    const auto is_deep = [&](const Index<D>& I) { return surface.phi(I) < deep && state.cells(I) == poisson::Cell::fluid; };
-    for_each_unknown([&](int a, const Index<D>& I) {
-        const Index<D> below = frame_.near(I, a, -1), above = frame_.near(I, a, 0);
-        if (is_deep(below) && is_deep(above))
-            state.u[a](I) += dt * (gravity_[a] - (state.p(above) - state.p(below)) * frame_.inv_h[a] / state.rho);
-    });
 }
 
 /// dt ν K u on the faces inside bodies.
@@ -271,37 +255,56 @@ void SurfaceViscosity<D>::strain_inside(const MacState<D>& state, const Faces& u
     });
 }
 
+/// No mode of the grid, of dt ν λ ≤ 8 dt ν Σ 1/h², may change its sign.
 template <int D>
-void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt) {
+void SurfaceViscosity<D>::set_theta(real dt_nu) {
+    real fastest = 0;
+    for (int d = 0; d < D; ++d) fastest += 8 * dt_nu * frame_.inv_h[d] * frame_.inv_h[d];
+    theta_ = std::max(least_theta_, 1 - 1 / std::max(fastest, real{1}));
+}
+
+template <int D>
+void SurfaceViscosity<D>::add_felt(MacState<D>& state, real sign) const {
+    for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += sign * felt_[static_cast<std::size_t>(a)](I); });
+}
+
+template <int D>
+void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt,
+                                const MacVelocity<D>* forces, const Faces* at_surface) {
     const real dt_nu = dt * state.nu;
+    iterations_ = 0;
     if (bodies_) bodies_->find(state, closed);
     refresh_faces(state.u, frame_, 1);
+    set_theta(dt_nu);
     set_weights(state, surface, closed);
     list_unknowns();
+    for (int a = 0; a < D; ++a)
+        for (Faces* faces : {&p_, &x_, &felt_}) (*faces)[static_cast<std::size_t>(a)].fill(0);
+    if (forces) foresee(state, surface, dt, *forces, at_surface);
     if (bodies_) {
         list_walls(state);
         bodies_->add_diagonal(state, dt_nu, diagonal_);
-        push(state, surface, dt);
+        add_felt(state, 1);
         bodies_->carry(state, state.u.face);
     }
-    for (int a = 0; a < D; ++a) {
-        p_[static_cast<std::size_t>(a)].fill(0);
-        x_[static_cast<std::size_t>(a)].fill(0);
-    }
-    for_each_unknown(
-        [&](int a, const Index<D>& I) { r_[static_cast<std::size_t>(a)](I) = -dt * state.nu * stress_divergence(state.u.face, a, I, 1); });
+    for_each_unknown([&](int a, const Index<D>& I) {
+        const auto at = static_cast<std::size_t>(a);
+        r_[at](I) = -dt_nu * stress_divergence(state.u.face, a, I, 1);
+        if (!bodies_) r_[at](I) += mass_[at](I) * felt_[at](I);
+    });
     if (bodies_) {
         strain_inside(state, state.u.face, -dt_nu, 1, r_);
         bodies_->begin(state, dt_nu, state.u.face, r_);
     }
-    solve(state, dt_nu);
+    set_diagonal(theta_ * dt_nu);
+    solve(state, dt_nu, target_);
     for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += x_[static_cast<std::size_t>(a)](I); });
     if (bodies_) {
         bodies_->carry(state, state.u.face);
         strain_inside(state, state.u.face, dt_nu, 1, ap_);
         bodies_->finish(state, dt_nu, state.u.face, ap_);
-        push(state, surface, -dt);
     }
+    add_felt(state, -1);
     sync_periodic(state.u, state.sides);
 }
 
@@ -309,7 +312,7 @@ template <int D>
 std::size_t SurfaceViscosity<D>::bytes() const {
     std::size_t total = cell_.bytes();
     for (const auto& grid : edge_) total += grid.bytes();
-    for (const Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_})
+    for (const Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_, &felt_})
         for (const auto& grid : *faces) total += grid.bytes();
     for (const auto& list : unknown_) total += list.capacity() * sizeof(Index<D>);
     total += blocks_.capacity() * sizeof(Block) + first_block_.capacity() * sizeof(std::size_t) + block_sum_.capacity() * sizeof(real);

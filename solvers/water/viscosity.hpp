@@ -2,11 +2,14 @@
 // The weak form makes the free surface natural (Batty & Bridson 2008): minimise
 //     ½ Σ_faces m (u − u*)² + θ dt ν [ Σ_cells w Σ_a (∂_a u_a)² + Σ_edges w ½ (∂_b u_a + ∂_a u_b)² ]
 // with liquid fractions m of faces, w of cells and edges. (M + θ dt K) δ = −dt K u*, u = u* + δ; θ = ½ Crank–Nicolson, θ = 1 implicit.
+// Friction acts on the velocity of before and on what else the step adds to it, dt a = dt (f − ∇p/ρ): (M + θ dt K) Δ = dt (M a − ν K u),
+// so that a thick liquid creeps as its weight, its pressure and its friction balance. θ = 1 damps at any step; Crank–Nicolson's θ is the
+// least at which no mode of the grid swings from step to step: (1 − θ) dt ν λ ≤ 1, ½ at short steps.
 // Free-slip walls and solids exert no shear; no-slip ones hold the velocity half a cell (walls) or a face away (solids). Bodies that the
-// liquid sticks to are rows of the solve (body_rows.hpp). Beside them, θ = 1, the pressure of before acts inside it, and is taken off again
-// (van Kan 1986): a body at a steady speed is then rubbed at the speed that it has.
+// liquid sticks to are rows of the solve (body_rows.hpp), θ = 1: a body at a steady speed is then rubbed at the speed that it has.
 // Over ranks each solves for the faces of its own planes, and reads those of one plane beyond its cuts.
 #pragma once
+#include "core/parallel.hpp"
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
 #include "water/body_rows.hpp"
@@ -25,16 +28,30 @@ public:
     static constexpr int edges = D * (D - 1) / 2;
     SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick);
     /// The liquid sticks to the bodies of state.grip.
-    void hold_bodies(const MacState<D>& state, const Vec<D>& gravity);
+    void hold_bodies(const MacState<D>& state);
     /// Of the residual, over the right-hand side; else 1e-9.
     void aim(real tolerance) { target_ = tolerance * tolerance; }
-    /// u* → u over dt. Throws NumericalFailure("velocity", ...) when conjugate gradients miss the tolerance.
-    void apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt);
+    using Faces = std::array<Grid<real, D>, D>;
+    /// u → u + Δ − dt a over dt. `forces`: dt f, or none; a is what the last pressure, state.p, makes of it (van Kan 1986), as deep in the
+    /// liquid as it is known. `at_surface`: the same on faces that the surface cuts; else it is continued from inside. Throws
+    /// NumericalFailure("velocity", ...) when conjugate gradients miss the tolerance.
+    void apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt,
+               const MacVelocity<D>* forces = nullptr, const Faces* at_surface = nullptr);
+    /// The same step once more, with another dt a, whose values count on faces of liquid cells: `u` = u + Δ.
+    void apply_again(const MacState<D>& state, const Faces& felt, real dt, Faces& u);
+    /// From faces of liquid cells to the others that friction reaches.
+    void continue_felt(const MacState<D>& state, Faces& felt);
+    /// A bound of what friction does to the difference between `felt` and the dt a that it was solved with; over the size of u, to which
+    /// `least` times that of the forces is added.
+    real unseen(const MacState<D>& state, const Faces& felt, real dt, const Faces& forces, real least);
+    /// dt a of the last solve.
+    const Faces& felt() const { return felt_; }
     std::size_t bytes() const;
     int iterations() const { return iterations_; }
+    /// θ of the last step.
+    real theta() const { return theta_; }
 
 private:
-    using Faces = std::array<Grid<real, D>, D>;
     void set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     real edge_weight(int a, int b, const Index<D>& I, const Grid<std::uint8_t, D>& closed) const;
     /// (K u)_a at a face [1/s² × fraction]; `fixed` 1: prescribed values of walls count, 0: they are zero (for corrections).
@@ -47,9 +64,15 @@ private:
     void reserve_unknowns();
     void list_unknowns();
     void list_walls(const MacState<D>& state);
-    void push(MacState<D>& state, const LevelSet<D>& surface, real dt) const;
+    void set_theta(real dt_nu);
+    void foresee(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
+                 const Faces* at_surface = nullptr);
+    void continue_to_surface(Faces& felt);
+    bool step(int a, Index<D>& I, int d, int by) const;
+    void add_felt(MacState<D>& state, real sign) const;
     void strain_inside(const MacState<D>& state, const Faces& u, real dt_nu, real fixed, Faces& out) const;
-    void solve(const MacState<D>& state, real dt_nu);
+    void set_diagonal(real s);
+    void solve(const MacState<D>& state, real dt_nu, real target);
     real dot(const Faces& p, const Faces& q) const;
     template <class F>
     void for_each_unknown(F&& f) const;
@@ -63,19 +86,30 @@ private:
 
     Frame<D> frame_;
     const geometry::Sides<D>* sides_;
-    real theta_;
+    real least_theta_, theta_;
     bool solids_stick_;
     int iterations_ = 0;
-    real target_ = 1e-18;  // of the residual squared, over the right-hand side's
-    Vec<D> gravity_{};
+    real target_ = 1e-18;                           // of the residual squared, over the right-hand side's
     std::unique_ptr<BodyRows<D>> bodies_;           // none where the liquid sticks to none
     Grid<real, D> cell_;                            // liquid fraction of cells
     std::array<Grid<real, D>, edges> edge_;         // ... of the boxes about edges, 0 where no shear acts
     Faces mass_, x_, r_, p_, ap_, diagonal_;        // mass_ < 0: not an unknown
+    Faces felt_;                                    // dt a
     std::array<std::vector<Index<D>>, D> unknown_;  // faces that liquid or its stress reaches, in the order of the grid
     std::vector<Block> blocks_;                     // plane after plane, in each axis after axis
     std::vector<std::size_t> first_block_;          // of each plane of faces, and where those of the last one end
     mutable std::vector<real> block_sum_;
 };
+
+/// f(a, I) may write what belongs to the face I of axis a only.
+template <int D>
+template <class F>
+void SurfaceViscosity<D>::for_each_unknown(F&& f) const {
+    parallel_for(0, static_cast<int>(blocks_.size()), [&](int i) {
+        const Block& block = blocks_[static_cast<std::size_t>(i)];
+        const auto& list = unknown_[static_cast<std::size_t>(block.axis)];
+        for (std::size_t k = block.begin; k < block.end; ++k) f(block.axis, list[k]);
+    });
+}
 
 }  // namespace weir::water
