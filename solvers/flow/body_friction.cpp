@@ -49,7 +49,7 @@ real BodyFriction<D>::dot(const Vector& x, const Vector& y) const {
 template <int D>
 void BodyFriction<D>::laplacian_of(const Padded<D>& q, const MacState<D>& s, int a, Grid<real, D>& out) const {
     const auto& mask = s.grip->takes_part[static_cast<std::size_t>(a)];
-    laplacian(q, s.u.h, nodes_[static_cast<std::size_t>(a)], mask, Beyond::value, out);
+    laplacian(q, s.u.h, nodes_[static_cast<std::size_t>(a)], mask, nullptr, out);
     for (const WallLink<D>& link : s.grip->links)
         if (link.axis == a) out(link.node) -= (q(link.beyond) - q(link.node)) / (s.u.h[link.across] * s.u.h[link.across]);
 }
@@ -69,7 +69,13 @@ static void add_walls_of_before(const MacState<D>& s, std::array<Grid<real, D>, 
 template <int D>
 void BodyFriction<D>::set_right_side(const MacState<D>& s, real dt) {
     const real mass = s.rho * s.u.cell_volume();
-    for (int a = 0; a < D; ++a) laplacian_of(s.before[a], s, a, residual_.fluid[static_cast<std::size_t>(a)]);
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        laplacian_of(s.before[a], s, a, residual_.fluid[at]);
+        if (s.walls)
+            set_wall_rows(s, a, {.early = 0, .has_early = false, .before = 1, .implicit = 1}, dt * s.nu, s.before[a], residual_.fluid[at],
+                          rows_[at]);
+    }
     add_walls_of_before<D>(s, residual_.fluid);
     for (std::size_t a = 0; a < D; ++a) {
         const auto& mask = s.grip->takes_part[a];
@@ -103,6 +109,7 @@ void BodyFriction<D>::multiply(const MacState<D>& s, real dt) {
         const auto at = static_cast<std::size_t>(c);
         auto& image = image_.fluid[at];
         laplacian_of(direction_[c], s, c, image);
+        rows_[at].each([&](const Index<D>& I, real extra, real) { image(I) += extra * direction_[c](I); });
         for_each_in(nodes_[at].lo, nodes_[at].hi, [&](const Index<D>& I) { image(I) = mass * (direction_[c](I) - dt * s.nu * image(I)); });
     }
     for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
@@ -127,6 +134,8 @@ void BodyFriction<D>::set_diagonal(const MacState<D>& s, real dt) {
     real across = 0;
     for (int b = 0; b < D; ++b) across += 2 / (s.u.h[b] * s.u.h[b]);
     for (auto& diagonal : diagonal_.fluid) diagonal.fill(mass * (1 + dt * s.nu * across));
+    for (std::size_t a = 0; a < D; ++a)
+        rows_[a].each([&](const Index<D>& I, real extra, real) { diagonal_.fluid[a](I) -= mass * dt * s.nu * extra; });
     for (std::size_t b = 0; b < s.grip->riders.size(); ++b)
         for (std::size_t k = 0; k < n; ++k) diagonal_.bodies[b][k] = s.grip->riders[b].sticks ? s.grip->riders[b].mass[k][k] : 1;
     for (const WallLink<D>& link : s.grip->links) {
@@ -242,7 +251,9 @@ std::size_t BodyFriction<D>::bytes() const {
     std::size_t nodes = 0;
     for (const auto& q : residual_.fluid) nodes += 4 * q.size();
     for (const auto& q : direction_.face) nodes += q.bytes() / sizeof(real);
-    return nodes * sizeof(real) + 5 * direction_bodies_.size() * sizeof(rigid::Twist<D>);
+    std::size_t rows = 0;
+    for (const auto& of_axis : rows_) rows += of_axis.bytes();
+    return rows + nodes * sizeof(real) + 5 * direction_bodies_.size() * sizeof(rigid::Twist<D>);
 }
 
 template class BodyFriction<2>;

@@ -7,7 +7,7 @@
 // it, whatever the step. The Laplacian gives the walls μ ∂u/∂n; on a wall that turns by ω the stress has −μ ω × n more, of which the
 // torque is −2 μ V ω for a body of any shape.
 #pragma once
-#include "flow/helmholtz.hpp"
+#include "flow/wall_rates.hpp"
 #include "staggered/state.hpp"
 #include "staggered/wall_grip.hpp"
 
@@ -45,6 +45,7 @@ private:
     std::array<Boundary<D>, D> homogeneous_;
     PaddedVelocity<D> direction_;
     std::vector<rigid::Twist<D>> direction_bodies_;
+    std::array<WallRows<D>, D> rows_;  // beside solids that are no bodies
     Vector residual_, solution_, image_, diagonal_;
     int iterations_ = 0;
 };

@@ -24,7 +24,8 @@ StepReport FlowSolver<D>::step(real dt) {
     apply(Stage::source, dt);  // emitters
     for (const Substep& stage : substeps(options_.scheme)) {
         const real part = stage.fraction() * dt;
-        remember(dt);                 // uⁿ, qⁿ with their ghosts
+        remember(dt);  // uⁿ, qⁿ with their ghosts
+        if (walls_ && !walls_->found()) meet_walls(t, t);
         depart(dt);                   // u += dt f(uⁿ, qⁿ): all of it with fluxes, half where paths are followed to second order
         advect_fields(dt);            // Dq/Dt = 0    only fields that an effect asked for
         advect_velocity(dt);          // Du/Dt = 0
@@ -33,7 +34,9 @@ StepReport FlowSolver<D>::step(real dt) {
         conduct(part);                // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
         arrive(dt);                   // u += what is left of dt f(u, q)
         if (state_.grip) rub(t + part, part);
+        if (walls_ && solids_.moving()) meet_walls(t + part, t);
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
+        if (walls_) walls_->hold(state_, part / state_.rho);
         move_solids(t += part, part);  // u·n = u_solid·n
         project(part);                 // ∇·u = 0
         hold();                        // what emitters and solids prescribe
@@ -138,6 +141,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       state_(scene, field_plan(effects_, scene)),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
+      walls_(solids_.any() && scene.effect("viscosity") ? std::make_unique<SolidWalls<D>>() : nullptr),
       heat_(Heat<D>::named(scene) ? std::make_unique<Heat<D>>(scene, state_) : nullptr),
       options_(scene.root().table("scheme")),
       characteristics_(options_),
@@ -154,6 +158,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         scene.refuse("solids", "the solids leave no cell for the fluid");
     if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_));
     state_.before = PaddedVelocity<D>(state_.u);
+    state_.walls = walls_.get();
     if (options_.scheme == Scheme::maccormack) carried_ = PaddedVelocity<D>(state_.u);
     set_initial_velocity(state_, scene);
     for (auto& field : state_.fields) {
@@ -320,6 +325,7 @@ template <int D>
 void FlowSolver<D>::advect_velocity(real dt) {
     const auto timed = passes_.time("advect velocity");
     const bool second_order = options_.scheme == Scheme::maccormack;
+    if (options_.scheme == Scheme::conservative && solids_.any() && (solids_.moving() || !cuts_.found())) cuts_.find(state_);
     const PressurePush<D> taken(state_, -0.5 * dt / state_.rho), given_back(state_, 0.5 * dt / state_.rho);
     if (second_order) {
         for (int a = 0; a < D; ++a)
@@ -336,7 +342,10 @@ void FlowSolver<D>::advect_velocity(real dt) {
         const auto& boundary = state_.boundary[static_cast<std::size_t>(a)];
         const auto faces = free_faces(state_.u, state_.sides, a);
         if (options_.scheme == Scheme::conservative) {
-            add_momentum_flux(state_.before, state_.u.h, faces, dt, state_.u[a]);
+            if (solids_.any())
+                cuts_.add_momentum_flux(state_, a, dt, state_.u[a]);
+            else
+                add_momentum_flux(state_.before, state_.u.h, faces, dt, state_.u[a]);
             continue;
         }
         if (!second_order) {
@@ -357,9 +366,28 @@ void FlowSolver<D>::blend(const Substep& stage) {
         if (!state_.fields[i].derived) field_blend_[i].blend(stage, state_.fields[i].before, state_.fields[i].values);
 }
 
+/// Viscosity acts before solids move, and feels their walls where they will be.
+template <int D>
+void FlowSolver<D>::meet_walls(real now, real last) {
+    const auto timed = passes_.time("solids");
+    solids_.solids().set_time(now);
+    walls_->find(state_, solids_, now, last);
+    for (int a = 0; state_.grip && a < D; ++a)
+        for (const HeldFace<D>& f : walls_->held(a)) state_.grip->takes_part[static_cast<std::size_t>(a)](f.face) = 0;
+}
+
+/// What fluid that sticks to solids gives them. Over ranks, the stress beside a cut is of both its sides.
+template <int D>
+Vec<D> FlowSolver<D>::friction() {
+    if (!walls_ || !walls_->stick() || state_.nu == 0) return {};
+    for (int a = 0; a + 1 < D; ++a) refresh(state_.u[a], state_.sides.periodic(D - 1));
+    return walls_->friction(state_).force;
+}
+
 template <int D>
 void FlowSolver<D>::move_solids(real t, real dt) {
     if (!state_.grip) place_solids(t, dt);
+    if (walls_ && solids_.moving()) meet_walls(t, t);  // of the faces that are open now
     solids_.set_faces(state_);
 }
 
@@ -400,7 +428,7 @@ void FlowSolver<D>::project(real dt) {
     const auto timed = passes_.time("project");
     report_ = &projection_.project(state_, dt, bodies_.get(), &solids_);
     if (bodies_) solids_.see_velocities(state_);
-    impulse_ += dt * pressure_force(state_);
+    impulse_ += dt * (pressure_force(state_) + friction());
 }
 
 /// Emitted values stand where they are emitted, after each (sub)step: what flows from there in the next does not depend on its length. Nor
@@ -557,13 +585,32 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
         list.push_back({"smoke_removed", D == 2 ? "m^2" : "m^3", smoke_removed_});
         list.push_back({"smoke_continued", D == 2 ? "m^2" : "m^3", smoke_continued_});
     }
-    const Vec<D> force = pressure_force(state_);
+    add_loads(list);
+    return list;
+}
+
+/// Force on the solids and torque about the origin, and the parts of pressure and friction.
+template <int D>
+void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
+    const SolidLoad<D> pressure = pressure_load(state_);
+    SolidLoad<D> friction;
+    if (walls_ && state_.nu > 0) {
+        if (!walls_->found()) walls_->find(state_, solids_, state_.time, state_.time);
+        friction = walls_->friction(state_);
+    }
+    const std::string force_unit = D == 2 ? "N/m" : "N", torque_unit = D == 2 ? "N" : "N m";
+    const auto add = [&](const std::string& quantity, const std::string& letter, const std::string& unit, real by_pressure, real rubbed) {
+        list.push_back({"solid_" + quantity + letter, unit, by_pressure + rubbed});
+        list.push_back({"solid_pressure_" + quantity + letter, unit, by_pressure});
+        list.push_back({"solid_friction_" + quantity + letter, unit, rubbed});
+    };
     for (int a = 0; a < D; ++a) {
         const std::string letter(1, "xyz"[a]);
-        list.push_back({"solid_force_" + letter, D == 2 ? "N/m" : "N", force[a]});
+        add("force_", letter, force_unit, pressure.force[a], friction.force[a]);
         list.push_back({"solid_impulse_" + letter, D == 2 ? "N s/m" : "N s", impulse_[a]});
     }
-    return list;
+    for (std::size_t k = 0; k < pressure.torque.size(); ++k)
+        add("torque_", D == 2 ? "z" : std::string(1, "xyz"[k]), torque_unit, pressure.torque[k], friction.torque[k]);
 }
 
 template <int D>
@@ -589,6 +636,7 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     if (hand_ && from.has("hand")) hand_->restore(from);
     whole_ = !held_.alone();
     make_whole();
+    if (walls_) walls_->forget();
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (from.has("smoke_in_solids")) {
@@ -608,7 +656,7 @@ std::size_t FlowSolver<D>::bytes() const {
     for (const auto& blend : velocity_blend_) total += blend.bytes();
     for (const auto& blend : field_blend_) total += blend.bytes();
     for (const auto& component : carried_.face) total += component.bytes();
-    total += was_solid_.bytes() + (bodies_ ? bodies_->bytes() : 0);
+    total += cuts_.bytes() + (walls_ ? walls_->bytes() : 0) + was_solid_.bytes() + (bodies_ ? bodies_->bytes() : 0);
     if (heat_) total += heat_->bytes();
     return total;
 }

@@ -10,6 +10,7 @@
 #include "staggered/conservative.hpp"
 #include "staggered/projection.hpp"
 #include "staggered/solid_faces.hpp"
+#include "staggered/solid_walls.hpp"
 #include "staggered/state.hpp"
 #include "staggered/trace.hpp"
 
@@ -76,6 +77,8 @@ private:
     void advect_fields(real dt);
     void advect_velocity(real dt);
     void blend(const Substep& stage);
+    void meet_walls(real now, real last);
+    Vec<D> friction();
     void move_solids(real t, real dt);
     void place_solids(real t, real dt);
     void conduct(real dt);
@@ -93,19 +96,22 @@ private:
     void make_whole() const;
 
     void bring_beside() const;
+    void add_loads(std::vector<Integral>& list) const;
 
     HeldPlanes held_;
     Effects<MacState<D>> effects_;
     MacState<D> state_;
     std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none
     SolidPlacement<D> solids_;
-    std::unique_ptr<Heat<D>> heat_;  // none where the scene names no substance
+    std::unique_ptr<SolidWalls<D>> walls_;  // none without solids or without viscosity
+    std::unique_ptr<Heat<D>> heat_;         // none where the scene names no substance
     AdvectionOptions options_;
     CharacteristicAdvection<D> characteristics_;
     std::vector<Carried<D>> carried_fields_;
     GridBacktrace<D> trace_;
     std::array<StageBlend<D>, D> velocity_blend_;
     std::vector<StageBlend<D>> field_blend_;
+    CutFaces<D> cuts_;           // of fluxes beside solids
     PaddedVelocity<D> carried_;  // MacCormack: what the flow carries, u less half the old pressure's push
     Projection<D> projection_;
     const poisson::Report* report_ = nullptr;

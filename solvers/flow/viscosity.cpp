@@ -7,6 +7,7 @@
 #include "flow/body_friction.hpp"
 #include "flow/effects.hpp"
 #include "flow/helmholtz.hpp"
+#include "flow/wall_rates.hpp"
 #include "staggered/bodies_in_flow.hpp"
 #include "staggered/projection.hpp"
 
@@ -34,6 +35,9 @@ scene::Key time_key() {
 struct TimeRule {
     Time time;
     bool departs;
+    WallShares walls() const {
+        return {time == Time::implicit ? 0.0 : 0.5, !departs && time != Time::implicit, before_share(), implicit_share()};
+    }
     TimeRule(const scene::Table& table, const scene::Scene& scene)
         : time(time_named(table.text("scheme"))), departs(scheme_of(scene) == Scheme::maccormack && time != Time::implicit) {}
     /// Share of the Laplacian of before that is taken where paths end, and that of the Laplacian at the end of the step.
@@ -53,33 +57,47 @@ real explicit_limit(real nu, const Vec<D>& h) {
 template <int D>
 class Diffuser {
 public:
-    Diffuser(const Nodes<D>& nodes, const MacState<D>& s, const Boundary<D>& boundary, Beyond beyond, const Index<D>& extent)
-        : nodes_(nodes), h_(s.u.h), beyond_(beyond), mask_(), rhs_(extent), solver_(nodes, h_, boundary, beyond, extent) {}
+    Diffuser(const Nodes<D>& nodes, const MacState<D>& s, const Boundary<D>& boundary, OpenFaces<D> open, const Index<D>& extent)
+        : nodes_(nodes), h_(s.u.h), open_(open), mask_(), rows_(), rhs_(extent), solver_(nodes, h_, boundary, open, extent) {}
     Mask<D>& mask() { return mask_; }
-    std::size_t bytes() const { return mask_.bytes() + rhs_.bytes() + solver_.bytes(); }
+    const Mask<D>& mask() const { return mask_; }
+    std::size_t bytes() const { return mask_.bytes() + rows_.bytes() + rhs_.bytes() + solver_.bytes(); }
 
     void add(const Padded<D>& before, real dt_nu, Grid<real, D>& q) {
-        laplacian(before, h_, nodes_, mask_, beyond_, rhs_);
+        add(before, dt_nu, mask_, q, [](Grid<real, D>&) {});
+    }
+    /// `at_walls` adds to ∇² of before what walls change of it.
+    template <class AtWalls>
+    void add(const Padded<D>& before, real dt_nu, const Mask<D>& mask, Grid<real, D>& q, AtWalls&& at_walls) {
+        laplacian(before, h_, nodes_, mask, open_, rhs_);
+        at_walls(rhs_);
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) { q(I) += dt_nu * rhs_(I); });
     }
     void solve(const Padded<D>& before, real dt_nu, const TimeRule& rule, std::span<const Held> held, Grid<real, D>& q, const char* what) {
-        laplacian(before, h_, nodes_, mask_, beyond_, rhs_);
+        solve(before, dt_nu, rule, held, mask_, q, what, [](Grid<real, D>&, WallRows<D>&) {});
+    }
+    template <class AtWalls>
+    void solve(const Padded<D>& before, real dt_nu, const TimeRule& rule, std::span<const Held> held, const Mask<D>& mask, Grid<real, D>& q,
+               const char* what, AtWalls&& at_walls) {
+        laplacian(before, h_, nodes_, mask, open_, rhs_);
+        at_walls(rhs_, rows_);
         const real explicit_part = rule.before_share() * dt_nu;
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {
-            const real takes_part = mask_.empty() ? 1 : mask_(I);
+            const real takes_part = mask.empty() ? 1 : mask(I);
             rhs_(I) = takes_part * (q(I) - before(I) + explicit_part * rhs_(I));
         });
-        solver_.solve(rhs_, rule.implicit_share() * dt_nu, mask_, held, what);
+        solver_.solve(rhs_, rule.implicit_share() * dt_nu, mask, held, what, rows_);
         for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {
-            if (mask_.empty() || mask_(I) != 0) q(I) = before(I) + rhs_(I);
+            if (mask.empty() || mask(I) != 0) q(I) = before(I) + rhs_(I);
         });
     }
 
 private:
     Nodes<D> nodes_;
     Vec<D> h_;
-    Beyond beyond_;
+    OpenFaces<D> open_;
     Mask<D> mask_;
+    WallRows<D> rows_;
     Grid<real, D> rhs_;
     Helmholtz<D> solver_;
 };
@@ -109,7 +127,11 @@ struct Viscosity final : MacEffect<D> {
         if (s.grip) return rub(s, dt);
         prepare(s);
         add_gradient(s.u, s, -dt / s.rho);
-        for (int a = 0; a < D; ++a) axes[static_cast<std::size_t>(a)].solve(s.before[a], dt * s.nu, rule, {}, s.u[a], "velocity");
+        for (int a = 0; a < D; ++a)
+            axes[static_cast<std::size_t>(a)].solve(s.before[a], dt * s.nu, rule, {}, mask(s, a), s.u[a], "velocity",
+                                                    [&](Grid<real, D>& rate, WallRows<D>& rows) {
+                                                        if (s.walls) set_wall_rows(s, a, rule.walls(), dt * s.nu, s.before[a], rate, rows);
+                                                    });
         sync_periodic(s.u, s.sides);
         add_gradient(s.u, s, dt / s.rho);
     }
@@ -131,15 +153,20 @@ private:
     void add(MacState<D>& s, real dt) {
         if (s.nu == 0) return;
         prepare(s);
-        for (int a = 0; a < D; ++a) axes[static_cast<std::size_t>(a)].add(s.before[a], dt * s.nu, s.u[a]);
+        for (int a = 0; a < D; ++a) {
+            axes[static_cast<std::size_t>(a)].add(s.before[a], dt * s.nu, mask(s, a), s.u[a], [&](Grid<real, D>& rate) {
+                if (s.walls) add_wall_rates(s, a, s.before[a], rate);
+            });
+            if (s.walls && rule.time == Time::explicit_) pull_to_walls(s, a, dt * s.nu, s.u[a]);
+        }
         sync_periodic(s.u, s.sides);
     }
     void prepare(const MacState<D>& s) {
         for (int a = static_cast<int>(axes.size()); a < D; ++a)
-            axes.emplace_back(free_faces(s.u, s.sides, a), s, s.boundary[static_cast<std::size_t>(a)], Beyond::value, s.u[a].extent());
-        if (!s.solid.any()) return;
-        for (std::size_t a = 0; a < D; ++a)
-            set_mask(axes[a].mask(), s.solid.open[a].extent(), [&](const Index<D>& I) { return s.solid.open[a](I) > 0; });
+            axes.emplace_back(free_faces(s.u, s.sides, a), s, s.boundary[static_cast<std::size_t>(a)], nullptr, s.u[a].extent());
+    }
+    const Mask<D>& mask(const MacState<D>& s, int a) const {
+        return s.walls ? s.walls->takes_part(a) : axes[static_cast<std::size_t>(a)].mask();
     }
 };
 
@@ -194,7 +221,8 @@ struct Diffusion final : MacEffect<D> {
 private:
     NamedField<D>& prepare(MacState<D>& s, Carried& carried) const {
         auto& field = s.field(carried.name);
-        if (!carried.diffuser) carried.diffuser.emplace(all_cells<D>(s.extent()), s, field.boundary, Beyond::no_flux, s.extent());
+        if (!carried.diffuser)
+            carried.diffuser.emplace(all_cells<D>(s.extent()), s, field.boundary, s.solid.any() ? &s.solid.open : nullptr, s.extent());
         if (s.solid.any())
             set_mask(carried.diffuser->mask(), s.extent(), [&](const Index<D>& I) { return s.cells(I) == poisson::Cell::fluid; });
         return field;

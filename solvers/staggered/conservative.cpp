@@ -1,5 +1,8 @@
 #include "staggered/conservative.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace weir::staggered {
 
 std::span<const Substep> substeps(Scheme scheme) {
@@ -34,6 +37,96 @@ void add_momentum_flux(const PaddedVelocity<D>& before, const Vec<D>& h, const N
             }
         }
     });
+}
+
+namespace {
+
+/// The open part of a face; of those beyond the sides, all.
+template <int D>
+real open_at(const MacState<D>& s, int b, Index<D> F) {
+    for (int d = 0; d < D; ++d)
+        if (s.sides.periodic(d)) F[d] = (F[d] + s.u.cells[d]) % s.u.cells[d];
+    const auto& open = s.solid.open[static_cast<std::size_t>(b)];
+    return open.contains(F) ? open(F) : 1;
+}
+
+/// Both faces along b whose flow crosses one end of the control volume of face I along a.
+template <int D>
+std::array<Index<D>, 2> crossed(int a, int b, const Index<D>& I, int end) {
+    const Index<D> F = end == 0 ? I : I + e<D>(b);
+    return {F, F - e<D>(a)};
+}
+
+template <int D>
+bool is_cut(const MacState<D>& s, int a, const Index<D>& I) {
+    if (open_at(s, a, I) == 0) return false;
+    for (int b = 0; b < D; ++b)
+        for (int end = 0; end < 2; ++end) {
+            for (const Index<D>& F : crossed(a, b, I, end))
+                if (open_at(s, b, F) < 1) return true;
+            if (open_at(s, a, end == 0 ? I - e<D>(b) : I + e<D>(b)) == 0) return true;
+        }
+    return false;
+}
+
+}  // namespace
+
+template <int D>
+void CutFaces<D>::find(const MacState<D>& s) {
+    for (int a = 0; a < D; ++a) {
+        auto& list = faces_[static_cast<std::size_t>(a)];
+        list.clear();
+        const Nodes<D> nodes = free_faces(s.u, s.sides, a);
+        Index<D> I = nodes.lo;
+        const int lo = detail::own_share.lower(nodes.lo[D - 1]), hi = detail::own_share.upper(nodes.hi[D - 1]);
+        for (I[D - 1] = lo; I[D - 1] < hi;) {
+            if (is_cut(s, a, I)) list.push_back(I);
+            for (int d = 0; d < D; ++d) {
+                if (++I[d] < nodes.hi[d] || d == D - 1) break;
+                I[d] = nodes.lo[d];
+            }
+        }
+    }
+    any_ = true, begin_ = detail::own_share.begin, end_ = detail::own_share.end;
+}
+
+template <int D>
+real CutFaces<D>::rate(const MacState<D>& s, int a, const Index<D>& I) const {
+    const real here = s.before[a](I);
+    real carried = 0, widest = 0, volume = open_at(s, a, I);
+    for (int b = 0; b < D; ++b) {
+        real pair = 0;  // added first, so that a mirror changes nothing
+        for (int end = 0; end < 2; ++end) {
+            const auto [F, G] = crossed(a, b, I, end);
+            const real open[2] = {open_at(s, b, F), open_at(s, b, G)}, area = 0.5 * (open[0] + open[1]);
+            const real out = (end == 0 ? -0.5 : 0.5) * (open[0] * s.before[b](F) + open[1] * s.before[b](G));
+            pair += std::min(out, 0.0) * (s.before[a](end == 0 ? I - e<D>(b) : I + e<D>(b)) - here);
+            volume = std::max(volume, std::min(widest, area));
+            widest = std::max(widest, area);
+        }
+        carried += pair / s.u.h[b];
+    }
+    return -carried / volume;
+}
+
+template <int D>
+void CutFaces<D>::add_momentum_flux(const MacState<D>& s, int a, real dt, Grid<real, D>& u_a) {
+    const auto& list = faces_[static_cast<std::size_t>(a)];
+    const int count = static_cast<int>(list.size());
+    values_.resize(std::max(values_.size(), list.size()));
+    parallel_for(0, count, [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        values_[at] = u_a(list[at]) + dt * rate(s, a, list[at]);
+    });
+    staggered::add_momentum_flux(s.before, s.u.h, free_faces(s.u, s.sides, a), dt, u_a);
+    for (int i = 0; i < count; ++i) u_a(list[static_cast<std::size_t>(i)]) = values_[static_cast<std::size_t>(i)];
+}
+
+template <int D>
+std::size_t CutFaces<D>::bytes() const {
+    std::size_t total = values_.capacity() * sizeof(real);
+    for (const auto& list : faces_) total += list.capacity() * sizeof(Index<D>);
+    return total;
 }
 
 namespace {
@@ -123,6 +216,8 @@ template void add_field_flux(const Padded<2>&, const PaddedVelocity<2>&, const S
 template void add_field_flux(const Padded<3>&, const PaddedVelocity<3>&, const SolidFaces<3>&, const Vec<3>&, Flux, real, Grid<real, 3>&);
 template void keep_uniform_at_solids(const Padded<2>&, const PaddedVelocity<2>&, const SolidFaces<2>&, const Vec<2>&, real, Grid<real, 2>&);
 template void keep_uniform_at_solids(const Padded<3>&, const PaddedVelocity<3>&, const SolidFaces<3>&, const Vec<3>&, real, Grid<real, 3>&);
+template class CutFaces<2>;
+template class CutFaces<3>;
 template class StageBlend<2>;
 template class StageBlend<3>;
 

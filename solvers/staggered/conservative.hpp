@@ -8,6 +8,7 @@
 #include "staggered/state.hpp"
 
 #include <span>
+#include <vector>
 
 namespace weir::staggered {
 
@@ -27,6 +28,32 @@ std::span<const Substep> substeps(Scheme scheme);
 /// u_a += dt Nₐ,  Nₐ = −Σ_b δ_b(ū_b ūₐ)  on the given faces; averages are of the two nearest values.
 template <int D>
 void add_momentum_flux(const PaddedVelocity<D>& before, const Vec<D>& h, const Nodes<D>& faces, real dt, Grid<real, D>& u_a);
+
+/// Faces whose control volume a solid cuts. The volumes that flow through its open part, w u of the cells on both sides, add up to nothing,
+/// where u does not: fluxes of whole faces leave −ū∇·u, which grows. So, with the flux F_f to the neighbour N across h and the open part V,
+///
+///     Nₐ = −Σ_f F_f (ũ_f − uₐ)/(h V),      ũ_f: upwind, of uₐ(I) and uₐ(N).
+///
+/// It keeps what is uniform, beside solids that move too. Central values do no work where all neighbours are open; a closed one is not
+/// met from its own side, and fed the flow. V is that of the face, or the second widest of the openings around it, if that is more: as
+/// much flows through at most, and a small volume would be crossed many times in a step.
+template <int D>
+class CutFaces {
+public:
+    /// Of the planes that this rank owns.
+    void find(const MacState<D>& s);
+    bool found() const { return any_ && begin_ == detail::own_share.begin && end_ == detail::own_share.end; }
+    /// add_momentum_flux, with these faces as they are.
+    void add_momentum_flux(const MacState<D>& s, int a, real dt, Grid<real, D>& u_a);
+    std::size_t bytes() const;
+
+private:
+    real rate(const MacState<D>& s, int a, const Index<D>& I) const;
+    std::array<std::vector<Index<D>>, D> faces_;
+    std::vector<real> values_;
+    bool any_ = false;
+    int begin_ = 0, end_ = 0;
+};
 
 /// q −= dt Σ_b δ_b(u_b q_b)  on all cells, q_b the value on the face; faces closed by a solid carry nothing.
 template <int D>

@@ -229,7 +229,8 @@ void SolidPlacement<D>::find_extended(const MacState<D>& s) {
             }
             if (open[at] > 0) continue;
             const Index<D> I = index_of<D>(open.extent(), at);
-            if (I[a] == 0 || I[a] == s.u.cells[a] || !beside_open(I)) continue;
+            const bool joined = a < D - 1 && s.sides.periodic(a) && I[a] == 0;  // face 0 is the last one too
+            if ((I[a] == 0 && !joined) || I[a] == s.u.cells[a] || !beside_open(I)) continue;
             const Vec<D> x = s.u.face_centre(a, I);
             if (solids_[solids_.nearest(x)].no_slip) continue;
             extended_.push_back({a, I, solids_.normal(x, 1e-3 * s.u.h[a]), solids_.velocity(x), 0});
@@ -275,7 +276,12 @@ void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
     });
     parallel_for(0, count, [&](int i) {
         const Extended& f = extended_[static_cast<std::size_t>(i)];
-        if (!skips(f)) s.before[f.axis](f.face) = f.value;
+        if (skips(f)) return;
+        s.before[f.axis](f.face) = f.value;
+        if (f.face[f.axis] > 0) return;
+        Index<D> last = f.face;
+        last[f.axis] = s.u.cells[f.axis];
+        s.before[f.axis](last) = f.value;
     });
 }
 

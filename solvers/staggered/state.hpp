@@ -45,6 +45,8 @@ struct SolidFaces {
 
 template <int D>
 struct WallGrip;
+template <int D>
+class SolidWalls;
 
 /// The state of a MAC solver. Cell fields exist only if an effect (or the scene) asked for them.
 template <int D>
@@ -61,6 +63,7 @@ struct MacState {
     /// How far a face follows the pressure, in [0, 1]; empty: all of them do, as long as nothing has held one back.
     std::array<Grid<real, D>, D> mobility;
     WallGrip<D>* grip = nullptr;  // where the fluid sticks to bodies; none: nowhere
+    const SolidWalls<D>* walls = nullptr;  // of solids, as viscosity meets them; none: there are none, or no viscosity
     real rho = 1;                 // density [kg/m³]
     real nu = 0;                  // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
     real time = 0;                // [s]

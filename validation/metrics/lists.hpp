@@ -28,5 +28,6 @@ std::vector<Metric> surface_metrics();
 std::vector<Metric> vessel_metrics();
 std::vector<Metric> boiling_metrics();
 std::vector<Metric> capillary_metrics();
+std::vector<Metric> flow_past_metrics();
 
 }  // namespace weir::validation

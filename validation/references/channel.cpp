@@ -2,6 +2,8 @@
 
 #include "validation/harness/reference.hpp"
 
+#include <cmath>
+
 namespace weir::validation {
 namespace {
 
@@ -60,4 +62,40 @@ REFERENCE(couette) {
     const real U = scene.vec<2>("sides.y_max.velocity")[0];
     return parallel_flow(scene, "plane Couette flow from rest (exact series; Batchelor 1967, sec. 4.3)",
                          [=](real y, real t) { return couette_startup(y, t, H, U, nu); });
+}
+
+REFERENCE(poiseuille_beside_solid) {
+    const real H = scene.root().tables("solids").at(0).vec<2>("min")[1], nu = scene.number("fluid.viscosity");
+    const real G = scene.effect("gravity")->vec<2>("g")[0];
+    Reference ref = parallel_flow(scene, "plane Poiseuille flow from rest (exact series; Batchelor 1967, sec. 4.3)",
+                                  [=](real y, real t) { return poiseuille_startup(y, t, H, G, nu); });
+    ref.covers = [=](const Vec<3>& x, real) { return x[1] < H; };
+    return ref;
+}
+
+REFERENCE(turning_cylinder) {
+    const auto solids = scene.root().tables("solids");
+    const Vec<2> centre = solids.at(0).vec<2>("centre");
+    const real inner = solids.at(0).number("radius"), outer = solids.at(1).tables("minus").at(0).number("radius");
+    const real rate = solids.at(0).number("motion.rate"), square = inner * inner / (outer * outer - inner * inner);
+    Reference ref{.source = "Taylor-Couette flow, steady (exact; Batchelor 1967, sec. 4.5)"};
+    ref.vectors["velocity"] = [=](const Vec<3>& x, real) {
+        const real dx = x[0] - centre[0], dy = x[1] - centre[1], turns = rate * square * (outer * outer / (dx * dx + dy * dy) - 1);
+        return Vec<3>{-turns * dy, turns * dx, 0};
+    };
+    ref.covers = [=](const Vec<3>& x, real) {
+        const real r = std::hypot(x[0] - centre[0], x[1] - centre[1]);
+        return r > inner && r < outer;
+    };
+    return ref;
+}
+
+REFERENCE(cylinder_in_stream) {
+    return {.source =
+                "Tritton 1959; Coutanceau & Bouard 1977; Williamson 1989; Park, Kwon & Choi 1998: a cylinder in a stream without bounds"};
+}
+
+REFERENCE(backward_step) {
+    return {.source =
+                "Erturk 2008: reattachment at 2.922 heights of the step for Re = 100, by twice the inlet's height and its mean speed"};
 }
