@@ -27,5 +27,6 @@ std::vector<Metric> melting_convection_metrics();
 std::vector<Metric> surface_metrics();
 std::vector<Metric> vessel_metrics();
 std::vector<Metric> boiling_metrics();
+std::vector<Metric> everyday_metrics();
 
 }  // namespace weir::validation
