@@ -100,6 +100,13 @@ real paddle_height(const RunRecord& run, const Reference&) {
     return (high - low) / expected;
 }
 
+/// How far thick liquid from the lower end of x has come over Huppert's (1982) x = 1.411 (g A^3/(3 nu))^(1/5) t^(1/5), A its area.
+real viscous_current(const RunRecord& run, const Reference&) {
+    const real area = run.series("volume").y.front(), nu = run.scene->number("fluid.viscosity");
+    const real reach = 1.411 * std::pow(gravity_of(run) * area * area * area / (3 * nu) * run.time, 0.2);
+    return run.series("probe.front").y.back() / reach;
+}
+
 /// Diameter of a disc, height of a box: the first solid across the stream.
 real breadth(const RunRecord& run) {
     const scene::Table& body = run.scene->root().tables("solids").at(0);
@@ -157,6 +164,7 @@ std::vector<Metric> everyday_metrics() {
             {"volume_after", "", "Largest change of volume after the last emitter has closed", Quantity::error, volume_after},
             {"contraction", "", "Flow through a slot over its width times sqrt(2 g H)", Quantity::value, contraction},
             {"paddle.height", "", "Height of a piston's waves over that of linear theory", Quantity::value, paddle_height},
+            {"viscous_current", "", "Reach of a viscous gravity current over Huppert's", Quantity::value, viscous_current},
             {"drag", "", "Mean force along the stream over rho U^2/2 times the breadth", Quantity::value, drag},
             {"strouhal", "", "Frequency of the force across the stream times breadth over speed", Quantity::value, strouhal},
             {"wake_length", "", "Length of the wake that turns back, in breadths", Quantity::value, wake_length}};
