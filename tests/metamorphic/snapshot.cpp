@@ -12,8 +12,8 @@ namespace {
 std::size_t at(int a) { return static_cast<std::size_t>(a); }
 
 /// Integrals that are places, energies of places, or counts of what a method did.
-const std::set<std::string> from_the_start{"potential_energy", "bodies_potential_energy", "mean_height", "top", "mean_level", "front_x",
-                                           "height_at_x_min"};
+const std::set<std::string> from_the_start{"potential_energy", "bodies_potential_energy", "mean_height", "top", "mean_level",
+                                           "front_x",          "height_at_x_min"};
 const std::set<std::string> along_x{"front_x", "height_at_x_min"}, along_y{"mean_height", "top", "mean_level", "height_at_x_min"};
 const std::set<std::string> pseudo{"angle", "rotation", "spin", "torque", "viscous_torque"};
 const std::set<std::string> never{"id", "max_divergence", "angular_momentum_z", "total_level_set"};
@@ -273,34 +273,37 @@ Difference difference(const Snapshot& expected, const Snapshot& actual, const Tr
     return worst;
 }
 
-Difference statistics(const Snapshot& expected, const Snapshot& actual, const Transformation& by, bool same_domain) {
-    Difference worst;
+Statistics statistics(const Snapshot& expected, const Snapshot& actual, const Transformation& by, bool same_domain) {
+    Statistics s;
     const int dim = expected.dim;
-    const auto value = [](const Snapshot& s, const char* name) {
-        const Integral* i = find(s.end, name);
-        return i ? value_of(s, *i) : 0;
+    const auto value = [](const Snapshot& of, const char* name) {
+        const Integral* i = find(of.end, name);
+        return i ? value_of(of, *i) : 0;
     };
-    const auto change = [](const Snapshot& s, const char* name) {
-        const Integral *a = find(s.start, name), *b = find(s.end, name);
+    const auto change = [](const Snapshot& of, const char* name) {
+        const Integral *a = find(of.start, name), *b = find(of.end, name);
         return a && b && a->value != 0 ? b->value / a->value - 1 : 0;
     };
     for (const char* name : {"volume", "mass"})
-        worst.take(std::abs(change(expected, name) - change(actual, name)), fmt::format("change of {}", name));
-    const real moved = std::max({value(expected, "kinetic_energy"), std::abs(value(expected, "potential_energy")),
-                                 value(actual, "kinetic_energy"), 3e-4 * expected.scale_of(dim == 2 ? "J/m" : "J")});
-    for (const char* name : {"kinetic_energy", "potential_energy"})
-        if (name[0] == 'k' || (by.sign[1] > 0 && same_domain)) worst.take(std::abs(value(expected, name) - value(actual, name)) / moved, name);
+        s.kept.take(std::abs(change(expected, name) - change(actual, name)), fmt::format("change of {}", name));
+    const real energy = std::max({value(expected, "kinetic_energy"), std::abs(value(expected, "potential_energy")),
+                                  value(actual, "kinetic_energy"), 3e-4 * expected.scale_of(dim == 2 ? "J/m" : "J")});
+    const auto compare_energy = [&](const char* name) {
+        s.moved.take(std::abs(value(expected, name) - value(actual, name)) / energy, name);
+    };
+    compare_energy("kinetic_energy");
+    if (by.sign[1] > 0 && same_domain) compare_energy("potential_energy");
     const real force = 0.02 * expected.scale_of(dim == 2 ? "N/m" : "N");
     for (const char* name : {"solid_force_x", "solid_force_y", "solid_force_z"}) {
         if (!same_domain) break;
         const real a = value(expected, name), b = value(actual, name);
-        worst.take(std::abs(a - b) / std::max({std::abs(a), std::abs(b), force}), name);
+        s.moved.take(std::abs(a - b) / std::max({std::abs(a), std::abs(b), force}), name);
     }
     const Field *v = find(expected, "bodies", "velocity"), *w = find(actual, "bodies", "velocity");
     for (std::size_t c = 0; v && w && c < v->data.size(); ++c)
         for (std::size_t i = 0; i < v->data[c].size(); ++i)
-            worst.take(std::abs(v->data[c][i] - w->data[c][i]) / std::max(largest(v->data), 0.05 * expected.speed), "bodies.velocity");
-    return worst;
+            s.moved.take(std::abs(v->data[c][i] - w->data[c][i]) / std::max(largest(v->data), 0.05 * expected.speed), "bodies.velocity");
+    return s;
 }
 
 }  // namespace weir::metamorphic

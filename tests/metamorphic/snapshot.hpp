@@ -48,8 +48,11 @@ struct Difference {
 
 /// Relative to the largest value of a field, or to a thousandth of the scene's scale of its unit.
 Difference difference(const Snapshot& expected, const Snapshot& actual, const Transformation& by);
-/// Of volume, mass, energy, force and bodies alone, in parts of the volume, the mass, the energy that has moved, ...
-Difference statistics(const Snapshot& expected, const Snapshot& actual, const Transformation& by = {},
-                      bool same_domain = true);
+/// What is kept, as a change from the start: volume and mass; and what moves: energies in parts of what has moved, forces on solids and
+/// speeds of bodies in parts of the largest or of the scene's scale. In another domain potential energy and forces are others.
+struct Statistics {
+    Difference kept, moved;
+};
+Statistics statistics(const Snapshot& expected, const Snapshot& actual, const Transformation& by = {}, bool same_domain = true);
 
 }  // namespace weir::metamorphic

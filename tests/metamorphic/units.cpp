@@ -11,8 +11,8 @@ namespace {
 
 const std::map<std::string, Dimension, std::less<>>& base_units() {
     static const std::map<std::string, Dimension, std::less<>> list = {
-        {"1", {}},          {"K", {}},          {"rad", {}},         {"mol", {}},          {"m", {1, 0, 0}},     {"s", {0, 1, 0}},
-        {"kg", {0, 0, 1}},  {"N", {1, -2, 1}},  {"J", {2, -2, 1}},   {"W", {2, -3, 1}},    {"Pa", {-1, -2, 1}}};
+        {"1", {}},         {"K", {}},         {"rad", {}},       {"mol", {}},       {"m", {1, 0, 0}},   {"s", {0, 1, 0}},
+        {"kg", {0, 0, 1}}, {"N", {1, -2, 1}}, {"J", {2, -2, 1}}, {"W", {2, -3, 1}}, {"Pa", {-1, -2, 1}}};
     return list;
 }
 
@@ -84,8 +84,6 @@ private:
 
 Dimension dimension_of(std::string_view unit) { return Parser(unit).product(); }
 
-double UnitScale::of(const Dimension& d) const {
-    return std::pow(length, d.length) * std::pow(time, d.time) * std::pow(mass, d.mass);
-}
+double UnitScale::of(const Dimension& d) const { return std::pow(length, d.length) * std::pow(time, d.time) * std::pow(mass, d.mass); }
 
 }  // namespace weir::metamorphic

@@ -30,8 +30,7 @@ Curve wave_energy(const RunRecord& run) {
     const real area = size.size() == 3 ? size[0] * size[2] : size[0], weight = density_of(run) * gravity_of(run);
     Curve energy = run.series("kinetic_energy");
     const Curve potential = run.series("potential_energy"), volume = run.series("volume");
-    for (std::size_t i = 0; i < energy.size(); ++i)
-        energy.y[i] += potential.y[i] - 0.5 * weight * volume.y[i] * volume.y[i] / area;
+    for (std::size_t i = 0; i < energy.size(); ++i) energy.y[i] += potential.y[i] - 0.5 * weight * volume.y[i] * volume.y[i] / area;
     const real first = energy.y.front();
     for (real& e : energy.y) e /= first;
     return energy;
