@@ -139,8 +139,12 @@ Outcome nudged(const Base& base, double part) {
     const bool level = base.scene.solver() == "tallcell" || base.scene.solver() == "heightfield";
     for (std::size_t a = 0; a < h.size(); ++a)
         if (!base.state.periodic[a] && !(level && a == 1)) by.shift[a] = (a == 1 ? -part : part) * h[a];
-    // By half a cell another body cuts other cells: of small scenes what moves is then not the same, what is kept is.
-    return alike(base.state, run(transformed(base.read, by, false), base.steps), part < 0.1 ? likeness(base, 0.1) : infinity);
+    try {
+        // By half a cell another body cuts other cells: of small scenes what moves is then not the same, what is kept is.
+        return alike(base.state, run(transformed(base.read, by, false), base.steps), part < 0.1 ? likeness(base, 0.1) : infinity);
+    } catch (const scene::BadScene&) {
+        throw Untransformable("a part of it would leave the domain");
+    }
 }
 
 /// Frames and probes are asked for, and the state at the end is the same.
