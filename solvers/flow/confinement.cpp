@@ -155,7 +155,7 @@ EffectKind confinement() {
     return effect_kind<Confinement>(
         {"confinement",
          "Vorticity confinement: pushes fluid around its vortices (Fedkiw et al. 2001). Adds energy; not for accuracy studies.",
-         {{.name = "epsilon", .type = scene::Type::number, .doc = "Strength.", .required = true, .min = 0, .steerable = true}},
+         {{.name = "epsilon", .type = scene::Type::number, .doc = "Strength.", .unit = "1/s", .required = true, .min = 0, .steerable = true}},
          {"epsilon"}});
 }
 

@@ -265,20 +265,21 @@ std::vector<Integral> Columns::integrals() const {
         const real up = surface_[c] - (displaced_.empty() ? 0 : displaced_[c]) - state_.bed[c] - state_.h[c];
         return state_.h[c] > 0 ? up * up : 0;
     });
-    std::vector<Integral> list = {{"volume", "m^3", volume},
-                                  {"poured_volume", "m^3", state_.poured},
-                                  {"volume_balance", "m^3", volume - state_.poured},
-                                  {"potential_energy", "J", 0.5 * state_.rho * state_.g * raised}};
+    const std::string volume_unit = state_.plane.dim == 2 ? "m^2" : "m^3", per_depth = state_.plane.dim == 2 ? "/m" : "";
+    std::vector<Integral> list = {{"volume", volume_unit, volume},
+                                  {"poured_volume", volume_unit, state_.poured},
+                                  {"volume_balance", volume_unit, volume - state_.poured},
+                                  {"potential_energy", "J" + per_depth, 0.5 * state_.rho * state_.g * raised}};
     if (hand_) geometry::sum_up(*hand_, state_.plane.dim, list);
     for (std::size_t b = 0; b < floats_.count(); ++b) {
         const std::string name = fmt::format("float{}_", b);
         const Pushed& p = floats_.pushed(b);
         list.push_back({name + "height", "m", floats_.body(b).height()});
         list.push_back({name + "speed", "m/s", floats_.body(b).speed()});
-        list.push_back({name + "displaced", "m^3", p.displaced});
-        list.push_back({name + "force_x", "N", p.along_x});
-        list.push_back({name + "force_y", "N", p.up});
-        if (state_.plane.dim == 3) list.push_back({name + "force_z", "N", p.along_z});
+        list.push_back({name + "displaced", volume_unit, p.displaced});
+        list.push_back({name + "force_x", "N" + per_depth, p.along_x});
+        list.push_back({name + "force_y", "N" + per_depth, p.up});
+        if (state_.plane.dim == 3) list.push_back({name + "force_z", "N" + per_depth, p.along_z});
     }
     return list;
 }

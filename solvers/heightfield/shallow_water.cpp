@@ -160,14 +160,16 @@ std::vector<Integral> ShallowWater::integrals() const {
     const auto speed2 = [&](std::size_t c) { return h[c] > state_.dry ? (qx[c] * qx[c] + (qz.empty() ? 0 : qz[c] * qz[c])) / h[c] : 0; };
     const real kinetic = sum(speed2), weight = sum([&](std::size_t c) { return h[c] * (state_.bed[c] + 0.5 * h[c]); });
     const real volume = sum([&](std::size_t c) { return h[c]; });
-    std::vector<Integral> list = {{"volume", "m^3", volume},
-                                  {"poured_volume", "m^3", state_.poured},
-                                  {"volume_balance", "m^3", volume - state_.poured},
-                                  {"kinetic_energy", "J", 0.5 * state_.rho * kinetic},
-                                  {"potential_energy", "J", state_.rho * state_.g * weight},
-                                  {"momentum_x", "kg m/s", state_.rho * sum([&](std::size_t c) { return qx[c]; })}};
+    const bool flat = plane.dim == 2;
+    const std::string volume_unit = flat ? "m^2" : "m^3", per_depth = flat ? "/m" : "";
+    std::vector<Integral> list = {{"volume", volume_unit, volume},
+                                  {"poured_volume", volume_unit, state_.poured},
+                                  {"volume_balance", volume_unit, volume - state_.poured},
+                                  {"kinetic_energy", "J" + per_depth, 0.5 * state_.rho * kinetic},
+                                  {"potential_energy", "J" + per_depth, state_.rho * state_.g * weight},
+                                  {"momentum_x", "kg m/s" + per_depth, state_.rho * sum([&](std::size_t c) { return qx[c]; })}};
     if (!qz.empty()) list.push_back({"momentum_z", "kg m/s", state_.rho * sum([&](std::size_t c) { return qz[c]; })});
-    list.push_back({"wet_area", "m^2", sum([&](std::size_t c) { return h[c] > state_.dry ? 1.0 : 0.0; })});
+    list.push_back({"wet_area", flat ? "m" : "m^2", sum([&](std::size_t c) { return h[c] > state_.dry ? 1.0 : 0.0; })});
     list.push_back({"raised_depth", "m", clipped_});
     if (hand_) geometry::sum_up(*hand_, plane.dim, list);
     return list;

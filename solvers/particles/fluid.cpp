@@ -213,19 +213,20 @@ void Fluid<D>::show(FieldSet& fields) const {
 template <int D>
 std::vector<Integral> Fluid<D>::integrals() const {
     const char* axes[] = {"x", "y", "z"};
+    const std::string per_depth = D == 2 ? "/m" : "";
     const int n = count();
     std::vector<Integral> list;
-    list.push_back({"mass", "kg", mass * n});
-    list.push_back({"volume", "m^3", mass * n / rho0});
+    list.push_back({"mass", "kg" + per_depth, mass * n});
+    list.push_back({"volume", D == 2 ? "m^2" : "m^3", mass * n / rho0});
     list.push_back({"particles", "1", static_cast<real>(n)});
-    list.push_back({"kinetic_energy", "J", block_sum(n, [&](int i) { return 0.5 * mass * dot(velocity(i), velocity(i)); })});
-    list.push_back({"potential_energy", "J", block_sum(n, [&](int i) { return -mass * dot(gravity, position(i) - domain.lo); })});
+    list.push_back({"kinetic_energy", "J" + per_depth, block_sum(n, [&](int i) { return 0.5 * mass * dot(velocity(i), velocity(i)); })});
+    list.push_back({"potential_energy", "J" + per_depth, block_sum(n, [&](int i) { return -mass * dot(gravity, position(i) - domain.lo); })});
     for (int a = 0; a < D; ++a) {
         const auto& va = v[static_cast<std::size_t>(a)];
         list.push_back(
-            {std::string("momentum_") + axes[a], "kg m/s", block_sum(n, [&](int i) { return mass * va[static_cast<std::size_t>(i)]; })});
+            {std::string("momentum_") + axes[a], "kg m/s" + per_depth, block_sum(n, [&](int i) { return mass * va[static_cast<std::size_t>(i)]; })});
     }
-    list.push_back({"angular_momentum_z", "kg m^2/s", block_sum(n, [&](int i) {
+    list.push_back({"angular_momentum_z", "kg m^2/s" + per_depth, block_sum(n, [&](int i) {
                         const Vec<D> r = position(i) - domain.centre(), u = velocity(i);
                         return mass * (r[0] * u[1] - r[1] * u[0]);
                     })});

@@ -7,7 +7,7 @@ namespace weir::rigid {
 
 namespace {
 
-/// Sweeps over all rows end when no impulse changes a velocity by more than this part of the largest one, or here.
+/// Sweeps over all rows end when no impulse changes a row's velocity by more than this part of the fastest point's, or here.
 constexpr int most_sweeps = 400;
 constexpr real still = 1e-10;
 
@@ -143,6 +143,18 @@ real Rows<D>::relative(const Row<D>& row, const std::vector<real>& velocities) c
     return v;
 }
 
+/// At most so fast moves the body's point: velocities and spins have different units, so that the larger of them means nothing.
+template <int D>
+real Rows<D>::speed(const Row<D>& row, const std::vector<real>& velocities) const {
+    constexpr std::size_t n = freedoms<D>;
+    real most = 0;
+    for (std::size_t d = 0; d < n; ++d) {
+        most += std::abs(row.sees[d] * velocities[row.body * n + d]);
+        if (row.other >= 0) most += std::abs(row.sees[n + d] * velocities[static_cast<std::size_t>(row.other) * n + d]);
+    }
+    return most;
+}
+
 template <int D>
 void Rows<D>::push(std::size_t row, real impulse, std::vector<real>& velocities) const {
     const real* response = responses_.data() + row * size_;
@@ -194,7 +206,7 @@ void Rows<D>::solve(std::vector<real>& velocities) {
     for (std::size_t i = 0; i < list_.size(); ++i)
         if (impulse_[i] != given_[i]) push(i, impulse_[i] - given_[i], velocities);
     real fastest = 0, slope = 0;
-    for (const real v : velocities) fastest = std::max(fastest, std::abs(v));
+    for (const Row<D>& row : list_) fastest = std::max(fastest, speed(row, velocities));
     direction_.assign(list_.size(), 0.0), gained_.assign(list_.size(), 0.0);
     for (int count = 0; count < most_sweeps; ++count) {
         if (sweep(velocities) <= still * fastest) break;

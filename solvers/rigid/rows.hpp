@@ -74,6 +74,7 @@ public:
     void add_impulses(std::vector<real>& impulses) const;
 
 private:
+    real speed(const Row<D>& row, const std::vector<real>& velocities) const;
     real sweep(std::vector<real>& velocities);
     real limited(const Row<D>& row, real impulse) const;
     void go_on(real beta, std::vector<real>& velocities);

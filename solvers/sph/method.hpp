@@ -52,7 +52,7 @@ protected:
     }
     void sum_up(std::vector<Integral>& list) const final {
         const auto& fluid = this->state();
-        list.push_back({"elastic_energy", "J", particles::block_sum(fluid.count(), [&](int i) {
+        list.push_back({"elastic_energy", Backend::dim == 2 ? "J/m" : "J", particles::block_sum(fluid.count(), [&](int i) {
                             return fluid.mass * options_.elastic_energy(fluid.density[static_cast<std::size_t>(i)], rest_of(i));
                         })});
     }

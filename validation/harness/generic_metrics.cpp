@@ -205,6 +205,7 @@ real measure(std::string_view name, const RunRecord& run, const Reference& refer
 
 void check_metric(std::string_view name, const RunRecord& start, const Reference& reference) {
     if (find_metric(name) || cost(name, start)) return;
+    if (has_series(start, std::string(name))) return;
     const Name n = split(name);
     if (contains(series_operations, n.operation) && has_series(start, n.subject)) return;
     if (contains(field_operations, n.operation) && start.fields.find(n.subject)) {

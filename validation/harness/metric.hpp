@@ -3,7 +3,8 @@
 //   <field>.l1_relative ...      the same over that norm of the reference
 //   <field>.max                  largest |field| at the end; needs no reference
 //   divergence.max               largest max_divergence of any step
-//   <series>                     last value of an integral, an observed metric or a step report (dt, cfl, iterations, residual, ...)
+//   <series>                     last value of an integral, an observed metric, a step report (dt, cfl, iterations, residual, ...)
+//                                or a probe: probe.NAME is its first column, probe.NAME.velocity_x the one of that name
 //   <series>.max .min .mean      over the run
 //   <series>.drift               largest |value - first| / |first| over the run
 //   <series>.change              (last - first) / |first|

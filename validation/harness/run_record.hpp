@@ -69,11 +69,13 @@ struct RunRecord {
         throw BadInput("the solver shows no field \"" + std::string(name) + "\"");
     }
     bool has_integral(std::string_view name) const { return index_of(name) < integrals.size(); }
-    /// An integral, an observed metric, or a number of the step reports (dt, cfl, divergence, iterations, residual, residual_max)
-    /// against time. Reports have no value at the initial state, so their series begins with the first step.
+    /// An integral, an observed metric, a probe ("probe.NAME", its first column, or "probe.NAME.velocity_x"), or a number of the step
+    /// reports (dt, cfl, divergence, iterations, residual, residual_max) against time. Reports have no value at the initial state, so
+    /// their series begins with the first step.
     Curve series(std::string_view name) const;
 
 private:
+    Curve probe_column(std::string_view name) const;
     std::size_t index_of(std::string_view name) const {
         std::size_t i = 0;
         while (i < integrals.size() && integrals[i].name != name) ++i;
@@ -81,7 +83,18 @@ private:
     }
 };
 
+/// "NAME" or "NAME.COLUMN", the column without its unit.
+inline Curve RunRecord::probe_column(std::string_view name) const {
+    const auto dot = std::min(name.find('.'), name.size());
+    const ProbeSeries& p = probe(name.substr(0, dot));
+    const std::string_view wanted = name.substr(std::min(dot + 1, name.size()));
+    for (std::size_t c = 0; c < p.columns.size(); ++c)
+        if (wanted.empty() || p.columns[c].substr(0, p.columns[c].find(' ')) == wanted) return column(p, c);
+    throw BadInput("probe \"" + p.name + "\" has no column \"" + std::string(wanted) + "\"");
+}
+
 inline Curve RunRecord::series(std::string_view name) const {
+    if (name.starts_with("probe.")) return probe_column(name.substr(6));
     static const std::map<std::string, real (*)(const StepReport&), std::less<>> reports = {
         {"dt", [](const StepReport& r) { return r.dt; }},
         {"cfl", [](const StepReport& r) { return r.cfl; }},

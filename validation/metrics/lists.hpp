@@ -29,5 +29,6 @@ std::vector<Metric> vessel_metrics();
 std::vector<Metric> boiling_metrics();
 std::vector<Metric> capillary_metrics();
 std::vector<Metric> flow_past_metrics();
+std::vector<Metric> everyday_metrics();
 
 }  // namespace weir::validation

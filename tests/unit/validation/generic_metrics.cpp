@@ -87,6 +87,18 @@ TEST("series give last, extremes, drift and change; one NaN among them gives NaN
         EXPECT_TRUE(std::isnan(value(name))) << name;
 }
 
+TEST("a probe is a series by its name, its first column, or by the name of a column; one that is not there is refused") {
+    Sample s(4, 0);
+    s.run.probes = {{.name = "behind", .columns = {"velocity_x [m/s]", "velocity_y [m/s]"}, .times = {0, 1}, .values = {{3, -1}, {2, 5}}}};
+    EXPECT_EQ(measure("probe.behind", s.run, {}), 2);
+    EXPECT_EQ(measure("probe.behind.velocity_y", s.run, {}), 5);
+    EXPECT_EQ(measure("probe.behind.velocity_y.min", s.run, {}), -1);
+    EXPECT_EQ(measure("probe.behind.mean", s.run, {}), 2.5);
+    EXPECT_NO_THROW(check_metric("probe.behind.velocity_y.max", s.run, {}));
+    EXPECT_THROW(check_metric("probe.before", s.run, {}), BadInput);
+    EXPECT_THROW(check_metric("probe.behind.velocity_z", s.run, {}), BadInput);
+}
+
 TEST("a metric that the run or the reference cannot answer is refused by name") {
     const Sample s(4, 0);
     EXPECT_THROW(check_metric("nothing", s.run, exact()), BadInput);
