@@ -124,6 +124,7 @@ void Simulation::read_times() {
 /// The solver is made anew of the changed scene and given the state, as a restart does: nothing in a solver needs to know of changes, and
 /// what it derives from its scene fits the scene.
 void Simulation::steer(const scene::Override& change) {
+    refuse_while_edited("a key changes");
     scene::Scene changed = unread(scene_.steered(change, {kind_.schema}));
     Checkpoint state;
     solver_->save(state);
@@ -202,6 +203,7 @@ void Simulation::meet_changes() {
 StepReport Simulation::step() { return step_until(infinity); }
 
 StepReport Simulation::step_until(real t) {
+    refuse_while_edited("the simulation steps");
     meet_changes();
     const StepReport report = step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
     for (std::size_t i = 0; i < observers_.size(); ++i) {  // one may add another
@@ -322,6 +324,7 @@ void Simulation::resume_changes(const Checkpoint& from) {
 }
 
 void Simulation::restore(const Checkpoint& from) {
+    refuse_while_edited("the simulation goes on from a checkpoint");
     try {
         resume_changes(from);
         if (Cut cut = better_cut(from); !cut.empty()) {

@@ -76,7 +76,8 @@ public:
     /// what every step leaves behind, so that the field may come out otherwise than it was written: a velocity of grids free of divergence
     /// and still at walls, a depth nowhere negative. Throws BadInput where the solver has no such field that may be written (editable()
     /// names them), where a value is not finite or cannot be, or where the run goes over several ranks, and leaves all as it was.
-    /// "set.name" where the name alone could be several.
+    /// "set.name" where the name alone could be several. While `write` runs the simulation does not change: a step, a change of a key, of
+    /// particles or of another field throws BadInput, as what was written would undo it.
     void edit(std::string_view field, const std::function<void(FieldEdit&)>& write);
     /// The fields that edit() takes: "velocity", "smoke", "particles.position", ...
     std::vector<std::string> editable();
@@ -144,6 +145,7 @@ private:
     StepReport step_towards(real target);
     EditableField editable_named(std::string_view field);
     void change_state(const std::function<void(Solver&)>& change);
+    void refuse_while_edited(const char* what) const;
 
     scene::Scene scene_;
     scene::SolverKind kind_;
@@ -159,6 +161,7 @@ private:
     std::vector<std::string> warnings_;
     std::vector<Change> changes_;
     std::int64_t changed_ = 0;  // how many of them the run has met
+    std::string edited_;        // the field that edit() writes now
     struct Watch {
         std::int64_t every = 0;  // steps; 0: at frames
         Observer observer;
