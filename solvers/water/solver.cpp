@@ -1,5 +1,6 @@
 #include "water/solver.hpp"
 
+#include "staggered/closed_volume.hpp"
 #include "staggered/inflow.hpp"
 
 namespace weir::water {
@@ -21,6 +22,7 @@ StepReport Water<D>::step(real dt) {
     forces(dt);                                   // (I − dt ν∇²) u* = ..., u* += dt f
     const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
+    staggered::require_room(state_, solids_, divergence);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
     state_.time += dt;
@@ -172,8 +174,9 @@ poisson::Report Water<D>::project(real dt) {
     slow(dt);
     const auto timed = passes_.time("project");
     impose_emitters(dt, &Emitter<D>::Face::pours);
-    const auto& report =
-        pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr, bodies_.get(), &solids_);
+    const auto& report = staggered::explained_by_room(state_, solids_, [&]() -> const poisson::Report& {
+        return pressure_.project(state_, surface_, dt, options_.sigma, options_.sigma > 0 ? &curvature_ : nullptr, bodies_.get(), &solids_);
+    });
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);
     refresh(state_.u[D - 1], frame_.periodic(D - 1));
     return report;
