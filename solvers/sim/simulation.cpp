@@ -6,9 +6,11 @@
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
+#include "sim/extremes.hpp"
 #include "sim/finite.hpp"
 #include "sim/foretold.hpp"
 #include "sim/registry.hpp"
+#include "sim/room.hpp"
 #include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
 
@@ -64,6 +66,7 @@ void refuse_ignored(const scene::Scene& scene, const scene::SolverKind& kind) {
 scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
     geometry::require_meshes(scene);
     sim::require_memory(scene, kinds);
+    sim::require_room(scene);
     return scene;
 }
 
@@ -238,10 +241,7 @@ StepReport Simulation::step_towards(real target) {
     }
     ++steps_;
     if (steady_rate_ > 0) steady_ = sim::change_and_keep(fields(), last_velocity_) <= steady_rate_ * report.dt;
-    if (std::string concern = concerned_ ? std::string() : solver_->concern(); !concern.empty()) {
-        concerned_ = true;
-        warnings_.push_back(scene_.file() + ": " + concern);
-    }
+    if (const std::string concern = solver_->concern(); !concern.empty()) tell_concern(concern);
     at_frame_ = reached(frame_target) || steady_;
     if (at_frame_) ++frame_;
     probes_.sample(*solver_);
@@ -269,12 +269,20 @@ real Simulation::next_frame() const {
 
 real Simulation::uncut_dt() const { return fixed_dt_ > 0 ? fixed_dt_ : std::min(solver_->advised_dt(), max_dt_); }
 
+/// A step that has fallen to a millionth of the longest one and to a billionth of the time between frames ends a run that would never end.
+bool Simulation::hopeless(real dt) const { return dt < 1e-6 * longest_dt_ && dt < 1e-9 * std::min(end_, every_); }
+
+void Simulation::refuse_step(const char* which, real dt) const {
+    throw NumericalFailure("time step", fmt::format("the {} step is {} s{}: time no longer advances. Now {}", which, scene::number_text(dt),
+                                                    longest_dt_ > dt ? fmt::format(" (the longest was {:.3g} s)", longest_dt_) : "",
+                                                    sim::extremes(scene_, fields(), time())));
+}
+
 real Simulation::wanted_dt(real target) const {
     const real remaining = target - time();
     const bool fixed = fixed_dt_ > 0;
     const real dt = uncut_dt();
-    if (!(dt > slack(time())) && remaining > 0)
-        throw NumericalFailure("time step", "the advised time step is " + scene::number_text(dt) + " s: time no longer advances");
+    if (remaining > 0 && (!(dt > slack(time())) || (!fixed && hopeless(dt)))) refuse_step("advised time", dt);
     if (remaining <= 0) return dt;
     if (dt * stretch >= remaining) return remaining;
     return !fixed && 2 * dt > remaining ? remaining / 2 : dt;  // two equal steps rather than one step and a sliver
@@ -284,9 +292,16 @@ real Simulation::wanted_dt(real target) const {
 real Simulation::within_limit(real dt, const StepLimit& limit) const {
     if (!(dt > limit.dt * stretch)) return dt;
     const real part = dt / std::ceil(dt / limit.dt);
-    if (!(part > slack(time())))
-        throw NumericalFailure("time step", "the longest stable step is " + scene::number_text(limit.dt) + " s: time no longer advances");
+    if (!(part > slack(time())) || hopeless(part)) refuse_step("longest stable", limit.dt);
     return part;
+}
+
+/// Of each kind the first: what the same words say with other numbers has been said.
+void Simulation::tell_concern(const std::string& concern) {
+    const std::string kind = concern.substr(0, concern.find_first_of("0123456789"));
+    if (std::find(concerns_.begin(), concerns_.end(), kind) != concerns_.end()) return;
+    concerns_.push_back(kind);
+    warnings_.push_back(scene_.file() + ": " + concern);
 }
 
 void Simulation::tell_of_parts(real wanted, real dt, const StepLimit& limit) {

@@ -139,8 +139,11 @@ private:
     void replace(std::unique_ptr<Solver> solver);
     void resume_changes(const Checkpoint& from);
     real wanted_dt(real target) const;
+    bool hopeless(real dt) const;
+    [[noreturn]] void refuse_step(const char* which, real dt) const;
     StepLimit limit() const { return guard_ ? solver_->stable_dt() : StepLimit{}; }
     real within_limit(real dt, const StepLimit& limit) const;
+    void tell_concern(const std::string& concern);
     void tell_of_parts(real wanted, real dt, const StepLimit& limit);
     StepReport step_towards(real target);
     EditableField editable_named(std::string_view field);
@@ -157,8 +160,8 @@ private:
     bool at_frame_ = true, guard_ = true, steady_ = false;
     real steady_rate_ = 0;                          // [m/s^2]; 0: not asked for
     std::vector<std::vector<real>> last_velocity_;  // where it is, that of the last step
-    bool split_ = false, concerned_ = false;        // whether a step was taken in parts, or the solver had a concern
-    std::vector<std::string> warnings_;
+    bool split_ = false;                            // whether a step was taken in parts
+    std::vector<std::string> warnings_, concerns_;  // concerns_: the kinds that were told
     std::vector<Change> changes_;
     std::int64_t changed_ = 0;  // how many of them the run has met
     std::string edited_;        // the field that edit() writes now
