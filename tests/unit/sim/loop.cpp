@@ -112,6 +112,20 @@ TEST("a time step that vanishes is a failure like any other: step, time, quantit
     EXPECT_TRUE(std::filesystem::exists(weir::sim::last_good_file(folder)));
 }
 
+TEST("a step that has fallen to a millionth of what was wanted, and a billionth of the run, ends it") {
+    auto simulation = fake_simulation("stable_dt = 1e-13\n" + scene);
+    try {
+        simulation.step();
+        FAIL() << "it would take a hundred thousand years";
+    } catch (const weir::NumericalFailure& failure) {
+        EXPECT_EQ(failure.step, 1);
+        EXPECT_NE(std::string(failure.what()).find("the longest stable step is 1e-13 s (the longest was 0.0"), std::string::npos)
+            << failure.what();
+    }
+    auto slow = fake_simulation("stable_dt = 1e-6\n" + scene);  // ten thousand parts are a nuisance, no end
+    EXPECT_NO_THROW(slow.step());
+}
+
 TEST("checkpoints are saved every so many steps, and at the end, so that a later end can be asked for") {
     TemporaryFolder folder;
     auto simulation = fake_simulation("time = { end = 1.0, dt = 0.1 }");
