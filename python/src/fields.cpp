@@ -33,6 +33,9 @@ std::vector<py::ssize_t> strides_of(const std::vector<py::ssize_t>& shape) {
 }  // namespace
 
 Change::Change(StatePtr state) : state_(std::move(state)) {
+    if (!state_->edited.empty())
+        throw BadInput(
+            fmt::format("\"{}\" is being edited: the simulation steps and changes after the block, not inside it", state_->edited));
     if (state_->busy.exchange(true)) throw std::runtime_error("the simulation is stepping in another thread");
     if (const int arrays = state_->leases; arrays > 0) {
         state_->busy = false;

@@ -117,6 +117,14 @@ void write(const StatePtr& state, const std::string& name, const std::vector<Com
     state->simulation.edit(name, [&](FieldEdit& field) { field.data = std::move(data); });
 }
 
+void begin_edit(const StatePtr& state, const std::string& name) {
+    if (!state->edited.empty())
+        throw BadInput(fmt::format("\"{}\" is being edited: one field at a time, \"{}\" after it", state->edited, name));
+    state->edited = name;
+}
+
+void end_edit(const StatePtr& state) { state->edited.clear(); }
+
 std::vector<Vec<3>> points(const Component& rows) {
     std::vector<Vec<3>> list(static_cast<std::size_t>(rows.shape(0)), Vec<3>{});
     for (py::ssize_t i = 0; i < rows.shape(0); ++i)
@@ -239,6 +247,8 @@ void add_simulation(py::module_& module) {
         .def("probe", probe)
         .def("set", set)
         .def("editable", editable)
+        .def("begin_edit", begin_edit)
+        .def("end_edit", end_edit)
         .def("write", write)
         .def("add_particles", add_particles)
         .def("remove_particles", remove_particles)

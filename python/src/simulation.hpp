@@ -26,6 +26,7 @@ struct State {
     std::optional<FieldSet> fields{};  // of this moment, once somebody has asked
     std::atomic<int> leases{0};
     std::atomic<bool> busy{false};  // another thread of Python is in a step
+    std::string edited{};           // the field whose block is open
     std::optional<output::Frames> frames{};
     std::optional<app::Measured> measured{};
 
@@ -36,7 +37,8 @@ struct State {
 };
 using StatePtr = std::shared_ptr<State>;
 
-/// Holds the simulation for one call that changes it. Throws BufferError where arrays look at it, RuntimeError where another thread does.
+/// Holds the simulation for one call that changes it. Throws BufferError where arrays look at it, RuntimeError where another thread does,
+/// BadInput inside the block of a field that is edited, whose end would undo the change.
 class Change {
 public:
     explicit Change(StatePtr state);

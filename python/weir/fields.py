@@ -128,17 +128,22 @@ class Edit:
     """A field that is being written, as a block: `with sim.edit("smoke") as smoke: smoke[3:5, :] = 1`.
 
     A field of one component is written as an array; those of a vector are the arrays x, y and z, or [0], [1], [2]. At the end of the block
-    they take the field's place, unless the block raises; then nothing has changed.
+    they take the field's place, unless the block raises; then nothing has changed. Inside the block the simulation neither steps nor
+    changes otherwise, and no other field is edited: BadInput.
     """
 
     def __init__(self, core, field):
         self._core, self.name = core, f"{field._set}.{field.name}" if field._set else field.name
-        self._arrays = [np.array(field._component(axis), order="F") for axis in field._axes]
+        self._arrays, self._moment = [np.array(field._component(axis), order="F") for axis in field._axes], core.moment
 
     def __enter__(self):
+        if self._core.moment != self._moment:
+            raise StaleField(f'the simulation has stepped on since "{self.name}" was read for this block; ask for it again')
+        self._core.begin_edit(self.name)
         return self
 
     def __exit__(self, kind, error, trace):
+        self._core.end_edit()
         if kind is None:
             self._core.write(self.name, self._arrays)
 

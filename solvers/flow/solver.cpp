@@ -5,6 +5,7 @@
 #include "flow/emitters.hpp"
 #include "geometry/hand.hpp"
 #include "scene/names.hpp"
+#include "staggered/closed_volume.hpp"
 #include "staggered/diagnostics.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/own_planes.hpp"
@@ -127,6 +128,29 @@ void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
                  "a side of kind \"outflow\", or an inflow with the velocity to the outside that takes out as much");
 }
 
+/// How many moments of the run solids are tried at before it: as many as cost little beside its steps.
+int moments_of(std::size_t cells) { return static_cast<int>(std::clamp<std::size_t>(4'000'000 / std::max<std::size_t>(cells, 1), 1, 16)); }
+
+/// Nor may solids that move change the room of fluid that nothing lets out. Tried from t = 0 to the end; the solids stand at 0 again.
+template <int D>
+void refuse_squeezing(const scene::Scene& scene, MacState<D>& s, SolidPlacement<D>& solids) {
+    if (over_ranks()) return;  // there the step tells
+    const int moments = moments_of(s.cells.size());
+    const real end = scene.number("time.end");
+    for (int k = 0; k <= moments; ++k) {
+        const real t = k == 0 ? 0 : end * (k - 0.5) / moments;
+        solids.place(s, t);
+        const Squeezed<D> region = find_squeezed(s, solids.solids());
+        if (!region.any()) continue;
+        const std::string path = "solids[" + std::to_string(region.solid) + "]";
+        scene.refuse(path + ".motion",
+                     path + " moves so that at t = " + scene::number_text(t) + " s " + text_of(region) +
+                         ": fluid that cannot be compressed has no way out",
+                     "a side of kind \"outflow\" in that room, or a second solid that moves out as much as this one moves in");
+    }
+    solids.place(s, 0);
+}
+
 bool lists(const scene::Scene& scene, const std::string& field) {
     const auto& names = scene.root().texts("output.fields");
     return std::find(names.begin(), names.end(), field) != names.end();
@@ -193,6 +217,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     remembered_.insert(remembered_.end(), remembered_fields_.begin(), remembered_fields_.end());
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
+    if (move_as_told(solids_.solids())) refuse_squeezing(scene, state_, solids_);
     clear_solids();
     smoke_removed_ = 0;  // what a scene puts inside a solid was never there
     if (solids_.moving() && state_.find("smoke")) {
@@ -426,7 +451,8 @@ template <int D>
 void FlowSolver<D>::project(real dt) {
     slow(dt);
     const auto timed = passes_.time("project");
-    report_ = &projection_.project(state_, dt, bodies_.get(), &solids_);
+    report_ = &explained_by_room(state_, solids_,
+                                 [&]() -> const poisson::Report& { return projection_.project(state_, dt, bodies_.get(), &solids_); });
     if (bodies_) solids_.see_velocities(state_);
     impulse_ += dt * (pressure_force(state_) + friction());
 }
@@ -483,9 +509,11 @@ StepReport FlowSolver<D>::report(real dt) {
     const real fastest = fastest_ = max_rate(state_.u);
     if (!std::isfinite(fastest)) throw NumericalFailure("velocity", "the velocity is not finite");
     if (!held_.cut().empty()) check_own_planes();
+    const real divergence = max_divergence(state_);
+    require_room(state_, solids_, divergence);
     return {.dt = dt,
             .cfl = dt * fastest,
-            .max_divergence = max_divergence(state_),
+            .max_divergence = divergence,
             .iterations = report_->iterations,
             .residual_before = report_->residual_before,
             .residual_after = report_->residual_after,

@@ -35,6 +35,7 @@ struct Box final : Shape<D> {
         }
         return inside > 0 ? std::sqrt(outside) : inside;
     }
+    bool convex_along(const Vec<D>&) const override { return true; }
     Vec<D> centre() const override { return 0.5 * (min + max); }
     std::string code() const override { return call("shape_box", min, max); }
 };
@@ -45,6 +46,7 @@ struct Sphere final : Shape<D> {
     real radius;
     Sphere(const Vec<D>& c_, real r) : c(c_), radius(r) {}
     real distance(const Vec<D>& x) const override { return norm(x - c) - radius; }
+    bool convex_along(const Vec<D>&) const override { return true; }
     Vec<D> centre() const override { return c; }
     std::string code() const override { return call("shape_sphere", c, radius); }
 };
@@ -54,6 +56,7 @@ struct Plane final : Shape<D> {
     Vec<D> point, n;
     Plane(const Vec<D>& p, const Vec<D>& normal) : point(p), n(normal / norm(normal)) {}
     real distance(const Vec<D>& x) const override { return dot(n, x - point); }
+    bool convex_along(const Vec<D>&) const override { return true; }
     Vec<D> centre() const override { return point; }
     std::string code() const override { return call("shape_plane", point, n); }
 };
@@ -68,6 +71,7 @@ struct Wave final : Shape<D> {
         return (x[1] - level - amplitude * std::cos(k * x[0])) / std::sqrt(1 + slope * slope);
     }
     real steepest() const override { return 2; }  // within a tenth of 1/(amplitude k²) from the surface; further away nobody looks
+    bool convex_along(const Vec<D>& direction) const override { return direction[0] == 0; }  // linear: the slope is of x alone
     Vec<D> centre() const override { return level * Vec<D>::unit(1); }
     std::string code() const override { return call("shape_wave", level, amplitude, k); }
 };
@@ -83,6 +87,7 @@ struct Capsule final : Shape<D> {
         const real s = length2 > 0 ? std::clamp(dot(x - a, axis) / length2, 0.0, 1.0) : 0.0;
         return norm(x - a - s * axis) - radius;
     }
+    bool convex_along(const Vec<D>&) const override { return true; }
     Vec<D> centre() const override { return 0.5 * (a + b); }
     std::string code() const override { return call("shape_capsule", a, b, radius); }
 };
@@ -100,32 +105,34 @@ struct Cylinder final : Shape<D> {
         if (dz <= 0 || dr <= 0) return std::max(dz, dr);
         return std::sqrt(dz * dz + dr * dr);
     }
+    bool convex_along(const Vec<D>&) const override { return true; }
     Vec<D> centre() const override { return middle; }
     std::string code() const override { return call("shape_cylinder", middle, axis, half, radius); }
 };
 
 template <int D>
 struct Union final : Shape<D> {
-    std::vector<ShapePtr<D>> parts;
-    explicit Union(std::vector<ShapePtr<D>> p) : parts(std::move(p)) {}
+    std::vector<ShapePtr<D>> parts_of;
+    explicit Union(std::vector<ShapePtr<D>> p) : parts_of(std::move(p)) {}
     real distance(const Vec<D>& x) const override {
         real d = infinity;
-        for (const auto& part : parts) d = std::min(d, part->distance(x));
+        for (const auto& part : parts_of) d = std::min(d, part->distance(x));
         return d;
     }
     real steepest() const override {
         real most = 1;
-        for (const auto& part : parts) most = std::max(most, part->steepest());
+        for (const auto& part : parts_of) most = std::max(most, part->steepest());
         return most;
     }
+    Parts<D> parts() const override { return {parts_of, {}}; }
     Vec<D> centre() const override {
         Vec<D> sum{};
-        for (const auto& part : parts) sum += part->centre();
-        return sum / static_cast<real>(std::max<std::size_t>(1, parts.size()));
+        for (const auto& part : parts_of) sum += part->centre();
+        return sum / static_cast<real>(std::max<std::size_t>(1, parts_of.size()));
     }
     std::string code() const override {
         std::string least = hex_number(infinity);
-        for (const auto& part : parts) least = "fmin(" + least + ", " + part->code() + ")";
+        for (const auto& part : parts_of) least = "fmin(" + least + ", " + part->code() + ")";
         return least;
     }
 };
@@ -145,6 +152,7 @@ struct Difference final : Shape<D> {
         for (const auto& hole : minus) most = std::max(most, hole->steepest());
         return most;
     }
+    Parts<D> parts() const override { return {{from}, minus}; }
     Vec<D> centre() const override { return from->centre(); }
     std::string code() const override {
         std::string most = from->code();

@@ -13,6 +13,17 @@ namespace weir::geometry {
 
 struct PosedMesh;
 
+template <int D>
+class Shape;
+template <int D>
+using ShapePtr = std::shared_ptr<const Shape<D>>;
+
+/// What a shape is made of: some shapes together, without others. None where it is one by itself.
+template <int D>
+struct Parts {
+    std::vector<ShapePtr<D>> united{}, removed{};
+};
+
 /// A closed region of space at rest. Immutable, cheap to copy by pointer.
 template <int D>
 class Shape {
@@ -22,6 +33,9 @@ public:
     virtual real distance(const Vec<D>& x) const = 0;
     /// How fast the distance may grow with the way.
     virtual real steepest() const { return 1; }
+    /// Whether the distance is convex along lines of a direction.
+    virtual bool convex_along(const Vec<D>& /*direction*/) const { return false; }
+    virtual Parts<D> parts() const { return {}; }
     /// Where moving shapes turn about when no centre is given.
     virtual Vec<D> centre() const = 0;
     /// distance(x) for devices: an expression of OpenCL C over the functions of particles/kernels/shapes.cl.
@@ -30,9 +44,6 @@ public:
     virtual const PosedMesh* mesh() const { return nullptr; }
     bool contains(const Vec<D>& x) const { return distance(x) < 0; }
 };
-
-template <int D>
-using ShapePtr = std::shared_ptr<const Shape<D>>;
 
 template <int D>
 ShapePtr<D> box(const Vec<D>& min, const Vec<D>& max);

@@ -1,6 +1,7 @@
 #include "geometry/solids.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace weir::geometry {
 
@@ -31,6 +32,59 @@ Solids<D>::Solids(const std::vector<scene::Table>& tables) {
     }
     poses_.resize(solids_.size()), balls_.resize(solids_.size()), middles_.resize(solids_.size());
     set_time(0);
+}
+
+template <int D>
+Solids<D>::Solids(const scene::Scene& scene) : Solids(scene.root().tables("solids")) {
+    repeat(scene);
+    set_time(0);
+}
+
+/// Images that never reach the domain are left out: of a solid that stands, where its distance says so.
+template <int D>
+void Solids<D>::repeat(const scene::Scene& scene) {
+    if (empty() || !scene.has("grid.periodic")) return;
+    const Vec<D> size = scene.vec<D>("grid.size");
+    const Region<D> domain{scene.vec<D>("grid.origin"), scene.vec<D>("grid.origin") + size};
+    std::size_t all = 1;                                                 // a period back, none, a period on, along each periodic axis
+    for (const std::string& axis : scene.root().texts("grid.periodic"))  // the sides' kinds are in it
+        if (const int a = axis[0] - 'x'; a < D) period_[a] = size[a], all *= 3;
+    if (all == 1) return;
+    origin_ = domain.min;
+    const std::size_t listed = count();
+    for (std::size_t i = 0; i < listed; ++i) images_.push_back({i, {}});
+    for (std::size_t i = 0; i < listed; ++i)
+        for (std::size_t which = 1; which < all; ++which) {
+            Image image{i, {}};
+            std::size_t rest = which;
+            for (int a = 0; a < D; ++a)
+                if (period_[a] > 0) image.periods[a] = rest % 3 == 2 ? -1 : static_cast<int>(rest % 3), rest /= 3;
+            if (!solids_[i].motion.moves() && !reaches(domain, solids_[i], image.periods)) continue;
+            images_.push_back(image);
+            solids_.push_back(Solid<D>(solids_[i]));
+        }
+    poses_.resize(count()), balls_.resize(count()), middles_.resize(count());
+}
+
+template <int D>
+bool Solids<D>::reaches(const Region<D>& domain, const Solid<D>& solid, const Index<D>& periods) const {
+    Vec<D> middle = 0.5 * (domain.min + domain.max);
+    for (int a = 0; a < D; ++a) middle[a] -= periods[a] * period_[a];
+    return solid.shape->distance(middle) < solid.shape->steepest() * 0.5 * norm(domain.max - domain.min);
+}
+
+/// A solid is counted where the middle of its shape is in the domain, and its images from there.
+template <int D>
+Pose<D> Solids<D>::placed(const Image& image, real t) const {
+    const Solid<D>& solid = solids_[image.of];
+    Pose<D> pose = solid.motion.pose(t);
+    const Vec<D> middle = pose.to_world(solid.shape->centre());
+    for (int a = 0; a < D; ++a) {
+        if (!(period_[a] > 0)) continue;
+        const real left = solid.motion.moves() ? std::floor((middle[a] - origin_[a]) / period_[a]) : 0;
+        if (const real shift = image.periods[a] - left; shift != 0) pose.offset[a] += shift * period_[a];
+    }
+    return pose;
 }
 
 template <int D>
@@ -68,7 +122,7 @@ bool Solids<D>::moving() const {
 template <int D>
 void Solids<D>::set_time(real t) {
     for (std::size_t i = 0; i < solids_.size(); ++i)
-        if (!solids_[i].free) poses_[i] = solids_[i].motion.pose(t);
+        if (!solids_[i].free) poses_[i] = i < images_.size() ? placed(images_[i], t) : solids_[i].motion.pose(t);
 }
 
 template <int D>

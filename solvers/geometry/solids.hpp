@@ -37,11 +37,17 @@ template <int D>
 class Solids {
 public:
     Solids() = default;
-    /// From the scene's list "solids".
+    /// From the scene's list "solids"; none where it names none. Periodic sides repeat them as they repeat the fluid: of each solid there
+    /// is an image a period further along each periodic axis, and what leaves through one side comes in through the other.
+    explicit Solids(const scene::Scene& scene);
+    /// From a list, without sides.
     explicit Solids(const std::vector<scene::Table>& tables);
 
     bool empty() const { return solids_.empty(); }
+    /// The solids of the list, then their images, then those that are free.
     std::size_t count() const { return solids_.size(); }
+    /// Which of the scene's list solid i is, or is an image of.
+    std::size_t in_list(std::size_t i) const { return i < images_.size() ? images_[i].of : i; }
     /// Whether any solid moves: otherwise fractions never change.
     bool moving() const;
     void set_time(real t);
@@ -77,12 +83,22 @@ public:
     const Pose<D>& pose(std::size_t solid) const { return poses_[solid]; }
 
 private:
+    /// Of which solid it is the image, and how many periods away it is.
+    struct Image {
+        std::size_t of = 0;
+        Index<D> periods{};
+    };
     bool may_be_nearer(std::size_t solid, const Vec<D>& x, real than) const;
+    void repeat(const scene::Scene& scene);
+    bool reaches(const Region<D>& domain, const Solid<D>& solid, const Index<D>& periods) const;
+    Pose<D> placed(const Image& image, real t) const;
 
     std::vector<Solid<D>> solids_;
     std::vector<Pose<D>> poses_;
     std::vector<Ball<D>> balls_;   // where they are
     std::vector<Vec<D>> middles_;  // of the balls, where they rest
+    std::vector<Image> images_;    // of each solid of the list, itself the first of its own; empty where no side is periodic
+    Vec<D> origin_{}, period_{};   // 0 along axes that are not periodic [m]
 };
 
 /// Fraction of a segment where a linear function of the end values is positive (outside the solid), in [0, 1].

@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
-#include "geometry/shape.hpp"
+#include "geometry/line.hpp"
 #include "heightfield/raster.hpp"
 #include "scene/formula.hpp"
 
@@ -96,52 +96,28 @@ Raster read_raster(const Scene& scene, const Plane& plane) {
     return r;
 }
 
-/// The highest point of a shape on the vertical line through (x, z), from `low` to `high`, and the lowest; to the last bit, so that a box
-/// has the same top over each of its columns.
-template <int D>
-struct Line {
-    const geometry::Shape<D>& shape;
-    const geometry::Pose<D>& pose;
-    Vec<D> x{};
-    Line(const geometry::Shape<D>& s, const geometry::Pose<D>& p, real at_x, real at_z) : shape(s), pose(p) {
-        x[0] = at_x;
-        if constexpr (D == 3) x[2] = at_z;
-    }
-    bool inside(real y) {
-        x[1] = y;
-        return shape.contains(pose.to_rest(x));
-    }
-    /// Between one end inside and one outside: the last point inside.
-    real end(real in, real out) {
-        for (;;) {
-            const real mid = 0.5 * (in + out);
-            if (mid == in || mid == out) return out;
-            (inside(mid) ? in : out) = mid;
-        }
-    }
-};
-
 struct Span {
     real low = 0, high = -1;
     bool gap = false;  // air inside of it
     bool empty() const { return high < low; }
 };
 
-constexpr int samples = 64;  // along a line: what is thinner than a 64th of the domain's height may be missed
+/// Of a line's length: how far above the bed a shape may begin and still stand on it.
+constexpr int hover_parts = 64;
 
-/// Where a line from `low` to `high` lies in the shape.
+/// Where a line from `low` to `high` lies in the shape, exactly: however thin it is, and so that a box has the same top over each of its
+/// columns. Parts that leave a millionth of the line between them touch.
 template <int D>
 Span span_of(const geometry::Shape<D>& shape, const geometry::Pose<D>& pose, real x, real z, real low, real high) {
-    Line<D> line(shape, pose, x, z);
+    thread_local std::vector<geometry::Interval> inside;
+    geometry::Line<D> line{{}, 1, low, high, pose};
+    line.x[0] = x;
+    if constexpr (D == 3) line.x[2] = z;
+    geometry::find_inside(shape, line, inside);
     Span span;
-    const auto y = [&](int s) { return low + (high - low) * (s + 0.5) / samples; };
-    int first = -1, last = -1, count = 0;
-    for (int s = 0; s < samples; ++s)
-        if (line.inside(y(s))) first = first < 0 ? s : first, last = s, ++count;
-    if (first < 0) return span;
-    span.gap = count != last - first + 1;
-    span.high = last + 1 < samples ? line.end(y(last), y(last + 1)) : line.inside(high) ? high : line.end(y(last), high);
-    span.low = first > 0 ? line.end(y(first), y(first - 1)) : line.inside(low) ? low : line.end(y(first), low);
+    if (inside.empty()) return span;
+    span.low = inside.front().low, span.high = inside.back().high;
+    for (std::size_t i = 1; i < inside.size(); ++i) span.gap = span.gap || inside[i].low - inside[i - 1].high > 1e-6 * (high - low);
     return span;
 }
 
@@ -158,7 +134,7 @@ void pour(const Scene& scene, State& state) {
             if (!(bed < plane.ceiling)) return;
             const Span water = span_of<D>(*shapes[s], rest, plane.x(i), plane.z(k), bed, plane.ceiling);
             if (water.empty()) return;
-            const real slack = (plane.ceiling - bed) / samples;
+            const real slack = (plane.ceiling - bed) / hover_parts;
             if (water.gap || water.low > bed + state.h[c] + slack) bad[static_cast<std::size_t>(k)] = i;
             state.h[c] = std::max(state.h[c], water.high - bed);
         });
@@ -194,7 +170,7 @@ void give_velocity(const Scene& scene, State& state) {
 template <int D>
 class Raised final : public RaisedBed {
 public:
-    Raised(const Scene& scene, const Plane& plane) : plane_(plane), solids_(scene.root().tables("solids")) {
+    Raised(const Scene& scene, const Plane& plane) : plane_(plane), solids_(scene) {
         for (std::size_t s = 0; s < solids_.count(); ++s)
             if (solids_[s].no_slip)
                 scene.refuse(fmt::format("solids[{}].slip", s), "a height field has no boundary layers: its solids are free of friction");
@@ -223,7 +199,7 @@ private:
         std::vector<int> hangs(static_cast<std::size_t>(plane_.nz), -1);
         for_each_column(plane_, [&](int i, int k) {
             const std::size_t c = plane_.at(i, k);
-            const real low = std::min(terrain[c], plane_.floor), slack = 2 * (plane_.ceiling - low) / samples;
+            const real low = std::min(terrain[c], plane_.floor), slack = 2 * (plane_.ceiling - low) / hover_parts;
             real sum = 0;
             const int across = D == 3 ? lines : 1;
             for (int a = 0; a < lines; ++a)

@@ -5,7 +5,7 @@
 namespace weir::particles {
 
 template <int D>
-Domain<D>::Domain(const scene::Scene& scene) : sides(scene), solids(scene.root().tables("solids")) {
+Domain<D>::Domain(const scene::Scene& scene) : sides(scene), solids(scene) {
     const Index<D> cells = scene.index<D>("grid.cells");
     const Vec<D> size = scene.vec<D>("grid.size");
     lo = scene.vec<D>("grid.origin");

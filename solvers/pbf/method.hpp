@@ -2,6 +2,7 @@
 // settles into, what it adds to integrals and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
 #pragma once
 #include "particles/solver.hpp"
+#include "particles/squeezed.hpp"
 #include "pbf/options.hpp"
 
 #include <algorithm>
@@ -40,6 +41,7 @@ protected:
 
     int most_iterations() const { return options_.tolerance > 0 ? options_.max_iterations : options_.iterations; }
     StepReport report(real dt, real speed, int iterations, const Compression& c) const {
+        particles::require_room(this->setting(), c.mean);
         return {.dt = dt,
                 .cfl = dt * speed / this->setting().domain.spacing,
                 .iterations = iterations,

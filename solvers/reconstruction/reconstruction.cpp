@@ -59,8 +59,8 @@ real value_at(const FieldView& field, const GridView& grid, std::size_t componen
 Reconstruction::Reconstruction(const Options& options, const scene::Scene& scene)
     : options_(options),
       domain_{.flat = scene.dim() == 2},
-      flat_solids_(domain_.flat ? geometry::Solids<2>(scene.root().tables("solids")) : geometry::Solids<2>()),
-      solids_(domain_.flat ? geometry::Solids<3>() : geometry::Solids<3>(scene.root().tables("solids"))),
+      flat_solids_(domain_.flat ? geometry::Solids<2>(scene) : geometry::Solids<2>()),
+      solids_(domain_.flat ? geometry::Solids<3>() : geometry::Solids<3>(scene)),
       field_(options.method, domain_.flat) {
     const auto lower = scene.root().numbers("grid.origin"), size = scene.root().numbers("grid.size");
     for (int a = 0; a < 3; ++a) {

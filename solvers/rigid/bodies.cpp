@@ -3,6 +3,7 @@
 #include "geometry/mesh/mesh.hpp"
 #include "geometry/sides.hpp"
 #include "rigid/feelers.hpp"
+#include "rigid/overlaps.hpp"
 #include "scene/names.hpp"
 
 #include <algorithm>
@@ -146,7 +147,7 @@ Bodies<D>::Bodies(const scene::Scene& scene) {
         read(scene, i);
     }
     joints_ = Joints<D>(scene, list_);
-    refuse_overlaps(scene);
+    refuse_overlaps<D>(scene, list_, joints_, around_);
 }
 
 template <int D>
@@ -187,19 +188,6 @@ void Bodies<D>::read(const scene::Scene& scene, std::size_t number) {
 }
 
 template <int D>
-void Bodies<D>::refuse_overlaps(const scene::Scene& scene) const {
-    for (std::size_t b = 0; b < list_.size(); ++b)
-        for (std::size_t o = 0; o < list_.size(); ++o) {
-            if (b == o || joints_.tie(b, o)) continue;
-            const real deepest = -1e-3 * std::min(list_[b].radius, list_[o].radius);
-            for (const Feeler<D>& feeler : list_[b].feelers)
-                if (list_[o].shape->distance(feeler.at) - feeler.radius < deepest)
-                    scene.refuse(path_of(std::max(b, o)),
-                                 path_of(std::min(b, o)) + " and " + path_of(std::max(b, o)) + " are in the same place");
-        }
-}
-
-template <int D>
 void Bodies<D>::join(geometry::Solids<D>& solids) {
     around_.prescribed = solids.count();
     for (const Body<D>& body : list_) solids.add_free(body.shape, body.no_slip, {body.centre, body.radius});
@@ -225,7 +213,7 @@ void Bodies<D>::recall(const std::function<real(const char*, std::size_t, std::s
 
 template <int D>
 ShownSolids<D>::ShownSolids(const scene::Scene& scene, bool lines) : bodies_(scene) {
-    if (scene.has("solids")) still_ = geometry::Solids<D>(scene.root().tables("solids"));
+    still_ = geometry::Solids<D>(scene);
     constexpr real part = 1.0 / 500;  // of the domain: a line that pictures still show
     if (lines) thin_ = part * norm(scene.vec<D>("grid.size"));
 }

@@ -53,7 +53,6 @@ public:
 
 private:
     void read(const scene::Scene& scene, std::size_t number);
-    void refuse_overlaps(const scene::Scene& scene) const;
 
     std::vector<Body<D>> list_;
     Joints<D> joints_;

@@ -207,7 +207,6 @@ void Joints<D>::hold_turning(const Joint<D>& joint, const std::vector<Body<D>>& 
     }
 }
 
-/// Tension T = k (s + dt v) + c v at the end of the step, s the stretch and v its rate then: v = −k s/(k dt + c) + impulse/(dt (k dt + c)).
 /// A slack line is not damped.
 template <int D>
 void Joints<D>::pull(const Joint<D>& joint, const std::vector<Body<D>>& bodies, real dt, std::vector<Row<D>>& rows) const {
@@ -216,10 +215,14 @@ void Joints<D>::pull(const Joint<D>& joint, const std::vector<Body<D>>& bodies, 
     const real length = norm(line), stretch = length - joint.length;
     const Vec<D> along = length > 0 ? line / length : Vec<D>::unit(1);
     rows.push_back(row_at<D>(bodies, joint.body, joint.other, end[0], along));
-    const real firm = joint.stiffness * dt + (stretch > 0 ? joint.damping : 0);
-    rows.back().target = -joint.stiffness * stretch / firm;
-    rows.back().softness = 1 / (dt * firm);
-    rows.back().limit = Limit::pulls;
+    Row<D>& row = rows.back();
+    real rate = 0;  // as it was when the ends came to where they are
+    for (std::size_t k = 0; k < freedoms<D>; ++k) {
+        rate += row.sees[k] * bodies[joint.body].velocity[k];
+        if (const Body<D>* other = other_of(joint, bodies)) rate += row.sees[freedoms<D> + k] * other->velocity[k];
+    }
+    row.spring = {joint.stiffness, stretch > 0 ? joint.damping : 0, stretch, rate, dt};
+    row.limit = Limit::pulls;
 }
 
 template <int D>

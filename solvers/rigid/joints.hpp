@@ -1,7 +1,7 @@
 // Joints between two bodies, or a body and the world: hinges, sliders, and lines that moor. They are constraints on velocities in the
 // metric of contacts, solved with them. What positions are off by is undone in the next step (a step of Newton on SHAKE's equations,
-// Ryckaert, Ciccotti & Berendsen 1977), and the spring and damper of a line are taken at the end of the step, as a soft constraint (Catto
-// 2011), so that no stiffness limits the step.
+// Ryckaert, Ciccotti & Berendsen 1977). The spring of a line is taken in the middle of places before and after the step, its damper at the
+// end, as a soft constraint (Catto 2011; rows.cpp), so that no stiffness limits the step and a swing without damping goes on.
 #pragma once
 #include "rigid/rows.hpp"
 #include "scene/schema.hpp"

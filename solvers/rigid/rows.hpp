@@ -34,6 +34,12 @@ enum class Limit {
     rubs,    // at most friction times that of the row `normal`
 };
 
+/// What a line gives way by.
+struct Spring {
+    real stiffness = 0, damping = 0;  // [N/m], [N s/m]; no stiffness: the row is no line
+    real stretch = 0, rate = 0, dt = 0;
+};
+
 /// v = target − softness × impulse, where v is the velocity of a body past another along one direction.
 template <int D>
 struct Row {
@@ -45,6 +51,7 @@ struct Row {
     Limit limit = Limit::none;
     real friction = 0;
     std::size_t normal = 0;
+    Spring spring{};    // where it is a line: target and softness follow from it and the response
     real response = 0;  // change of v by a unit impulse
 };
 

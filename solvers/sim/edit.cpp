@@ -24,6 +24,18 @@ void check_values(const std::string& name, const std::vector<real>& values, std:
     }
 }
 
+/// For as long as it lives the simulation knows which field is written.
+class Edited {
+public:
+    Edited(std::string& which, std::string name) : which_(which) { which_ = std::move(name); }
+    ~Edited() { which_.clear(); }
+    Edited(const Edited&) = delete;
+    Edited& operator=(const Edited&) = delete;
+
+private:
+    std::string& which_;
+};
+
 /// A rank may hold a part of the state, and whoever writes knows all of it or nothing.
 void one_process_only(const std::string& what) {
     if (slabs().several()) throw BadInput(fmt::format("{} in one process only, and there are {}", what, slabs().ranks()));
@@ -62,6 +74,10 @@ EditableField Simulation::editable_named(std::string_view name) {
                                known.empty() ? std::string("it has none") : "known: " + known));
 }
 
+void Simulation::refuse_while_edited(const char* what) const {
+    if (!edited_.empty()) throw BadInput(fmt::format("\"{}\" is being edited: {} after that, not meanwhile", edited_, what));
+}
+
 /// All of it, or nothing.
 void Simulation::change_state(const std::function<void(Solver&)>& change) {
     Checkpoint before;
@@ -79,28 +95,29 @@ void Simulation::change_state(const std::function<void(Solver&)>& change) {
 
 void Simulation::edit(std::string_view name, const std::function<void(FieldEdit&)>& write) {
     one_process_only(fmt::format("\"{}\" is edited", name));
+    refuse_while_edited("another field is edited");
     const EditableField at = editable_named(name);
     const FieldSet shown = fields();
     const FieldView* view = shown.find(at.set, at.name);
     FieldEdit field{at.set, at.name, view ? view->unit : "", view ? view->where : Where::cell, shown.grid, {}};
     for (const auto& component : at.data) field.data.emplace_back(component.begin(), component.end());
-    write(field);
+    {
+        const Edited now(edited_, full_name(at.set, at.name));
+        write(field);
+    }
     if (field.data.size() != at.data.size())
         throw BadInput(fmt::format("\"{}\" has {} components, not {}", at.name, at.data.size(), field.data.size()));
     for (std::size_t c = 0; c < at.data.size(); ++c) check_values(at.name, field.data[c], at.data[c].size(), at.min[c], at.max[c]);
     change_state([&](Solver& solver) {
-        const EditableField to = editable_named(full_name(at.set, at.name));  // whoever wrote may have stepped
-        for (std::size_t c = 0; c < to.data.size(); ++c) {
-            if (to.data[c].size() != field.data[c].size())
-                throw BadInput("the simulation stepped on while \"" + at.name + "\" was written");
-            std::copy(field.data[c].begin(), field.data[c].end(), to.data[c].begin());
-        }
+        const EditableField to = editable_named(full_name(at.set, at.name));  // a copy of the state may have moved it
+        for (std::size_t c = 0; c < to.data.size(); ++c) std::copy(field.data[c].begin(), field.data[c].end(), to.data[c].begin());
         solver.edited(to);
     });
 }
 
 void Simulation::add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) {
     one_process_only(fmt::format("particles of the set \"{}\" are added", set));
+    refuse_while_edited("particles are added");
     if (at.size() != velocity.size()) throw BadInput(fmt::format("{} places of particles and {} velocities", at.size(), velocity.size()));
     const GridView grid = fields().grid;
     check_points(at, "the place of particle", grid, true);
@@ -113,6 +130,7 @@ void Simulation::add_particles(std::string_view set, std::span<const Vec<3>> at,
 
 void Simulation::remove_particles(std::string_view set, std::span<const std::size_t> which) {
     one_process_only(fmt::format("particles of the set \"{}\" are removed", set));
+    refuse_while_edited("particles are removed");
     const FieldSet shown = fields();
     const FieldView* position = shown.find(set, "position");
     std::vector<unsigned char> gone(position ? position->data[0].size() : 0, 0);

@@ -155,7 +155,7 @@ private:
 template <int D>
 class WallPressure final : public ProbeKind {
 public:
-    WallPressure(const scene::Scene& scene, const Vec<D>& at) : solids_(scene.root().tables("solids")), at_(at) {}
+    WallPressure(const scene::Scene& scene, const Vec<D>& at) : solids_(scene), at_(at) {}
     void describe(ProbeSeries& series) const override {
         series.columns = {"pressure [Pa]"};
         series.positions.resize(1);

@@ -8,9 +8,11 @@
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
 #include "sim/asked_times.hpp"
+#include "sim/extremes.hpp"
 #include "sim/finite.hpp"
 #include "sim/foretold.hpp"
 #include "sim/registry.hpp"
+#include "sim/room.hpp"
 #include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
 
@@ -71,6 +73,7 @@ void refuse_ignored(const scene::Scene& scene, const scene::SolverKind& kind) {
 scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
     geometry::require_meshes(scene);
     sim::require_memory(scene, kinds);
+    sim::require_room(scene);
     return scene;
 }
 
@@ -133,6 +136,7 @@ void Simulation::read_times() {
 /// The solver is made anew of the changed scene and given the state, as a restart does: nothing in a solver needs to know of changes, and
 /// what it derives from its scene fits the scene.
 void Simulation::steer(const scene::Override& change) {
+    refuse_while_edited("a key changes");
     scene::Scene changed = unread(scene_.steered(change, {kind_.schema}));
     probes_.keep(*solver_);
     Checkpoint state;
@@ -213,6 +217,7 @@ void Simulation::meet_changes() {
 StepReport Simulation::step() { return step_until(infinity); }
 
 StepReport Simulation::step_until(real t) {
+    refuse_while_edited("the simulation steps");
     meet_changes();
     const StepReport report = step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
     for (std::size_t i = 0; i < observers_.size(); ++i) {  // one may add another
@@ -250,31 +255,24 @@ StepReport Simulation::step_towards(real target) {
     ++steps_;
     if (steady_rate_ > 0) steady_ = sim::change_and_keep(fields(), last_velocity_) <= steady_rate_ * report.dt;
     choose_threads(clock.elapsed());
-    if (std::string concern = concerned_ ? std::string() : solver_->concern(); !concern.empty()) {
-        concerned_ = true;
-        warnings_.push_back(scene_.file() + ": " + concern);
-    }
+    if (const std::string concern = solver_->concern(); !concern.empty()) tell_concern(concern);
     at_frame_ = reached(frame_target) || steady_;
     if (at_frame_) ++frame_;
     measure();
     return report;
 }
 
-<<<<<<< HEAD
-/// Over ranks a step waits for other processes, and its time says nothing about threads.
+/// In parallel (MPI) a step waits for other processes, and its time says nothing about threads.
 void Simulation::choose_threads(const sim::StepTime& step) {
     if (slabs().several()) return;
     threads_.add(step);
     if (const std::string warning = threads_.warning(); !warning.empty()) warnings_.push_back(scene_.file() + ": " + warning);
 }
 
-bool Simulation::reached(real t) const { return time() >= t - slack(t); }
-=======
 void Simulation::measure() {
     probes_.sample(*solver_);
     for (const std::string& remark : probes_.remarks()) warnings_.push_back(scene_.file() + ": " + remark);
 }
->>>>>>> sim
 
 bool Simulation::reached(real t) const { return time() >= t - sim::same_time(t); }
 
@@ -309,12 +307,20 @@ real Simulation::next_frame() const {
 
 real Simulation::uncut_dt() const { return fixed_dt_ > 0 ? fixed_dt_ : std::min(solver_->advised_dt(), max_dt_); }
 
+/// A step that has fallen to a millionth of the longest one and to a billionth of the time between frames ends a run that would never end.
+bool Simulation::hopeless(real dt) const { return dt < 1e-6 * longest_dt_ && dt < 1e-9 * std::min(end_, every_); }
+
+void Simulation::refuse_step(const char* which, real dt) const {
+    throw NumericalFailure("time step", fmt::format("the {} step is {} s{}: time no longer advances. Now {}", which, scene::number_text(dt),
+                                                    longest_dt_ > dt ? fmt::format(" (the longest was {:.3g} s)", longest_dt_) : "",
+                                                    sim::extremes(scene_, fields(), time())));
+}
+
 real Simulation::wanted_dt(real target) const {
     const real remaining = target - time();
     const bool fixed = fixed_dt_ > 0;
     const real dt = uncut_dt();
-    if (!(dt > sim::same_time(time())) && remaining > 0)
-        throw NumericalFailure("time step", "the advised time step is " + scene::number_text(dt) + " s: time no longer advances");
+    if (remaining > 0 && (!(dt > sim::same_time(time())) || (!fixed && hopeless(dt)))) refuse_step("advised time", dt);
     if (remaining <= 0) return dt;
     if (dt * stretch >= remaining) return remaining;
     return !fixed && 2 * dt > remaining ? remaining / 2 : dt;  // two equal steps rather than one step and a sliver
@@ -324,9 +330,16 @@ real Simulation::wanted_dt(real target) const {
 real Simulation::within_limit(real dt, const StepLimit& limit) const {
     if (!(dt > limit.dt * stretch)) return dt;
     const real part = dt / std::ceil(dt / limit.dt);
-    if (!(part > sim::same_time(time())))
-        throw NumericalFailure("time step", "the longest stable step is " + scene::number_text(limit.dt) + " s: time no longer advances");
+    if (!(part > sim::same_time(time())) || hopeless(part)) refuse_step("longest stable", limit.dt);
     return part;
+}
+
+/// Of each kind the first: what the same words say with other numbers has been said.
+void Simulation::tell_concern(const std::string& concern) {
+    const std::string kind = concern.substr(0, concern.find_first_of("0123456789"));
+    if (std::find(concerns_.begin(), concerns_.end(), kind) != concerns_.end()) return;
+    concerns_.push_back(kind);
+    warnings_.push_back(scene_.file() + ": " + concern);
 }
 
 void Simulation::tell_of_parts(real wanted, real dt, const StepLimit& limit) {
@@ -364,6 +377,7 @@ void Simulation::resume_changes(const Checkpoint& from) {
 }
 
 void Simulation::restore(const Checkpoint& from) {
+    refuse_while_edited("the simulation goes on from a checkpoint");
     try {
         resume_changes(from);
         if (Cut cut = better_cut(from); !cut.empty()) {

@@ -80,7 +80,8 @@ public:
     /// what every step leaves behind, so that the field may come out otherwise than it was written: a velocity of grids free of divergence
     /// and still at walls, a depth nowhere negative. Throws BadInput where the solver has no such field that may be written (editable()
     /// names them), where a value is not finite or cannot be, or where the run goes over several ranks, and leaves all as it was.
-    /// "set.name" where the name alone could be several.
+    /// "set.name" where the name alone could be several. While `write` runs the simulation does not change: a step, a change of a key, of
+    /// particles or of another field throws BadInput, as what was written would undo it.
     void edit(std::string_view field, const std::function<void(FieldEdit&)>& write);
     /// The fields that edit() takes: "velocity", "smoke", "particles.position", ...
     std::vector<std::string> editable();
@@ -145,17 +146,18 @@ private:
     void replace(std::unique_ptr<Solver> solver);
     void resume_changes(const Checkpoint& from);
     real wanted_dt(real target) const;
+    bool hopeless(real dt) const;
+    [[noreturn]] void refuse_step(const char* which, real dt) const;
     StepLimit limit() const { return guard_ ? solver_->stable_dt() : StepLimit{}; }
     real within_limit(real dt, const StepLimit& limit) const;
+    void tell_concern(const std::string& concern);
     void tell_of_parts(real wanted, real dt, const StepLimit& limit);
     StepReport step_towards(real target);
-<<<<<<< HEAD
     void choose_threads(const sim::StepTime& step);
-=======
     void measure();
->>>>>>> sim
     EditableField editable_named(std::string_view field);
     void change_state(const std::function<void(Solver&)>& change);
+    void refuse_while_edited(const char* what) const;
 
     scene::Scene scene_;
     scene::SolverKind kind_;
@@ -169,21 +171,18 @@ private:
     bool at_frame_ = true, guard_ = true, steady_ = false;
     real steady_rate_ = 0;                          // [m/s^2]; 0: not asked for
     std::vector<std::vector<real>> last_velocity_;  // where it is, that of the last step
-    bool split_ = false, concerned_ = false;        // whether a step was taken in parts, or the solver had a concern
-    std::vector<std::string> warnings_;
+    bool split_ = false;                            // whether a step was taken in parts
+    std::vector<std::string> warnings_, concerns_;  // concerns_: the kinds that were told
     std::vector<Change> changes_;
     std::int64_t changed_ = 0;  // how many of them the run has met
+    std::string edited_;        // the field that edit() writes now
     struct Watch {
         std::int64_t every = 0;  // steps; 0: at frames
         Observer observer;
     };
     std::vector<Watch> observers_;
-<<<<<<< HEAD
     sim::ThreadChoice threads_;
-    real longest_dt_ = 0;  // that was wanted so far, before it was cut for a frame [s]
-=======
     real longest_dt_ = 0;  // that was wanted so far, before it was shortened [s]
->>>>>>> sim
 };
 
 /// Says in a checkpoint that the run reached this end [s], to which the steps after the checkpoint were shortened: it continues to a later

@@ -88,7 +88,8 @@ Key surface() {
             .type = Type::numbers,
             .doc =
                 "A point of the surface: pressure begins as rho g.(x - surface) where that is positive, of effects.gravity. "
-                "Needs a density by its rate (delta, continuity); absent: no pressure.",
+                "Needs a density by its rate (delta, continuity); absent: the same of liquid that begins at rest, below a flat top and "
+                "held by walls and solids, and no pressure of other liquid.",
             .unit = "m",
             .length = -1};
 }

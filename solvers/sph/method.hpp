@@ -2,6 +2,7 @@
 // that it advises and stands, what it adds to fields and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
 #pragma once
 #include "particles/solver.hpp"
+#include "particles/squeezed.hpp"
 #include "sph/options.hpp"
 #include "sph/state.hpp"
 
@@ -34,7 +35,7 @@ protected:
     void start_from(const scene::Scene& scene, particles::Fluid<Backend::dim>& fluid) {
         rest_density_ = RestDensity(scene, fluid.rho0);
         max_dt_ = scene.root().number_or("time.max_dt", infinity);
-        start_pressure(scene, options_, fluid);
+        hint_ = start_pressure(scene, options_, fluid);
     }
 
     /// Of particle i [kg/m^3].
@@ -46,7 +47,10 @@ protected:
 
     const char* method() const final { return "sph"; }
     StepLimit stable_at(real speed) const final { return stable_step(options_, this->setting(), speed); }
-    std::string concern_at(real speed) const final { return too_fast(options_, speed, this->time()); }
+    std::string concern_at(real speed) const final {
+        std::string fast = too_fast(options_, speed, this->time());
+        return fast.empty() ? hint_ : fast;
+    }
     void show(const particles::Fluid<Backend::dim>& fluid, FieldSet& set) const final {
         set.fields.push_back({"pressure", "Pa", Where::particle, "particles", {std::span<const real>(fluid.carried)}});
     }
@@ -66,6 +70,7 @@ protected:
         this->ice_->arrive(this->fluid_, dt);
     }
     StepReport report(real dt, real speed, const Compression& c) const {
+        particles::require_room(this->setting(), c.mean);
         return {.dt = dt,
                 .cfl = dt * (speed + options_.sound) / this->setting().domain.spacing,
                 .density_error = c.mean,
@@ -76,6 +81,7 @@ protected:
     RestDensity rest_density_;
     real rho_rest_ = 1;  // now [kg/m^3]
     real max_acceleration_ = 0, max_dt_ = infinity;
+    std::string hint_;  // about the start
 };
 
 }  // namespace weir::sph

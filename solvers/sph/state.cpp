@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "particles/flow.hpp"
+#include "sph/rest.hpp"
 
 #include <fmt/format.h>
 
@@ -53,17 +54,22 @@ real RestDensity::at(real time) const {
 }
 
 template <int D>
-void start_pressure(const scene::Scene& scene, const Options& options, particles::Fluid<D>& fluid) {
-    if (!scene.has("initial.surface")) return;
-    if (!options.continuity)
-        scene.refuse("initial.surface", "a density that is summed has the pressure of its particles",
-                     "set scheme.density = \"continuity\"");
-    const Vec<D> surface = scene.vec<D>("initial.surface");
-    for (int i = 0; i < fluid.count(); ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        fluid.carried[at] = std::max<real>(0, fluid.rho0 * dot(fluid.gravity, fluid.position(i) - surface));
-        fluid.density[at] = options.density(fluid.carried[at], fluid.density[at]);
+std::string start_pressure(const scene::Scene& scene, const Options& options, particles::Fluid<D>& fluid) {
+    std::string hint;
+    if (scene.has("initial.surface")) {
+        if (!options.continuity)
+            scene.refuse("initial.surface", "a density that is summed has the pressure of its particles",
+                         "set scheme.density = \"continuity\"");
+        const Vec<D> surface = scene.vec<D>("initial.surface");
+        for (int i = 0; i < fluid.count(); ++i)
+            fluid.carried[static_cast<std::size_t>(i)] = std::max<real>(0, fluid.rho0 * dot(fluid.gravity, fluid.position(i) - surface));
+    } else if (options.continuity && !fluid.warm && !scene.effect("rest_density")) {
+        hint = start_at_rest(fluid);
+    } else {
+        return hint;
     }
+    for (std::size_t i = 0; i < fluid.density.size(); ++i) fluid.density[i] = options.density(fluid.carried[i], fluid.density[i]);
+    return hint;
 }
 
 template <int D>
@@ -194,8 +200,8 @@ template void drift(particles::Fluid<2>&, real);
 template void drift(particles::Fluid<3>&, real);
 template particles::single::PbfParams smoothing_params(const particles::single::SphParams&, const particles::Fluid<2>&);
 template particles::single::PbfParams smoothing_params(const particles::single::SphParams&, const particles::Fluid<3>&);
-template void start_pressure(const scene::Scene&, const Options&, particles::Fluid<2>&);
-template void start_pressure(const scene::Scene&, const Options&, particles::Fluid<3>&);
+template std::string start_pressure(const scene::Scene&, const Options&, particles::Fluid<2>&);
+template std::string start_pressure(const scene::Scene&, const Options&, particles::Fluid<3>&);
 template real step_limit(const Options&, const particles::Fluid<2>&, real, real);
 template real step_limit(const Options&, const particles::Fluid<3>&, real, real);
 template real tension_limit(const Options&, const particles::Fluid<2>&);

@@ -7,6 +7,7 @@
 #include "particles/passes.hpp"
 #include "sph/options.hpp"
 
+#include <string>
 #include <vector>
 
 namespace weir::sph {
@@ -36,9 +37,10 @@ private:
     real rho0_;
 };
 
-/// initial.surface: the pressure of a liquid at rest below it, and the densities that go with that.
+/// The pressure of a liquid at rest, below initial.surface or, where the scene does not name it, where a liquid rests (rest.hpp), and the
+/// densities that go with that. Answers what a user should know of it.
 template <int D>
-void start_pressure(const scene::Scene& scene, const Options& options, particles::Fluid<D>& fluid);
+std::string start_pressure(const scene::Scene& scene, const Options& options, particles::Fluid<D>& fluid);
 
 /// The limits of Monaghan 1992 and Morris 1997 with the smoothing length s = support / 2: sound, viscosity, force.
 template <int D>

@@ -51,7 +51,7 @@ std::unique_ptr<BodiesInFlow<D>> BodiesInFlow<D>::make(const scene::Scene& scene
 
 template <int D>
 geometry::Solids<D> BodiesInFlow<D>::solids(const scene::Scene& scene, BodiesInFlow* in) {
-    geometry::Solids<D> solids = scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
+    geometry::Solids<D> solids(scene);
     if (in) in->bodies_.join(solids);
     return solids;
 }

@@ -117,14 +117,15 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (alone && moving()) rate_ = find_rate(s);
 }
 
-/// The distances at the corners of a box, as far as anybody asks for them.
+/// The distances at the corners of a box, as far as anybody asks for them. The two ends of a periodic axis are one place: they have the
+/// same bits, so that a face there is as open at one end as at the other.
 template <int D>
 void SolidPlacement<D>::place_corners(const MacState<D>& s, std::size_t box) {
     solids_.find_near(changed_[box].region(s.u.origin, s.u.h), 2 * norm(s.u.h), near_[box]);
     const real far = 2 * reach(s.u.h, solids_.steepest(near_[box]));
     for_each_held(corner_, changed_[box].lo, changed_[box].hi + Index<D>::constant(1), [&](const Index<D>& I) {
         Vec<D> x;
-        for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * I[d];
+        for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + s.u.h[d] * (I[d] == s.u.cells[d] && s.sides.periodic(d) ? 0 : I[d]);
         corner_(I) = solids_.distance(x, near_[box], far);
     });
 }

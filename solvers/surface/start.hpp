@@ -18,7 +18,7 @@ void refuse_flat_cells(const scene::Scene& scene, const Frame<D>& frame);
 /// The scene's solids; none where it names none.
 template <int D>
 geometry::Solids<D> solids_of(const scene::Scene& scene) {
-    return scene.has("solids") ? geometry::Solids<D>(scene.root().tables("solids")) : geometry::Solids<D>();
+    return geometry::Solids<D>(scene);
 }
 
 /// What the effect gravity says [m/s²]; none where the scene does not name it.

@@ -1,6 +1,7 @@
 #include "tallcell/solver.hpp"
 
 #include "core/error.hpp"
+#include "staggered/closed_volume.hpp"
 #include "staggered/inflow.hpp"
 
 namespace weir::tallcell {
@@ -19,6 +20,7 @@ StepReport TallCells<D>::step(real dt) {
     forces(dt);                                   // u += dt f
     const poisson::Report poisson = project(dt);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
     const real divergence = pressure_.max_divergence(state_);
+    staggered::require_room(state_, solids_, divergence);
     extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
     if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "a velocity is no longer finite");
     state_.time += dt;
@@ -113,7 +115,8 @@ poisson::Report TallCells<D>::project(real dt) {
     refresh(state_.u[D - 1], frame_.periodic(D - 1));
     pressure_.restrict_velocity(state_);
     pressure_.change_runs(transport_.changes());
-    const poisson::Report report = pressure_.project(surface_.phi, state_, dt);
+    const poisson::Report report =
+        staggered::explained_by_room(state_, solids_, [&] { return pressure_.project(surface_.phi, state_, dt); });
     pressure_.spread(state_, dt);
     sync_periodic(state_.u, state_.sides);
     return report;

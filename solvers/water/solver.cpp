@@ -1,6 +1,7 @@
 #include "water/solver.hpp"
 
 #include "core/parallel.hpp"
+#include "staggered/closed_volume.hpp"
 #include "staggered/inflow.hpp"
 #include "water/curvature.hpp"
 
@@ -23,6 +24,7 @@ StepReport Water<D>::step(real dt) {
     forces(dt);                                   // u* += dt f, (I − dt ν∇²) u* = ...
     const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
+    staggered::require_room(state_, solids_, divergence);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
     state_.time += dt;
@@ -176,7 +178,7 @@ poisson::Report Water<D>::project_once(real dt, bool again) {
 template <int D>
 poisson::Report Water<D>::project(real dt) {
     slow(dt);
-    poisson::Report report = project_once(dt, false);
+    poisson::Report report = staggered::explained_by_room(state_, solids_, [&] { return project_once(dt, false); });
     if (viscosity_ && !bodies_) report = balance_friction(dt, report);
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);
     refresh(state_.u[D - 1], frame_.periodic(D - 1));

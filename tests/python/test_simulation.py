@@ -388,6 +388,27 @@ def test_an_edit_is_all_or_nothing():
     assert np.array_equal(before, sim["velocity"])
 
 
+def test_nothing_changes_inside_the_block_of_an_edit():
+    """The end of the block would undo it."""
+    sim = weir.Simulation("dam_break_particles", set={"time.end": 0.01})
+    before = sim["velocity"].copy()
+    for change in (lambda: sim.step(), lambda: sim.run(), lambda: sim.set("time.end", 0.02), lambda: sim.remove_particles([0]),
+                   lambda: sim.edit("position").__enter__(), lambda: sim.edit("velocity").__enter__()):
+        with pytest.raises(weir.BadInput, match='"particles.velocity" is being edited'):
+            with sim.edit("velocity") as u:
+                u.x = 1
+                change()
+    assert sim.steps == 0 and np.array_equal(before, sim["velocity"])
+    late = sim.edit("velocity")
+    sim.step()
+    with pytest.raises(weir.StaleField):
+        with late as u:
+            u.x = 1
+    with sim.edit("velocity") as u:
+        u.x = 0.25
+    assert np.all(np.array(sim["velocity"].x) == 0.25)
+
+
 def test_smoke_is_written_as_an_array():
     sim = weir.Simulation({"solver": "mac", "dim": 2, "grid": {"cells": [8, 8], "size": [1.0, 1.0]}, "time": {"end": 1.0},
                            "initial": {"smoke": {"name": "ball", "centre": [0.5, 0.5], "radius": 10.0, "value": 0.25}}})

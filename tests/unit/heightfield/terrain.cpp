@@ -7,6 +7,8 @@
 #include "support/test.hpp"
 #include "unit/heightfield/support.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 using namespace weir;
@@ -164,4 +166,27 @@ TEST_IN_2D_AND_3D("where no solid is the bed stays, however deep it lies") {
             " } ]\n",
         8));
     for (int i = 0; i < state.plane.nx; ++i) EXPECT_NEAR(state.bed[state.plane.at(i, 0)], i == 2 || i == 3 ? -2.5 : -2.9, 1e-15) << i;
+}
+
+TEST_IN_2D_AND_3D("liquid of any thickness is there: a film, a slope, the cap of a ball, in a domain many times as high") {
+    const std::string z0 = D == 2 ? "" : ", 0.0", z1 = D == 2 ? "" : ", 1.5", mid = D == 2 ? "" : ", 0.75";
+    const auto depths = [&](const std::string& shape) {
+        const State s(test::height_scene(D, "liquid = [ { " + shape + " } ]\nterrain = { kind = \"formula\", height = \"0\" }\n"));
+        return std::vector<real>(s.h.data(), s.h.data() + s.h.size());
+    };
+    for (const real thick : {0.4, 1.0 / 128, 1e-3, 1e-6, 1e-9})
+        for (const real h : depths(fmt::format("shape = \"box\", min = [0.0, 0.0{}], max = [1.0, {}{}]", z0, thick, z1)))
+            ASSERT_EQ(h, thick);           // a box ends where it says
+    for (const real thick : {1e-3, 1e-7})  // of a plane the height is within its rounding
+        for (const real h : depths(fmt::format("shape = \"plane\", point = [0.5, {}{}], normal = [0.0, 1.0{}]", thick, mid, z0)))
+            ASSERT_NEAR(h, thick, 1e-15);
+    const State s(
+        test::height_scene(D, fmt::format("liquid = [ {{ shape = \"sphere\", centre = [0.5, -0.99{}], radius = 1.0 }} ]\nterrain = {{ "
+                                          "kind = \"formula\", height = \"0\" }}\n",
+                                          mid)));
+    for (int k = 0; k < s.plane.nz; ++k)
+        for (int i = 0; i < s.plane.nx; ++i) {
+            const real r2 = std::pow(s.plane.x(i) - 0.5, 2) + (D == 2 ? 0 : std::pow(s.plane.z(k) - 0.75, 2));
+            ASSERT_NEAR(s.h[s.plane.at(i, k)], r2 < 1 ? std::max(0.0, std::sqrt(1 - r2) - 0.99) : 0, 1e-15) << i << ' ' << k;
+        }
 }

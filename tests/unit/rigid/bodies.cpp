@@ -37,6 +37,18 @@ TEST("mass and moments of inertia are those of the textbook") {
     EXPECT_NEAR(flat[0].mass_matrix()[2][2], 3.0 * (0.5 * 0.25 + 0.04), 1e-12);  // Steiner
 }
 
+TEST("a turn carries a box through space as far as its corners, a ball that glides not at all, one off its centre by as much as that") {
+    const auto speed = [](const std::string& shape) {
+        Bodies<2> bodies(body_scene(2, "bodies = [ { density = 1.0, spin = [3.0], velocity = [0.5, 0.0], " + shape + " } ]"));
+        return bodies[0].max_speed();
+    };
+    const std::string ball = "shape = \"sphere\", centre = [2.0, 2.0], radius = 0.5";
+    EXPECT_EQ(speed(ball), 0.5);
+    EXPECT_NEAR(speed(ball + ", centre_of_mass = [2.0, 1.8]"), 0.5 + 3 * 0.2, 1e-15);
+    EXPECT_NEAR(speed(ball + ", slip = \"no\""), 0.5 + 3 * std::sqrt(0.5), 1e-15);  // it takes the fluid along: to its box's corners
+    EXPECT_NEAR(speed("shape = \"box\", min = [1.0, 1.0], max = [1.6, 1.8]"), 0.5 + 3 * 0.5, 1e-15);
+}
+
 TEST("the inertia tensor turns with the body") {
     Bodies<3> bodies(body_scene(3, "bodies = [ { shape = \"box\", min = [1.0, 1.0, 1.0], max = [2.0, 1.5, 1.2], density = 500.0 } ]"));
     const auto before = bodies[0].mass_matrix();
@@ -45,6 +57,49 @@ TEST("the inertia tensor turns with the body") {
     EXPECT_NEAR(after[3][3], before[4][4], 1e-12);
     EXPECT_NEAR(after[4][4], before[3][3], 1e-12);
     EXPECT_NEAR(after[5][5], before[5][5], 1e-12);
+}
+
+TEST("a body that begins through a wall, in a solid or in another body is refused with both names and the depth; one that touches is not") {
+    const auto says = [](int dim, const std::string& lines, const std::string& words) {
+        const std::string text = refusal(dim, lines);
+        EXPECT_NE(text.find(words), std::string::npos) << lines << '\n' << text;
+    };
+    const std::string ball = "bodies = [ { name = \"float\", shape = \"sphere\", radius = 0.5, density = 1.0, centre = ";
+    says(2, ball + "[1.0, 3.6] } ]", "bodies[0] (\"float\") begins 0.1 m through the wall y_max at y = 4 m");
+    says(2, ball + "[1.0, 3.6], fixed = [\"x\", \"y\"] } ]", "0.1 m through the wall");
+    says(2, ball + "[0.3, 1.0] } ]", "begins 0.2 m through the wall x_min at x = 0 m");
+    says(3, ball + "[1.0, 1.0, 3.75] } ]", "begins 0.25 m through the wall z_max at z = 4 m");
+    says(2, ball + "[0.5, 3.5] } ]", "accepted");                                       // it touches two walls
+    says(2, ball + "[1.0, 3.5004] } ]", "accepted");                                    // within a thousandth of its radius
+    says(2, ball + "[1.0, 3.6], fixed = [\"x\", \"y\", \"turning\"] } ]", "accepted");  // nothing can push it
+    for (const int dim : {2, 3}) {
+        const std::string z = dim == 2 ? "" : ", 1.0", at = "[1.0, 1.0" + z + "] } ]\n";
+        const auto box = [&](const std::string& low, const std::string& high) {
+            return "solids = [ { shape = \"box\", min = [" + low + (dim == 2 ? "" : ", 0.0") + "], max = [" + high +
+                   (dim == 2 ? "" : ", 4.0") + "] } ]";
+        };
+        says(dim, ball + at + box("0.0, 0.0", "4.0, 0.6"), "bodies[0] (\"float\") begins 0.1 m inside solids[0]");
+        says(dim, ball + at + box("0.0, 0.0", "4.0, 0.5"), "accepted");
+        says(dim, ball + at + box("0.0, 0.0", "4.0, 4.0"), "m inside solids[0]");   // it is wholly inside
+        says(dim, ball + at + box("0.97, 0.7", "1.0, 1.9"), "m inside solids[0]");  // a plate through it
+        says(dim, ball + at + box("0.0, 1.2", "0.9, 1.23"), "m inside solids[0]");
+    }
+    // Two bars that cross away from where they have contact spheres: 0.01 m is the width of each.
+    says(2,
+         "bodies = [ { shape = \"box\", min = [1.0, 1.0], max = [3.0, 1.01], density = 1.0 }, "
+         "{ shape = \"box\", min = [1.3, 0.2], max = [1.31, 3.0], density = 1.0 } ]",
+         "bodies[0] and bodies[1] begin in the same place: 0.009");
+    // A solid counts where it is at t = 0, turned as its motion says.
+    says(2,
+         ball +
+             "[2.0, 1.0] } ]\nsolids = [ { shape = \"box\", min = [0.5, 2.9], max = [3.5, 3.1], motion = { kind = \"keyframes\", centre = "
+             "[2.0, 3.0], frames = [ { t = 0.0, angle = 1.5707963 }, { t = 1.0 } ] } } ]",
+         "accepted");
+    says(2,
+         ball +
+             "[2.0, 1.1] } ]\nsolids = [ { shape = \"box\", min = [0.5, 2.9], max = [3.5, 3.1], motion = { kind = \"keyframes\", centre = "
+             "[2.0, 3.0], frames = [ { t = 0.0, angle = 1.5707963 }, { t = 1.0 } ] } } ]",
+         "inside solids[0]");
 }
 
 TEST("what cannot be a body is refused, with the reason") {

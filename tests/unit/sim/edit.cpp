@@ -278,6 +278,40 @@ TEST("particles on a device are moved, pushed, added and taken out; the walls ho
     move_push_add_and_take_out(on_device);
 }
 
+TEST("while a field is edited the simulation neither steps nor changes otherwise, and goes on after it") {
+    Simulation simulation = made(drop("sph", 16));
+    const std::string before = state_of(simulation);
+    const std::vector<Vec<3>> at{{{0.1, 0.1, 0}}}, still{{{0, 0, 0}}};
+    const std::vector<std::size_t> which{0};
+    Checkpoint saved;
+    simulation.save(saved);
+    const std::vector<std::pair<std::string, std::function<void()>>> changes{
+        {"steps", [&] { simulation.step(); }},
+        {"steps", [&] { simulation.run_until(0.1); }},
+        {"a key changes", [&] { simulation.set("time.end", 0.3); }},
+        {"another field is edited", [&] { simulation.edit("velocity", [](FieldEdit&) {}); }},
+        {"another field is edited", [&] { simulation.edit("position", [](FieldEdit&) {}); }},
+        {"particles are added", [&] { simulation.add_particles("particles", at, still); }},
+        {"particles are removed", [&] { simulation.remove_particles("particles", which); }},
+        {"from a checkpoint", [&] { simulation.restore(saved); }},
+    };
+    for (const auto& [what, change] : changes) {
+        const std::string told = refusal([&] {
+            simulation.edit("velocity", [&](FieldEdit& u) {
+                fill(u, {1, 0});
+                change();
+            });
+        });
+        expect_in(told, "\"particles.velocity\" is being edited");
+        expect_in(told, what);
+        EXPECT_EQ(state_of(simulation), before) << what;
+    }
+    EXPECT_EQ(simulation.steps(), 0);
+    simulation.edit("velocity", [](FieldEdit& u) { fill(u, {0.25, 0}); });
+    EXPECT_EQ(integral(simulation, "max_speed"), 0.25);
+    simulation.step();
+}
+
 TEST("a depth that is raised keeps its velocity and is counted as poured") {
     Simulation simulation = made(square("heightfield", 16)
                                      .set("effects.gravity.g", {0, -9.81})

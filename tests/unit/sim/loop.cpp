@@ -100,9 +100,30 @@ TEST("a time step that vanishes is a failure like any other: step, time, quantit
         EXPECT_EQ(failure.time, simulation.time());
         EXPECT_GT(failure.time, 0);
         EXPECT_NE(text.find("step 21, t = "), std::string::npos) << text;
-        EXPECT_NE(text.find("time step: the advised time step is 1e-20 s"), std::string::npos) << text;
+        EXPECT_NE(text.find("time step: the advised time step is 1e-20 s (the longest was 0.0"), std::string::npos) << text;
+        EXPECT_NE(text.find("time no longer advances"), std::string::npos) << text;
+        // The fake's velocity along an axis is (a + 1) x_a + t: fastest where y is 1, of cells the upper row's face.
+        EXPECT_NE(text.find("the fastest flow moves at 2."), std::string::npos) << text;
+        EXPECT_NE(text.find("m/s at [0.06"), std::string::npos) << text;
+        EXPECT_NE(text.find("(cell 0, 8)"), std::string::npos) << text;
+        // Its pressure is 3 x - 2 y.
+        EXPECT_NE(text.find("the largest pressure is 2.69 Pa at [0.9375, 0.0625] m (cell 7, 0)"), std::string::npos) << text;
     }
     EXPECT_TRUE(std::filesystem::exists(weir::sim::last_good_file(folder)));
+}
+
+TEST("a step that has fallen to a millionth of what was wanted, and a billionth of the run, ends it") {
+    auto simulation = fake_simulation("stable_dt = 1e-13\n" + scene);
+    try {
+        simulation.step();
+        FAIL() << "it would take a hundred thousand years";
+    } catch (const weir::NumericalFailure& failure) {
+        EXPECT_EQ(failure.step, 1);
+        EXPECT_NE(std::string(failure.what()).find("the longest stable step is 1e-13 s (the longest was 0.0"), std::string::npos)
+            << failure.what();
+    }
+    auto slow = fake_simulation("stable_dt = 1e-6\n" + scene);  // ten thousand parts are a nuisance, no end
+    EXPECT_NO_THROW(slow.step());
 }
 
 TEST("checkpoints are saved every so many steps, and at the end, so that a later end can be asked for") {
