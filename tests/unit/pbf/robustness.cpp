@@ -81,8 +81,13 @@ TEST("walls that would do nothing are refused: an inflow, and what sticks") {
         EXPECT_THROW(test::pbf_solver<2>(test::pbf_scene<2>(test::box<2>(0.5, 0.5, 0.5), "", more)), scene::BadScene) << more;
 }
 
-TEST("the advised step divides a frame evenly, is that of the fastest flow, and never changes") {
-    const auto scene = test::pbf_scene<2>(test::box<2>(1, 1, 1), "", "output.every = 0.1");
+TEST("the advised step divides the run evenly, or a frame where it is met exactly, is that of the fastest flow, and never changes") {
+    const auto scene = test::pbf_scene<2>(test::box<2>(1, 1, 1), "", "output = { every = 0.1, at = \"exact\" }");
+    const auto advised = [&](const std::string& more) {
+        return test::pbf_solver<2>(test::pbf_scene<2>(test::box<2>(1, 1, 1), "", more))->advised_dt();
+    };
+    EXPECT_EQ(advised("output.every = 0.1"), advised(""));
+    EXPECT_EQ(advised("output.every = 0.0173"), advised(""));
     auto solver = test::pbf_solver<2>(scene);
     const real dt = solver->advised_dt(), fall = std::sqrt(2 * 9.81 * 0.9375);  // from the highest particle
     EXPECT_LE(dt, 0.5 * 0.125 / fall);
