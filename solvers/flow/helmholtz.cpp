@@ -56,9 +56,11 @@ real Helmholtz<D>::dot(const Grid<real, D>& x, const Grid<real, D>& y) const {
 template <int D>
 void Helmholtz<D>::begin(const Grid<real, D>& r, const WallRows<D>& walls) {
     fill_planes(direction_, r, boundary_);
-    if (walls.empty()) return fill_end_planes(direction_, boundary_);
-    walls.each([&](const Index<D>& I, real, real scale) { direction_(I) *= scale; });
-    fill_ghosts(direction_, boundary_, 1);
+    if (!walls.empty()) {
+        walls.each([&](const Index<D>& I, real, real scale) { direction_(I) *= scale; });
+        for_each_plane(0, direction_.extent()[D - 1], [&](int plane) { fill_plane_ghosts(direction_, boundary_, plane); });
+    }
+    fill_end_planes(direction_, boundary_);  // on all ranks, whoever has walls
 }
 
 template <int D>

@@ -397,7 +397,8 @@ void FlowSolver<D>::meet_walls(real now, real last) {
     const auto timed = passes_.time("solids");
     solids_.solids().set_time(now);
     walls_->find(state_, solids_, now, last);
-    for (int a = 0; state_.grip && a < D; ++a)
+    const bool grips = state_.grip && !state_.grip->takes_part[0].empty();  // once bodies have been found
+    for (int a = 0; grips && a < D; ++a)
         for (const HeldFace<D>& f : walls_->held(a)) state_.grip->takes_part[static_cast<std::size_t>(a)](f.face) = 0;
 }
 

@@ -70,7 +70,9 @@ void SolidWalls<D>::find(const MacState<D>& s, const SolidPlacement<D>& placemen
     const real largest = *std::max_element(s.u.h.begin(), s.u.h.end());
     // no solid goes farther than this from where it was placed, unless it starts from rest faster than the fluid beside it
     const real margin = placement.moving() ? (0.1 + 2 * (now - last) * placement.max_rate(s)) * largest : 0;
-    stick_ = false;
+    stick_ = false;  // the same on all ranks, whoever has walls
+    for (std::size_t k = 0; k < placement.solids().count(); ++k)
+        stick_ = stick_ || (placement.solids()[k].no_slip && !placement.solids()[k].free);
     for (int a = 0; a < D; ++a) {
         set_mask(s, placement, a, margin);
         find_nodes(s, placement, a, last);
@@ -125,7 +127,6 @@ void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& pl
             }
         if (walls_[at].size() == begin) return;
         nodes_[at].push_back({I, begin, walls_[at].size()});
-        for (std::size_t i = begin; i < walls_[at].size(); ++i) stick_ = stick_ || walls_[at][i].no_slip;
     });
 }
 

@@ -55,7 +55,7 @@ public:
     void find(const MacState<D>& s, const SolidPlacement<D>& placement, real now, real last);
     bool found() const;
     void forget() { any_ = false; }
-    /// Whether the fluid sticks to any of them.
+    /// Whether the fluid sticks to any solid.
     bool stick() const { return stick_; }
 
     /// 1 on the faces whose velocity the fluid's viscosity changes, else 0, with ghosts.

@@ -171,12 +171,17 @@ case $part in
     compare norms "2 1,3 2,4 1" $vortices $norms
     for run in norms-2-1 norms-3-2 norms-4-1; do measures_alike norms $run; done
     holds_own norms-2-1 norms-4-1
+    for advection in maccormack conservative; do
+        compare stick-$advection "2 1,1 2" "$scenes/ranks_no_slip.toml" --set "scheme.advection=\"$advection\""
+    done
+    poisoned 3 1 "$scenes/ranks_no_slip.toml"
     compare energy "2 1" $vortices --measure flow.energy
     measures_alike energy energy-2-1
     holds_whole energy-2-1
     ;;
 3d)
     compare all "2 1,2 2,3 1,3 2,4 1,4 2" "$deep"
+    compare stick "2 1,3 1" "$scenes/ranks_no_slip_3d.toml"
     compare pressed "2 1,3 2,4 1" "$deep" --set 'probes=[{name="side",kind="wall_pressure",at=[0.0,0.3,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.24,0.28]}]'
     holds_own pressed-3-2
     ;;

@@ -36,13 +36,13 @@ real torque_error(int cells) {
 
 }  // namespace
 
-TEST("the torque on a disc that turns in a ring is exact to what the ring's place is known by, and converges") {
+TEST("the torque on a disc that turns in a ring is exact to a quarter of a cell of the ring's place, and converges") {
     const OneThread alone;
-    // The torque is as 1/(1/a^2 - 1/b^2). Solids that stand are felt at the faces that they close, up to a cell behind their wall: with
-    // db = h the torque is less by 2 a^2/(b^2 - a^2) h/b = 2/3 of h/b. The disc's own part, of second order, is less.
+    // The torque is as 1/(1/a^2 - 1/b^2): of a ring that stood a quarter of a cell too deep, db = h/4, it would be less by
+    // 2 a^2/(b^2 - a^2) db/b = 1/6 of h/b.
     const real coarse = torque_error(25), fine = torque_error(50);
-    EXPECT_LT(coarse, 2.0 / 3 * 0.1);
-    EXPECT_LT(fine, 2.0 / 3 * 0.05);
+    EXPECT_LT(coarse, 1.0 / 6 * 0.1);
+    EXPECT_LT(fine, 1.0 / 6 * 0.05);
     EXPECT_LT(fine, coarse);
 }
 
