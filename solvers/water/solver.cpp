@@ -61,8 +61,9 @@ void Water<D>::place_solids(real t) {
         for (std::size_t i = at; i < at + static_cast<std::size_t>(frame_.cells[0]); ++i)
             state_.cells[i] = closed_[i] ? poisson::Cell::solid : poisson::Cell::fluid;
     });
-    surface_.set_closed(closed_);
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
+    surface_.set_closed(closed_, &in_solids_.closed());
+    surface_.set_open_parts(solids_);
 }
 
 /// Where solids have been placed anew.
@@ -110,7 +111,7 @@ void Water<D>::evaporate(real dt) {
     heat_->leaves(state_, lost, volume_target_);
     volume_target_ -= lost;
     if (lost < 0) return;
-    markers_.retain([&](std::size_t p) { return sample_cells(surface_.phi, Stencil<D>(frame_, markers_.position(p))) < 0; });
+    markers_.retain([&](std::size_t p) { return surface_.at(markers_.position(p)) < 0; });
     markers_.sort(frame_);
 }
 
@@ -289,14 +290,22 @@ void Water<D>::curvature() {
         if (std::abs(phi(I)) > 2 * norm(frame_.h)) return;
         Vec<D> g;
         real laplacian = 0, bending = 0, g2 = 0;
+        Around<D> around;
+        const bool walled = surface_.look(I, 1, around);
+        const auto near = [&](int a, int i, int b, int j) {
+            if (!walled) return phi(frame_.near(frame_.near(I, a, i), b, j));
+            Index<D> by{};
+            by[a] += i, by[b] += j;
+            return around(by);
+        };
         for (int a = 0; a < D; ++a) {
-            const real lower = phi(frame_.near(I, a, -1)), upper = phi(frame_.near(I, a, 1));
+            const real lower = near(a, -1, a, 0), upper = near(a, 1, a, 0);
             g[a] = 0.5 * (upper - lower) * frame_.inv_h[a];
             g2 += g[a] * g[a];
         }
         for (int a = 0; a < D; ++a)
             for (int b = 0; b < D; ++b) {
-                const auto at = [&](int i, int j) { return phi(frame_.near(frame_.near(I, a, i), b, j)); };
+                const auto at = [&](int i, int j) { return near(a, i, b, j); };
                 const real second = a == b ? (at(1, 0) - 2 * phi(I) + at(-1, 0)) * frame_.inv_h[a] * frame_.inv_h[a]
                                            : 0.25 * (at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) * frame_.inv_h[a] * frame_.inv_h[b];
                 if (a == b) laplacian += second;
