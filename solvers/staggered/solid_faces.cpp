@@ -1,6 +1,7 @@
 #include "staggered/solid_faces.hpp"
 
 #include "core/parallel.hpp"
+#include "staggered/parted_cells.hpp"
 #include "staggered/rows.hpp"
 
 #include <algorithm>
@@ -52,6 +53,12 @@ bool open_row(const Grid<real, D>& corner, int a, const Index<D>& I, int count, 
         velocity[i] = 0;
     }
     return least > touching;
+}
+
+template <int D>
+Index<D> corner_of_cell(Index<D> I, std::size_t corner) {
+    for (int d = 0; d < D; ++d) I[d] += static_cast<int>(corner >> d & 1);
+    return I;
 }
 
 /// f(I, count) for every row along x of a box, of the planes of q that are held here, threaded over the slowest axis.
@@ -111,6 +118,7 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
     for (std::size_t box = 0; box < changed_.size(); ++box) {
         place_corners(s, box);
         place_faces(s, box);
+        close_parted_cells(s, box);
         place_cells(s, box);
     }
     extends_ = false;
@@ -146,6 +154,39 @@ void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
             }
         });
     }
+}
+
+/// Cells that a thin solid parts, all their faces: it blocks, whatever its thickness.
+template <int D>
+void SolidPlacement<D>::close_parted_cells(MacState<D>& s, std::size_t box) const {
+    const Vec<D>& h = s.u.h;
+    const auto distance = [&](const Vec<D>& x) { return solids_.distance(x, near_[box]); };
+    const real steepest = solids_.steepest(near_[box]), beside = 0.5 * steepest * *std::max_element(h.begin(), h.end());
+    changed_[box].rows([&](Index<D> I, int count) {
+        if (!s.solid.open[0].store().holds(I[D - 1])) return;
+        std::array<const real*, 1 << D> row;
+        for (std::size_t c = 0; c < row.size(); ++c) row[c] = &corner_(corner_of_cell(I, c));
+        for (int i = 0; i < count; ++i, ++I[0]) {
+            Corners<D> at;
+            for (std::size_t c = 0; c < row.size(); ++c) at[c] = row[c][i];
+            const auto [least, most] = std::minmax_element(at.begin(), at.end());
+            if (*least > beside || *most <= 0) continue;
+            Vec<D> x;
+            for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + h[d] * I[d];
+            if (is_parted<D>(distance, at, x, h, steepest)) close(s, box, I);
+        }
+    });
+}
+
+template <int D>
+void SolidPlacement<D>::close(MacState<D>& s, std::size_t box, const Index<D>& I) const {
+    for (int a = 0; a < D; ++a)
+        for (const Index<D>& F : {I, I + e<D>(a)}) {
+            auto& open = s.solid.open[static_cast<std::size_t>(a)];
+            if (!open.store().holds(F[D - 1])) continue;
+            open(F) = 0;
+            s.solid.velocity[static_cast<std::size_t>(a)](F) = solids_.velocity(s.u.face_centre(a, F), near_[box])[a];
+        }
 }
 
 template <int D>
