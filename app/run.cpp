@@ -136,6 +136,7 @@ public:
         tell_ranks(simulation, {}, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
+        told_ = simulation.warnings().size();
         if (checkpoint > 0) log_.resume(simulation.steps());
         by_first_rank([&] { write_log("running"); });  // where the disk fills later, there is a file that can still say so
     }
@@ -305,6 +306,7 @@ int simulate(const RunArguments& arguments) {
                      effect.c_str());
     if (const std::string remark = rigid::remark_on_density(simulation.scene()); !remark.empty())
         std::fprintf(stderr, "%s: %s\n", simulation.scene().file().c_str(), remark.c_str());
+    for (const std::string& warning : simulation.warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
     if (arguments.explain) {
         const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
         std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation)).c_str(), stdout);

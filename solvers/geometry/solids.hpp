@@ -5,7 +5,10 @@
 #include "geometry/shape.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -107,17 +110,51 @@ real fraction_positive(real a, real b);
 /// squares with linear edges (Ng, Min & Gibou 2009). The saddle is resolved by the mean.
 real fraction_positive(const std::array<real, 4>& corner);
 
-/// Open fraction of the face on the lower side along `axis` of the cell whose lower corner is x: `distance` at the corners of the face.
+/// Parts of a cell's edge: nearer to a corner than this, a solid's surface passes through it. Round-off of a distance is far below.
+inline constexpr real touching = 1e-6;
+
+/// A corner's distance d as its face counts it. On the surface itself it says nothing about the face: a solid may lie on the face, or touch
+/// it at the corner alone. So a little way along the face the distance decides, and the corner is just inside or just outside.
 template <int D, class Distance>
-real open_fraction(const Distance& distance, const Vec<D>& x, const Vec<D>& h, int axis) {
+real distance_for_face(real d, const Distance& distance, const Vec<D>& corner, const Vec<D>& centre, real h_min) {
+    if (std::abs(d) > touching * h_min) return d;
+    return distance(corner + 1e-3 * (centre - corner)) > touching * h_min ? 0.0 : -std::numeric_limits<real>::min();
+}
+
+/// Corners of the face on the lower side along `axis` of the cell whose lower corner is x, in order around it.
+template <int D>
+std::array<Vec<D>, 1 << (D - 1)> face_corners(const Vec<D>& x, const Vec<D>& h, int axis) {
     const int b = (axis + 1) % D;
+    const Vec<D> eb = h[b] * Vec<D>::unit(b);
     if constexpr (D == 2) {
-        return fraction_positive(distance(x), distance(x + h[b] * Vec<D>::unit(b)));
+        return {x, x + eb};
     } else {
         const int c = (axis + 2) % D;
-        const Vec<D> eb = h[b] * Vec<D>::unit(b), ec = h[c] * Vec<D>::unit(c);
-        return fraction_positive({distance(x), distance(x + eb), distance(x + eb + ec), distance(x + ec)});
+        const Vec<D> ec = h[c] * Vec<D>::unit(c);
+        return {x, x + eb, x + eb + ec, x + ec};
     }
+}
+
+/// Open fraction of a face: `at` its corners the distances, in order around it.
+template <int D, class Distance>
+real open_fraction(const Distance& distance, std::array<real, 1 << (D - 1)> at, const Vec<D>& x, const Vec<D>& h, int axis) {
+    const auto corner = face_corners<D>(x, h, axis);
+    Vec<D> centre{};
+    for (const Vec<D>& c : corner) centre = centre + (1.0 / static_cast<real>(corner.size())) * c;
+    const real h_min = *std::min_element(h.begin(), h.end());
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = distance_for_face<D>(at[i], distance, corner[i], centre, h_min);
+    if constexpr (D == 2)
+        return fraction_positive(at[0], at[1]);
+    else
+        return fraction_positive(at);
+}
+/// Of the face on the lower side along `axis` of the cell whose lower corner is x.
+template <int D, class Distance>
+real open_fraction(const Distance& distance, const Vec<D>& x, const Vec<D>& h, int axis) {
+    const auto corner = face_corners<D>(x, h, axis);
+    std::array<real, 1 << (D - 1)> at;
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = distance(corner[i]);
+    return open_fraction<D>(distance, at, x, h, axis);
 }
 
 }  // namespace weir::geometry

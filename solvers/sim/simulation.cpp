@@ -15,6 +15,7 @@
 #include "sim/room.hpp"
 #include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
+#include "staggered/thin_solids.hpp"
 
 #include <fmt/format.h>
 
@@ -117,6 +118,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
         check_output_fields(scene_, solver_->fields());
     }
     refuse_ignored(scene_, kind_);
+    for (const std::string& remark : staggered::remarks_on_thin_solids(scene_)) warnings_.push_back(scene_.file() + ": " + remark);
     measure();
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }

@@ -1,6 +1,7 @@
 #include "staggered/solid_faces.hpp"
 
 #include "core/parallel.hpp"
+#include "staggered/parted_cells.hpp"
 #include "staggered/rows.hpp"
 
 #include <algorithm>
@@ -13,18 +14,17 @@ using poisson::Cell;
 namespace {
 
 /// Open fraction of the face on the lower side along `a` of cell I, from the distances at its corners.
-template <int D>
-real fraction(const Grid<real, D>& corner, int a, const Index<D>& I) {
+template <int D, class Distance>
+real fraction(const Grid<real, D>& corner, const Distance& distance, const MacVelocity<D>& u, int a, const Index<D>& I) {
     const Index<D> eb = e<D>((a + 1) % D);
-    real open = 0;
-    if constexpr (D == 2) {
-        open = geometry::fraction_positive(corner(I), corner(I + eb));
-    } else {
+    std::array<real, 1 << (D - 1)> at{corner(I), corner(I + eb)};
+    if constexpr (D == 3) {
         const Index<D> ec = e<D>((a + 2) % D);
-        const std::array<real, 4> at{corner(I), corner(I + eb), corner(I + eb + ec), corner(I + ec)};
-        if (std::min(std::min(at[0], at[1]), std::min(at[2], at[3])) >= 0) return 1;  // most of them
-        open = geometry::fraction_positive(at);
+        at[2] = corner(I + eb + ec), at[3] = corner(I + ec);
     }
+    Vec<D> x;
+    for (int d = 0; d < D; ++d) x[d] = u.origin[d] + u.h[d] * I[d];
+    const real open = geometry::open_fraction<D>(distance, at, x, u.h, a);
     return open < least_open_fraction ? 0 : open;
 }
 
@@ -36,23 +36,29 @@ bool is_amid(const Grid<real, D>& q, int plane) {
     return all;
 }
 
-/// Of `count` faces of a row the fractions, 1 where no corner lies inside a solid and 0 elsewhere, and no velocity; answers whether all
-/// are 1.
+/// Of `count` faces of a row the fractions, 1 where all corners lie further from solids than `touching` and 0 elsewhere, and no velocity;
+/// answers whether all are 1.
 template <int D>
-bool open_row(const Grid<real, D>& corner, int a, const Index<D>& I, int count, real* open, real* velocity) {
+bool open_row(const Grid<real, D>& corner, int a, const Index<D>& I, int count, real touching, real* open, real* velocity) {
     std::array<const real*, 1 << (D - 1)> at;
     at[0] = &corner(I), at[1] = &corner(I + e<D>((a + 1) % D));
     if constexpr (D == 3) at[2] = &corner(I + e<D>((a + 2) % D)), at[3] = &corner(I + e<D>((a + 1) % D) + e<D>((a + 2) % D));
-    real least = 0;
+    real least = infinity;
 #pragma omp simd reduction(min : least)
     for (int i = 0; i < count; ++i) {
         real d = at[0][i] < at[1][i] ? at[0][i] : at[1][i];
         for (std::size_t k = 2; k < at.size(); ++k) d = at[k][i] < d ? at[k][i] : d;
         least = d < least ? d : least;
-        open[i] = d < 0 ? 0 : 1;
+        open[i] = d > touching ? 1 : 0;
         velocity[i] = 0;
     }
-    return least >= 0;
+    return least > touching;
+}
+
+template <int D>
+Index<D> corner_of_cell(Index<D> I, std::size_t corner) {
+    for (int d = 0; d < D; ++d) I[d] += static_cast<int>(corner >> d & 1);
+    return I;
 }
 
 /// f(I, count) for every row along x of a box, of the planes of q that are held here, threaded over the slowest axis.
@@ -112,6 +118,8 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
     for (std::size_t box = 0; box < changed_.size(); ++box) {
         place_corners(s, box);
         place_faces(s, box);
+        close_parted_cells(s, box);
+        place_cells(s, box);
     }
     extends_ = false;
     if (alone && moving()) rate_ = find_rate(s);
@@ -133,18 +141,58 @@ void SolidPlacement<D>::place_corners(const MacState<D>& s, std::size_t box) {
 template <int D>
 void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
     const Index<D>&lo = changed_[box].lo, hi = changed_[box].hi;
+    const real touching = geometry::touching * *std::min_element(s.u.h.begin(), s.u.h.end());
+    const auto distance = [&](const Vec<D>& x) { return solids_.distance(x, near_[box]); };
     for (int a = 0; a < D; ++a) {
         auto &open = s.solid.open[static_cast<std::size_t>(a)], &velocity = s.solid.velocity[static_cast<std::size_t>(a)];
         for_each_held_row(open, lo, hi + e<D>(a), [&](Index<D> I, int count) {
             real *w = &open(I), *v = &velocity(I);
-            const bool all_open = open_row(corner_, a, I, count, w, v);
+            const bool all_open = open_row(corner_, a, I, count, touching, w, v);
             for (int i = 0; !all_open && i < count; ++i, ++I[0]) {
                 if (w[i] == 1) continue;
-                w[i] = fraction(corner_, a, I);
+                w[i] = fraction(corner_, distance, s.u, a, I);
                 if (w[i] < 1) v[i] = solids_.velocity(s.u.face_centre(a, I), near_[box])[a];
             }
         });
     }
+}
+
+/// Cells that a thin solid parts, all their faces: it blocks, whatever its thickness.
+template <int D>
+void SolidPlacement<D>::close_parted_cells(MacState<D>& s, std::size_t box) const {
+    const Vec<D>& h = s.u.h;
+    const auto distance = [&](const Vec<D>& x) { return solids_.distance(x, near_[box]); };
+    const real steepest = solids_.steepest(near_[box]), beside = 0.5 * steepest * *std::max_element(h.begin(), h.end());
+    changed_[box].rows([&](Index<D> I, int count) {
+        if (!s.solid.open[0].store().holds(I[D - 1])) return;
+        std::array<const real*, 1 << D> row;
+        for (std::size_t c = 0; c < row.size(); ++c) row[c] = &corner_(corner_of_cell(I, c));
+        for (int i = 0; i < count; ++i, ++I[0]) {
+            Corners<D> at;
+            for (std::size_t c = 0; c < row.size(); ++c) at[c] = row[c][i];
+            const auto [least, most] = std::minmax_element(at.begin(), at.end());
+            if (*least > beside || *most <= 0) continue;
+            Vec<D> x;
+            for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + h[d] * I[d];
+            if (is_parted<D>(distance, at, x, h, steepest)) close(s, box, I);
+        }
+    });
+}
+
+template <int D>
+void SolidPlacement<D>::close(MacState<D>& s, std::size_t box, const Index<D>& I) const {
+    for (int a = 0; a < D; ++a)
+        for (const Index<D>& F : {I, I + e<D>(a)}) {
+            auto& open = s.solid.open[static_cast<std::size_t>(a)];
+            if (!open.store().holds(F[D - 1])) continue;
+            open(F) = 0;
+            s.solid.velocity[static_cast<std::size_t>(a)](F) = solids_.velocity(s.u.face_centre(a, F), near_[box])[a];
+        }
+}
+
+template <int D>
+void SolidPlacement<D>::place_cells(MacState<D>& s, std::size_t box) const {
+    const Index<D>&lo = changed_[box].lo, hi = changed_[box].hi;
     for_each_held_row(s.cells, lo, hi, [&](const Index<D>& I, int count) {
         std::array<const real*, 2 * D> w;
         for (int a = 0; a < D; ++a) {

@@ -111,6 +111,9 @@ private:
     void find_changed(const MacState<D>& s);
     void place_corners(const MacState<D>& s, std::size_t box);
     void place_faces(MacState<D>& s, std::size_t box) const;
+    void close_parted_cells(MacState<D>& s, std::size_t box) const;
+    void close(MacState<D>& s, std::size_t box, const Index<D>& I) const;
+    void place_cells(MacState<D>& s, std::size_t box) const;
     CellBox<D> cells_of(const MacState<D>& s, std::size_t solid) const;
     void find_extended(const MacState<D>& s);
     real find_rate(const MacState<D>& s) const;

@@ -55,7 +55,7 @@ void LevelSet<D>::for_each_open_beside_closed(const std::vector<char>& planes, F
 static constexpr int skin_layers = 3;
 
 template <int D>
-void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed) {
+void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::array<std::vector<Index<D>>, D>* faces) {
     closed_ = closed;
     const bool alone = closed_.store().windowed();
     if (alone) {
@@ -64,6 +64,32 @@ void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed) {
     }
     find_skin(planes_near(frame_.cells[D - 1], skin_layers, frame_.periodic(D - 1)));
     if (slabs().several()) share_skin(alone);
+    walls_.find(frame_, closed_, skin_, faces, wide() + 1);
+}
+
+/// A plane through a cell, by the mean and the slopes of the distances at its corners.
+template <int D>
+void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
+    if (open_part_.empty()) open_part_ = Grid<real, D>(frame_.cells, 1);
+    const bool ring = frame_.periodic(D - 1), alone = open_part_.store().windowed();
+    for (const CellBox<D>& box : solids.changed())
+        for_each_held(open_part_, box.lo, box.hi, [&](const Index<D>& I) {
+            if (alone && !is_own_plane(I[D - 1])) return;
+            real mean = 0, least = infinity;
+            Vec<D> slope{};
+            for (unsigned corner = 0; corner < 1U << D; ++corner) {
+                Index<D> J = I;
+                for (int d = 0; d < D; ++d) J[d] += static_cast<int>(corner >> d & 1U);
+                const real distance = solids.corner_distance(J);
+                least = std::min(least, distance);
+                mean += distance / (1 << D);
+                for (int d = 0; d < D; ++d) slope[d] += (corner >> d & 1U ? distance : -distance) / (1 << (D - 1));
+            }
+            open_part_(I) = least >= 0 ? 1 : fraction_below_plane<D>(-mean, -1.0 * slope);
+        });
+    if (!alone) return;
+    open_part_.store().open(wide() + 1, ring);
+    refresh(open_part_, ring, wide() + 1);
 }
 
 /// Closed cells beside open ones of these planes (none named: of all), and beside those, to skin_.
@@ -79,9 +105,11 @@ void LevelSet<D>::find_skin(const std::vector<char>& planes) {
         });
     };
     for_each_open_beside_closed(planes, add_neighbours);
+    skin_end_.assign(1, skin_.size());
     for (int layer = 1; layer < skin_layers; ++layer) {
         const std::size_t last = skin_.size();
         for (; first < last; ++first) add_neighbours(Index<D>(skin_[first]));
+        skin_end_.push_back(skin_.size());
     }
     for (const Index<D>& J : skin_) seen(J) = 0;
 }
@@ -100,29 +128,43 @@ void LevelSet<D>::share_skin(bool alone) {
         if (is_own_plane(I[D - 1])) near.push_back(phi.linear(I));
     std::sort(near.begin(), near.end());
     if (alone) rim = of_all_ranks(rim), near = of_all_ranks(near);
-    skin_of_ranks_.find(frame_, std::move(rim), near, skin_layers, skin_);
+    skin_of_ranks_.find(frame_, std::move(rim), near, skin_layers, skin_, skin_end_);
 }
 
-/// Mean of the neighbours that lie further out; skin_ goes inwards, so one pass suffices.
+static constexpr std::uint8_t continued = 254;  // no layer of the band
+
+/// Layer by layer, each from those that lie further out: the order of cells decides nothing.
 template <int D>
 void LevelSet<D>::continue_into_solids() {
     if (skin_.empty()) return;
     if (over_ranks()) return skin_of_ranks_.continue_into(phi, skin_);
-    for (const Index<D>& I : skin_) layer_(I) = 255;  // not continued yet
-    for (const Index<D>& I : skin_) {
-        real sum = 0;
-        int count = 0;
-        for (int d = 0; d < D; ++d)
-            for (const int by : {-1, 1}) {
-                Index<D> J = I;
-                if (!frame_.step(J, d, by) || (closed_(J) && layer_(J) != 254)) continue;
-                sum += phi(J);
-                ++count;
-            }
-        if (count > 0) phi(I) = sum / count;
-        layer_(I) = 254;
+    for (const Index<D>& I : skin_) layer_(I) = 0;
+    std::size_t first = 0;
+    for (const std::size_t last : skin_end_) {
+        continue_layer(first, last);
+        for (; first < last; ++first) layer_(skin_[first]) = continued;
     }
     for (const Index<D>& I : skin_) layer_(I) = 0;
+}
+
+/// The mean of the neighbours that are open or of a layer before.
+template <int D>
+void LevelSet<D>::continue_layer(std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+        real sum = 0;
+        int count = 0;
+        for (int d = 0; d < D; ++d) {
+            real pair = 0;  // the two sides are added first, so that a mirror changes nothing
+            for (const int by : {-1, 1}) {
+                Index<D> J = skin_[i];
+                if (!frame_.step(J, d, by) || (closed_(J) && layer_(J) != continued)) continue;
+                pair += phi(J);
+                ++count;
+            }
+            sum += pair;
+        }
+        if (count > 0) phi(skin_[i]) = sum / count;
+    }
 }
 
 template <int D>
@@ -150,11 +192,6 @@ void LevelSet<D>::advect(const MacVelocity<D>& u, real dt, int reach) {
 }
 
 namespace {
-
-/// Weights of four equidistant samples at part f of the way between the middle two (Catmull & Rom 1974); exact at samples.
-std::array<real, 4> catmull_rom(real f) {
-    return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
-}
 
 /// Linear interpolation of component a at d [cells] from the centre of cell I, at most half a cell away; both sides of I are inside.
 template <int D>
@@ -196,7 +233,52 @@ real LevelSet<D>::departed(const MacVelocity<D>& u, const Index<D>& I, real dt) 
         moved[a] = -dt * frame_.inv_h[a] * face_near(u[a], a, I, half);
         inner = std::abs(moved[a]) <= 1;
     }
-    return inner ? cubic_near(I, moved) : cubic(trace(u, frame_, frame_.centre(I), -dt, Trace::rk2));
+    if (inner) return sees_walls(I) ? cubic_on_this_side(I, moved) : cubic_near(I, moved);
+    const Vec<D> from = trace(u, frame_, frame_.centre(I), -dt, Trace::rk2);
+    if (!sees_walls(I)) return cubic(from);
+    for (int a = 0; a < D; ++a) {
+        moved[a] = (from[a] - frame_.centre(I)[a]) * frame_.inv_h[a];
+        if (frame_.periodic(a)) moved[a] -= frame_.cells[a] * std::rint(moved[a] / frame_.cells[a]);
+    }
+    return cubic_on_this_side(I, moved);
+}
+
+/// φ at d [cells] from the centre of cell I, which stands beside a thin wall: as far as a stencil reaches that is two cells wider.
+template <int D>
+real LevelSet<D>::cubic_on_this_side(const Index<D>& I, Vec<D> d) const {
+    constexpr int most = Around<D>::most - 1;
+    real furthest = 0;
+    for (int a = 0; a < D; ++a) {
+        d[a] = std::clamp<real>(d[a], -most, most);
+        furthest = std::max(furthest, std::abs(d[a]));
+    }
+    if (furthest == 0) return phi(I);
+    Around<D> around;
+    walls_.look(closed_, phi, I, furthest > 1 ? most + 1 : 2, around);
+    return around.cubic(d);
+}
+
+template <int D>
+bool LevelSet<D>::look(const Index<D>& I, int reach, Around<D>& to) const {
+    if (!sees_walls(I)) return false;
+    walls_.look(closed_, phi, I, reach, to);
+    return true;
+}
+
+template <int D>
+real LevelSet<D>::at(const Vec<D>& x) const {
+    const Index<D> I = frame_.cell_of(x);
+    Around<D> around;
+    if (!look(I, 1, around)) return sample_cells(phi, Stencil<D>(frame_, x));
+    Vec<D> d = x - frame_.centre(I);
+    for (int a = 0; a < D; ++a) d[a] = std::clamp<real>(d[a] * frame_.inv_h[a], -1, 1);
+    return around.linear(d);
+}
+
+template <int D>
+bool LevelSet<D>::passes(const Index<D>& I, int axis, int by) const {
+    Index<D> J = I;
+    return sees_walls(I) ? walls_.passes(closed_, I, axis, by, J) : frame_.step(J, axis, by);
 }
 
 /// φ at d [cells] from the centre of cell I, at most one cell away; two cells on either side of I are inside. As cubic(), but four samples
@@ -269,9 +351,13 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
     const auto [first, last] = markers.own(frame_);
     const auto find_escaped = [&](const Index<D>& I, std::size_t begin, std::size_t end) {
-        if (phi(I) < -diagonal_) return;
+        if (phi(I) < -diagonal_ || walls_.is_between(I)) return;  // inside a wall, a marker has no side
         CellNodes<D> nodes;
-        nodes.look_at(phi, frame_, I);
+        Around<D> around;
+        if (look(I, 1, around))
+            nodes.look_at(around);
+        else
+            nodes.look_at(phi, frame_, I);
         for (std::size_t p = begin; p < end; p += marker_lanes) {
             const int count = static_cast<int>(std::min<std::size_t>(marker_lanes, end - p));
             const Hats<D, false> hats(from_centre(frame_, I, load_positions(markers, p, count)));
@@ -309,22 +395,24 @@ std::size_t LevelSet<D>::count_airborne(const Markers<D>& markers) const {
     std::size_t count = 0;
     const auto [first, last] = markers.own(frame_);
     for_each_escaped([&, begin = first, end = last](std::size_t p) {
-        if (p >= begin && p < end) count += sample_cells(phi, Stencil<D>(frame_, markers.position(p))) > 0;
+        if (p >= begin && p < end) count += at(markers.position(p)) > 0;
     });
     return count;
 }
 
 template <int D>
 bool LevelSet<D>::escaped_across(const Vec<D>& x) const {
-    return sample_cells(phi, Stencil<D>(frame_, x)) > sure_side * width_at(frame_.cell_of(x));
+    return at(x) > sure_side * width_at(frame_.cell_of(x));
 }
 
 template <int D>
 void LevelSet<D>::join_sphere(const Vec<D>& x, real radius) {
     const Index<D> I = frame_.cell_of(x);
+    Around<D> around;
+    const bool beside_wall = look(I, 1, around);
     for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
         Index<D> J = I, unwrapped = I;
-        bool inside = true;
+        bool inside = !beside_wall || around.reached[static_cast<std::size_t>(corner)] != 0;
         for (int d = 0, rest = corner; d < D; ++d, rest /= 3) {
             const int by = rest % 3 - 1;
             unwrapped[d] += by;
@@ -375,7 +463,7 @@ void LevelSet<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t LevelSet<D>::bytes() const {
-    return phi.bytes() + layer_.bytes() + inside_.bytes() + closed_.bytes() + skin_of_ranks_.bytes() +
+    return phi.bytes() + layer_.bytes() + inside_.bytes() + closed_.bytes() + skin_of_ranks_.bytes() + walls_.bytes() + open_part_.bytes() +
            (band_.capacity() + skin_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) + escaped_.capacity() +
            own_.capacity() * sizeof(int);
 }

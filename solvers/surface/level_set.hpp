@@ -11,6 +11,7 @@
 #include "surface/level_set_ranks.hpp"
 #include "surface/marker_motion.hpp"
 #include "surface/markers.hpp"
+#include "surface/thin_walls.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -28,7 +29,17 @@ public:
     LevelSet(const Frame<D>& frame, int reach);
 
     /// Cells that are closed to the liquid. Their φ is continued from open cells, so that the surface meets a solid at right angles.
-    void set_closed(const Grid<std::uint8_t, D>& closed);
+    /// `faces`: those that are closed, of which some may lie between open cells.
+    void set_closed(const Grid<std::uint8_t, D>& closed, const std::array<std::vector<Index<D>>, D>* faces = nullptr);
+    /// The parts of cells that solids leave open, by the solids' distances at their corners; where the solids have been placed anew.
+    void set_open_parts(const SolidPlacement<D>& solids);
+    real open_part(const Index<D>& I) const { return open_part_.empty() ? 1 : open_part_(I); }
+    /// φ at x, on this side of walls.
+    real at(const Vec<D>& x) const;
+    /// φ around cell I as its side of a thin wall sees it; false, and nothing, where no wall is near: then phi has it.
+    bool look(const Index<D>& I, int reach, Around<D>& to) const;
+    /// Whether liquid passes from cell I to its neighbour, if there is one.
+    bool passes(const Index<D>& I, int axis, int by) const;
     /// Moves the surface by dt in the field u, which must be known throughout the band; `reach`: over ranks, how many planes beyond its
     /// cuts a rank reads.
     void advect(const MacVelocity<D>& u, real dt, int reach = 0);
@@ -64,7 +75,7 @@ public:
     /// Liquid part of a cell, in [0, 1], with φ lowered by `shift`: a plane in each half cell along every axis (exact for planes; a
     /// sheet or a drop thinner than a cell still counts for what it is).
     real fraction(const Index<D>& I, real shift = 0) const;
-    real volume() const;  // [m^D] of liquid in open cells
+    real volume() const;  // [m^D] of liquid in open cells, as far as solids leave them open
     real area() const;    // [m^(D−1)] of the surface, from the change of volume with φ
     std::size_t bytes() const;
 
@@ -72,6 +83,7 @@ private:
     template <class F>
     void for_each_open_beside_closed(const std::vector<char>& planes, F&& f) const;
     void find_skin(const std::vector<char>& planes);
+    void continue_layer(std::size_t first, std::size_t last);
     void share_skin(bool alone);
     void continue_into_solids();
     /// How wide the cell is across the surface next to it [m].
@@ -84,6 +96,10 @@ private:
     /// φ's change a cell towards the lower and the upper neighbour; beyond a wall, and
     /// where a neighbour's distance is not known, it goes on as on the other side.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
+    std::array<Vec<D>, 2> slopes_on_this_side(const Index<D>& I) const;
+    bool crosses_on_this_side(const Index<D>& I) const;
+    bool sees_walls(const Index<D>& I) const { return walls_.is_near(I) && closed_(I) == 0; }
+    bool joins(const Index<D>& I, int axis, int by) const;
     void find_inside();
     /// Planes beyond its cuts in which a rank finds the band: a cell of the last layer with a root among the rank's own is that far from
     /// the last of them.
@@ -107,6 +123,7 @@ private:
     real upwind_distance(const Index<D>& I, int layer) const;
     real departed(const MacVelocity<D>& u, const Index<D>& I, real dt) const;
     real cubic(const Vec<D>& x) const;
+    real cubic_on_this_side(const Index<D>& I, Vec<D> d) const;
     real cubic_near(const Index<D>& I, const Vec<D>& d) const;
 
     Frame<D> frame_;
@@ -121,6 +138,9 @@ private:
     std::vector<char> near_;  // over ranks: the planes in which the band is found
     BandOfRanks ranks_;
     SkinOfRanks<D> skin_of_ranks_;
+    std::vector<std::size_t> skin_end_;  // of each of its layers
+    ThinWalls<D> walls_;
+    Grid<real, D> open_part_;  // none without solids
 };
 
 template <int D>

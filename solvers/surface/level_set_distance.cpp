@@ -62,7 +62,7 @@ void LevelSet<D>::find_surface() {
         std::uint8_t *mark = layer_.data() + line, *end = mark + n;
         for (auto* at = mark; (at = static_cast<std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)))) != nullptr; ++at) {
             I[0] = static_cast<int>(at - mark);
-            if (!crosses_in_liquid(I)) *at = 0;
+            if (!(sees_walls(I) ? crosses_on_this_side(I) : crosses_in_liquid(I))) *at = 0;
         }
     }
 }
@@ -113,11 +113,24 @@ void LevelSet<D>::mark_changes_of_sign(const Index<D>& first, std::size_t at) {
 template <int D>
 bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
     if (closed_.empty() || !closed_(I)) return true;
+    if (walls_.is_between(I)) return false;  // the open cells beside it see what is on their side
     for (int d = 0; d < D; ++d)
         for (const int by : {-1, 1}) {
             Index<D> J = I;
             if (frame_.step(J, d, by) && !closed_(J) && inside_(J) != inside_(I)) return true;
         }
+    return false;
+}
+
+/// Beside a thin wall the surface passes an open cell where φ changes sign on this side of it.
+template <int D>
+bool LevelSet<D>::crosses_on_this_side(const Index<D>& I) const {
+    Around<D> around;
+    walls_.look(closed_, phi, I, 1, around);
+    const bool inside = phi(I) < 0;
+    for (int d = 0; d < D; ++d)
+        for (const int by : {-1, 1})
+            if ((around.beside(d, by) < 0) != inside) return true;
     return false;
 }
 
@@ -143,6 +156,15 @@ void LevelSet<D>::rescale_surface() {
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }
 
+/// Whether the band goes on from cell I to its neighbour: not through a thin wall, though into it.
+template <int D>
+bool LevelSet<D>::joins(const Index<D>& I, int axis, int by) const {
+    if (!walls_.is_near(I)) return true;
+    Index<D> J = I;
+    const bool passes = walls_.passes(closed_, I, axis, by, J);  // whether J is open, and no closed face between
+    return closed_(J) != 0 || (passes && !walls_.is_between(I));
+}
+
 /// Layers 2 .. layers_: neighbours of the layer before.
 template <int D>
 void LevelSet<D>::join_layers() {
@@ -156,7 +178,7 @@ void LevelSet<D>::join_layers() {
             for (int d = 0; d < D; ++d)
                 for (const int by : {-1, 1}) {
                     Index<D> J = band_[i];
-                    if (!frame_.step(J, d, by) || !is_near(J[D - 1]) || layer_(J) != 0) continue;
+                    if (!frame_.step(J, d, by) || !is_near(J[D - 1]) || layer_(J) != 0 || !joins(band_[i], d, by)) continue;
                     layer_(J) = static_cast<std::uint8_t>(layer);
                     band_.push_back(J);
                 }
@@ -219,7 +241,7 @@ void LevelSet<D>::fill_layer(int layer) {
 template <int D>
 real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
     const std::size_t own = phi.linear(I);
-    const bool inside = phi[own] < 0;
+    const bool inside = phi[own] < 0, walled = sees_walls(I);
     std::array<std::pair<real, real>, D> nearest;  // (distance, h)
     for (int d = 0; d < D; ++d) {
         real least = infinity;
@@ -227,7 +249,10 @@ real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
             const bool counts = layer_[at] != 0 && layer_[at] <= layer && (phi[at] < 0) == inside;
             least = std::min(least, counts ? std::abs(phi[at]) : infinity);
         };
-        if (is_inner(frame_, I, d)) {
+        if (walled) {
+            for (const int by : {-1, 1})
+                if (Index<D> J = I; walls_.passes(closed_, I, d, by, J)) see(phi.linear(J));
+        } else if (is_inner(frame_, I, d)) {
             const auto stride = static_cast<std::size_t>(phi.stride(d));
             see(own - stride), see(own + stride);
         } else {
@@ -333,6 +358,7 @@ real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope) {
 
 template <int D>
 std::array<Vec<D>, 2> LevelSet<D>::slopes(const Index<D>& I) const {
+    if (sees_walls(I)) return slopes_on_this_side(I);
     std::array<Vec<D>, 2> slope;
     const real far = cap(), *here = &phi(I);
     for (int d = 0; d < D; ++d) {
@@ -348,6 +374,25 @@ std::array<Vec<D>, 2> LevelSet<D>::slopes(const Index<D>& I) const {
         slope[0][d] = has_lower ? *here - *lower : 0;
         slope[1][d] = has_upper ? *upper - *here : slope[0][d];
         if (!has_lower) slope[0][d] = slope[1][d];
+    }
+    return slope;
+}
+
+/// Beside a thin wall.
+template <int D>
+std::array<Vec<D>, 2> LevelSet<D>::slopes_on_this_side(const Index<D>& I) const {
+    Around<D> around;
+    walls_.look(closed_, phi, I, 1, around);
+    std::array<Vec<D>, 2> slope;
+    const real here = phi(I);
+    for (int d = 0; d < D; ++d) {
+        const auto has = [&](int by) {
+            Index<D> J = I;
+            return frame_.step(J, d, by) && std::abs(around.beside(d, by)) < cap();
+        };
+        slope[0][d] = has(-1) ? here - around.beside(d, -1) : 0;
+        slope[1][d] = has(1) ? around.beside(d, 1) - here : slope[0][d];
+        if (!has(-1)) slope[0][d] = slope[1][d];
     }
     return slope;
 }
@@ -368,7 +413,7 @@ template <int D>
 template <class F>
 real LevelSet<D>::sum_over_band(int layers, F&& f) const {
     const auto add = [&](real& sum, std::size_t at) {
-        if (closed_.empty() || !closed_(band_[at])) sum += f(band_[at]);
+        if (closed_.empty() || !closed_(band_[at])) sum += open_part(band_[at]) * f(band_[at]);
     };
     if (over_ranks() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
     constexpr std::size_t block = BandOfRanks::block;
@@ -390,6 +435,12 @@ real LevelSet<D>::volume() const {
         const std::size_t first = static_cast<std::size_t>(k) * plane;
         const std::uint8_t *inside = inside_.data() + first, *layer = layer_.data() + first;
         const std::uint8_t* closed = closed_.empty() ? nullptr : closed_.data() + first;
+        if (!open_part_.empty()) {
+            const real* part = open_part_.data() + first;
+            real sum = 0;
+            for (std::size_t i = 0; i < plane; ++i) sum += (inside[i] & (layer[i] == 0) & (closed[i] == 0)) != 0 ? part[i] : 0;
+            return sum;
+        }
         int count = 0;
         if (closed)
             for (std::size_t i = 0; i < plane; ++i) count += inside[i] & (layer[i] == 0) & (closed[i] == 0);

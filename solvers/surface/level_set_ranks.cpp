@@ -13,7 +13,7 @@ constexpr int nobody = INT_MIN;
 
 template <int D>
 void SkinOfRanks<D>::find(const Frame<D>& frame, std::vector<std::size_t> rim, const std::vector<std::size_t>& closed, int layers,
-                          std::vector<Index<D>>& skin) {
+                          std::vector<Index<D>>& skin, std::vector<std::size_t>& ends) {
     rim_ = std::move(rim);
     std::unordered_map<std::size_t, int> place;  // in the skin, of the closed cells that may be in it
     place.reserve(closed.size());
@@ -28,30 +28,38 @@ void SkinOfRanks<D>::find(const Frame<D>& frame, std::vector<std::size_t> rim, c
         });
     };
     for (const std::size_t at : rim_) add_neighbours(frame.index_of(at));
+    ends.assign(1, skin.size());
     std::size_t first = 0;
-    for (int layer = 1; layer < layers; ++layer)
+    for (int layer = 1; layer < layers; ++layer) {
         for (const std::size_t last = skin.size(); first < last; ++first) add_neighbours(Index<D>(skin[first]));
-    find_beside(frame, skin, place);
+        ends.push_back(skin.size());
+    }
+    find_beside(frame, skin, ends, place);
     rim_value_.resize(rim_.size()), value_.resize(skin.size());
 }
 
-/// A neighbour's place in the rim, or in the skin where that comes before.
+/// A neighbour's place in the rim, or in the skin where it is of a layer before.
 template <int D>
-void SkinOfRanks<D>::find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin,
+void SkinOfRanks<D>::find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin, const std::vector<std::size_t>& ends,
                                  const std::unordered_map<std::size_t, int>& place) {
     std::unordered_map<std::size_t, int> in_rim;
     in_rim.reserve(rim_.size());
     for (std::size_t i = 0; i < rim_.size(); ++i) in_rim.emplace(rim_[i], static_cast<int>(i));
-    const auto to = [&](const Index<D>& J, int self) {
+    const auto to = [&](const Index<D>& J, int first) {  // of the cell's own layer
         const std::size_t at = frame.linear(J);
         if (const auto open = in_rim.find(at); open != in_rim.end()) return open->second;
         const auto other = place.find(at);
-        return other != place.end() && other->second != nobody && other->second < self ? ~other->second : nobody;
+        return other != place.end() && other->second != nobody && other->second < first ? ~other->second : nobody;
     };
     beside_.assign(2 * D * skin.size(), nobody);
-    for (std::size_t i = 0; i < skin.size(); ++i) {
-        std::size_t k = 2 * D * i;
-        for_each_beside(frame, skin[i], [&](const Index<D>& J) { beside_[k++] = to(J, static_cast<int>(i)); });
+    std::size_t i = 0, first = 0;
+    for (const std::size_t last : ends) {
+        for (; i < last; ++i)
+            for (int d = 0; d < D; ++d)
+                for (const int upper : {0, 1})
+                    if (Index<D> J = skin[i]; frame.step(J, d, 2 * upper - 1))
+                        beside_[2 * D * i + static_cast<std::size_t>(2 * d + upper)] = to(J, static_cast<int>(first));
+        first = last;
     }
 }
 
@@ -71,10 +79,14 @@ void SkinOfRanks<D>::continue_into(Grid<real, D>& phi, const std::vector<Index<D
     for (std::size_t i = 0; i < skin.size(); ++i) {
         real sum = 0;
         int count = 0;
-        for (std::size_t k = 2 * D * i; k < 2 * D * (i + 1); ++k) {
-            if (beside_[k] == nobody) continue;
-            sum += beside_[k] >= 0 ? rim_value_[static_cast<std::size_t>(beside_[k])] : value_[static_cast<std::size_t>(~beside_[k])];
-            ++count;
+        for (std::size_t k = 2 * D * i; k < 2 * D * (i + 1);) {
+            real pair = 0;  // the two sides are added first, as in one process
+            for (const std::size_t end = k + 2; k < end; ++k) {
+                if (beside_[k] == nobody) continue;
+                pair += beside_[k] >= 0 ? rim_value_[static_cast<std::size_t>(beside_[k])] : value_[static_cast<std::size_t>(~beside_[k])];
+                ++count;
+            }
+            sum += pair;
         }
         value_[i] = sum / count;  // at least the one that it was found from
         if (phi.store().holds(skin[i][D - 1])) phi(skin[i]) = value_[i];

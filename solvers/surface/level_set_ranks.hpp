@@ -90,15 +90,15 @@ void for_each_beside(const Frame<D>& frame, const Index<D>& I, F&& f) {
             if (Index<D> J = I; frame.step(J, d, by)) f(J);
 }
 
-/// φ in the solids' skin follows from the open cells beside it, one skin cell after the other: everybody finds all of it, from what is
-/// gathered of those cells.
+/// φ in the solids' skin follows from the open cells beside it, one layer of the skin after the other: each rank finds all of it, from the
+/// gathered values of those cells.
 template <int D>
 class SkinOfRanks {
 public:
-    /// Finds the skin, `layers` deep, in the order of one process. `rim`: the open cells beside closed ones; `closed`: the closed cells
-    /// that are so deep at most, and maybe others. Both of all ranks, in the order of the grid.
+    /// Finds the skin, `layers` deep, in the order of one process, and where each layer ends. `rim`: the open cells beside closed ones;
+    /// `closed`: the closed cells that are so deep at most, and maybe others. Both of all ranks, in the order of the grid.
     void find(const Frame<D>& frame, std::vector<std::size_t> rim, const std::vector<std::size_t>& closed, int layers,
-              std::vector<Index<D>>& skin);
+              std::vector<Index<D>>& skin, std::vector<std::size_t>& ends);
     void continue_into(Grid<real, D>& phi, const std::vector<Index<D>>& skin);
     std::size_t bytes() const {
         return beside_.capacity() * sizeof(int) + rim_.capacity() * sizeof(std::size_t) +
@@ -106,9 +106,10 @@ public:
     }
 
 private:
-    void find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin, const std::unordered_map<std::size_t, int>& place);
+    void find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin, const std::vector<std::size_t>& ends,
+                     const std::unordered_map<std::size_t, int>& place);
     std::vector<std::size_t> rim_;  // open cells beside the skin, in the order of the grid
-    std::vector<int> beside_;       // of each skin cell its neighbours: place in rim_, or ~place in the skin if that comes before; or none
+    std::vector<int> beside_;       // of each skin cell its neighbours: place in rim_, or ~place in the skin if of a layer before; or none
     std::vector<real> rim_value_, value_;
 };
 

@@ -3,6 +3,7 @@
 // node at distance k cells from the centre is a hat function of the marker's own distance d:  w_k = max(0, 1 − |d − k|).
 #pragma once
 #include "surface/markers.hpp"
+#include "surface/thin_walls.hpp"
 
 #include <cstring>
 #include <utility>
@@ -171,6 +172,11 @@ public:
         if (!inner) return copy(nodes, frame, I);
         node_ = &nodes(I);
         for (int d = 0; d < D; ++d) stride_[static_cast<std::size_t>(d)] = nodes.stride(d);
+    }
+    /// Nodes that were made, not stored.
+    void look_at(const Around<D>& around) {
+        node_ = &around.phi[around.at(Index<D>{})];
+        for (int d = 0; d < D; ++d) stride_[static_cast<std::size_t>(d)] = around.stride(d);
     }
     /// Interpolation of component A of a velocity; of a cell field where A is −1.
     template <int A, bool Wide>

@@ -40,6 +40,7 @@ real Measure<D>::crossing(const Index<D>& I, int axis) const {
     Index<D> J = I;
     const real end = frame_.origin[axis] + frame_.h[axis] * frame_.cells[axis];
     if (!frame_.step(J, axis, 1) || J[axis] < I[axis]) return std::min(end, frame_.centre(I)[axis] - here);
+    if (!surface_.passes(I, axis, 1)) return -infinity;  // under a thin solid
     const real there = surface_.phi(J);
     return there < 0 ? -infinity : frame_.centre(I)[axis] + frame_.h[axis] * here / (here - there);
 }

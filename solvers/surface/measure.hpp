@@ -24,7 +24,7 @@ public:
 
 private:
     /// Liquid part of a cell; where φ is only continued, in cells that solids close, there is none.
-    real liquid_part(const Index<D>& I) const { return !closed_.empty() && closed_(I) ? 0 : surface_.fraction(I); }
+    real liquid_part(const Index<D>& I) const { return !closed_.empty() && closed_(I) ? 0 : surface_.open_part(I) * surface_.fraction(I); }
     real crossing(const Index<D>& I, int axis) const;
     template <class F>
     real sum_over_faces(int a, F&& f) const;

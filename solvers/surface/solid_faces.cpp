@@ -60,8 +60,11 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
                     if (part[i] < least_trusted_fraction) see(I);
             });
         }
+        closed_[at].clear();
+        for (const Index<D>& I : faces_[at])
+            if (open(I) == 0) closed_[at].push_back(I);
         if (!room) continue;
-        faces_[at].reserve(2 * faces_[at].size());
+        for (auto* list : {&faces_[at], &closed_[at]}) list->reserve(2 * faces_[at].size());
         solid_[at].reserve(2 * solid_[at].size());
     }
     any_ = sum_of_ranks(std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) > 0;
@@ -142,6 +145,7 @@ template <int D>
 std::size_t FacesInSolids<D>::bytes() const {
     std::size_t total = 0;
     for (const auto& faces : solid_) total += faces.size() * (sizeof(SolidFace) + sizeof(Index<D>));
+    for (const auto& faces : closed_) total += faces.size() * sizeof(Index<D>);
     return total;
 }
 

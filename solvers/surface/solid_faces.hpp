@@ -23,6 +23,8 @@ public:
     /// u −= n n·(u − u_solid) where solids slip; u = u_solid where they do not, or where no liquid is near.
     void constrain(MacVelocity<D>& u, const FaceMarks<D>& known, const Frame<D>& frame);
     const FaceLists<D>& faces() const { return faces_; }
+    /// Those of them that are closed.
+    const FaceLists<D>& closed() const { return closed_; }
     std::size_t bytes() const;
 
 private:
@@ -34,7 +36,7 @@ private:
         bool no_slip = false;
         real value = 0;  // what is to stand there
     };
-    FaceLists<D> faces_;                           // over ranks, those near this one's planes
+    FaceLists<D> faces_, closed_;                  // over ranks, those near this one's planes
     std::array<std::vector<SolidFace>, D> solid_;  // in the order of faces_
     bool any_ = false;                             // of all ranks
 };

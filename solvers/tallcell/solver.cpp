@@ -40,8 +40,9 @@ void TallCells<D>::place_solids(real t) {
     const AllPlanes all(!held_.alone());
     solids_.place(state_, t);
     for_each_held(closed_, Index<D>{}, frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
-    surface_.set_closed(closed_);
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
+    surface_.set_closed(closed_, &in_solids_.closed());
+    surface_.set_open_parts(solids_);
 }
 
 template <int D>

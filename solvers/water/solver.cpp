@@ -65,8 +65,9 @@ void Water<D>::place_solids(real t) {
         for (std::size_t i = at; i < at + static_cast<std::size_t>(frame_.cells[0]); ++i)
             state_.cells[i] = closed_[i] ? poisson::Cell::solid : poisson::Cell::fluid;
     });
-    surface_.set_closed(closed_);
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
+    surface_.set_closed(closed_, &in_solids_.closed());
+    surface_.set_open_parts(solids_);
 }
 
 /// Where solids have been placed anew.
@@ -114,7 +115,7 @@ void Water<D>::evaporate(real dt) {
     heat_->leaves(state_, lost, volume_target_);
     volume_target_ -= lost;
     if (lost < 0) return;
-    markers_.retain([&](std::size_t p) { return sample_cells(surface_.phi, Stencil<D>(frame_, markers_.position(p))) < 0; });
+    markers_.retain([&](std::size_t p) { return surface_.at(markers_.position(p)) < 0; });
     markers_.sort(frame_);
 }
 

@@ -160,7 +160,7 @@ void Water<D>::seed_markers() {
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);
             const Stencil<D> stencil(frame_, x);
-            if (sample_cells(surface_.phi, stencil) < 0 && (!solids_.any() || solids_.solids().distance(x) > 0))
+            if (surface_.at(x) < 0 && (!solids_.any() || solids_.solids().distance(x) > 0))
                 markers_.add(x, sample(state_.u, stencil));
         }
     }

@@ -1,0 +1,182 @@
+#include "surface/thin_walls.hpp"
+
+#include "core/parallel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::surface {
+
+std::array<real, 4> catmull_rom(real f) {
+    return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
+}
+
+template <int D>
+real Around<D>::cubic(const Vec<D>& d) const {
+    std::array<std::array<real, 4>, D> w;
+    Index<D> first;
+    for (int a = 0; a < D; ++a) {
+        first[a] = static_cast<int>(d[a] > 0 ? std::ceil(d[a]) - 1 : std::floor(d[a]));
+        w[static_cast<std::size_t>(a)] = catmull_rom(d[a] - first[a]);
+        --first[a];
+    }
+    const auto along = [&](const auto& self, int axis, const real* q) -> real {
+        if (axis < 0) return *q;
+        real sum = 0;
+        for (int k = 0; k < 4; ++k)
+            sum += w[static_cast<std::size_t>(axis)][static_cast<std::size_t>(k)] * self(self, axis - 1, q + k * stride(axis));
+        return sum;
+    };
+    return along(along, D - 1, &phi[at(first)]);
+}
+
+template <int D>
+real Around<D>::linear(const Vec<D>& d) const {
+    real sum = 0;
+    for (int corner = 0; corner < (1 << D); ++corner) {
+        Index<D> by{};
+        real weight = 1;
+        for (int a = 0; a < D; ++a) {
+            const bool outer = (corner >> a & 1) != 0;
+            weight *= outer ? std::abs(d[a]) : 1 - std::abs(d[a]);
+            by[a] = !outer ? 0 : d[a] < 0 ? -1 : 1;
+        }
+        sum += weight * (*this)(by);
+    }
+    return sum;
+}
+
+template <int D>
+void ThinWalls<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& closed, const std::vector<Index<D>>& skin,
+                        const std::array<std::vector<Index<D>>, D>* faces, int deep) {
+    frame_ = frame;
+    if (marks_.empty()) marks_ = Grid<std::uint8_t, D>(frame.cells);
+    const bool ring = frame.periodic(D - 1), alone = marks_.store().windowed();
+    marks_.store().open(deep, ring);
+    if (any_) marks_.fill(0);
+    any_ = false;
+    // Of walls that stencils of this rank's own cells see, both ends lie this near.
+    const auto near = alone ? planes_near(frame.cells[D - 1], reach_ + thickest - 1, ring) : std::vector<char>();
+    const auto is_known = [&](int plane) { return near.empty() || near[static_cast<std::size_t>(plane)] != 0; };
+    for (const Index<D>& I : skin) {
+        if (!is_known(I[D - 1])) continue;
+        for (int axis = 0; axis < D; ++axis)
+            for (const int by : {-1, 1})
+                if (Index<D> J = I; frame.step(J, axis, -by) && closed(J) == 0) mark_run(closed, I, axis, by);
+    }
+    for (int a = 0; faces && a < D; ++a)
+        for (Index<D> I : (*faces)[static_cast<std::size_t>(a)]) {
+            if (I[a] == frame.cells[a]) {
+                if (!frame.periodic(a)) continue;
+                I[a] = 0;
+            }
+            Index<D> below = I;
+            if (!is_known(I[D - 1]) || !frame.step(below, a, -1) || closed(I) != 0 || closed(below) != 0) continue;
+            marks_(I) = static_cast<std::uint8_t>(marks_(I) | (1U << a));
+            Index<D> lo = I - Index<D>::constant(reach_), hi = I + Index<D>::constant(reach_);
+            --hi[a];
+            mark_around(lo, hi);
+        }
+    if (alone) refresh(marks_, ring, deep);
+    any_ = sum_of_ranks(any_) > 0;
+}
+
+/// Follows closed cells from the first one inwards: a wall, if there is an open cell behind a few of them.
+template <int D>
+void ThinWalls<D>::mark_run(const Grid<std::uint8_t, D>& closed, const Index<D>& first, int axis, int by) {
+    Index<D> I = first;
+    int count = 1;
+    for (; count <= thickest; ++count) {
+        if (!frame_.step(I, axis, by)) return;
+        if (closed(I) == 0) break;
+    }
+    if (count > thickest) return;
+    I = first;
+    for (int k = 0; k < count; ++k, frame_.step(I, axis, by)) {
+        marks_(I) = static_cast<std::uint8_t>(marks_(I) | between);
+        mark_around(I - Index<D>::constant(reach_), I + Index<D>::constant(reach_));
+    }
+}
+
+template <int D>
+void ThinWalls<D>::mark_around(const Index<D>& lo, const Index<D>& hi) {
+    any_ = true;
+    const CellBox<D> box{lo, hi + Index<D>::constant(1)};
+    box.in_order([&](Index<D> I) {
+        for (int d = 0; d < D; ++d) {
+            if (frame_.periodic(d)) I[d] = (I[d] % frame_.cells[d] + frame_.cells[d]) % frame_.cells[d];
+            if (I[d] < 0 || I[d] >= frame_.cells[d]) return;
+        }
+        if (marks_.store().holds(I[D - 1])) marks_(I) = static_cast<std::uint8_t>(marks_(I) | near_wall);
+    });
+}
+
+template <int D>
+bool ThinWalls<D>::passes(const Grid<std::uint8_t, D>& closed, const Index<D>& I, int axis, int by, Index<D>& J) const {
+    J = I;
+    if (!frame_.step(J, axis, by) || closed(J) != 0) return false;
+    return (marks_(by > 0 ? J : I) >> axis & 1) == 0;
+}
+
+template <int D>
+void ThinWalls<D>::look(const Grid<std::uint8_t, D>& closed, const Grid<real, D>& phi, const Index<D>& I, int reach, Around<D>& to) const {
+    struct Seen {
+        Index<D> cell, by;
+    };
+    std::array<Seen, std::tuple_size_v<decltype(to.phi)>> queue;
+    to.reach = reach;
+    std::fill_n(to.reached.begin(), to.count(), std::uint8_t{0});
+    std::size_t count = 0;
+    const auto join = [&](const Index<D>& cell, const Index<D>& by) {
+        to.reached[to.at(by)] = 1;
+        to.phi[to.at(by)] = phi(cell);
+        queue[count++] = {cell, by};
+    };
+    join(I, Index<D>{});
+    for (std::size_t i = 0; i < count; ++i)
+        for (int axis = 0; axis < D; ++axis)
+            for (const int by : {-1, 1}) {
+                Index<D> next = queue[i].by, J;
+                next[axis] += by;
+                if (std::abs(next[axis]) > reach || to.reached[to.at(next)] || !passes(closed, queue[i].cell, axis, by, J)) continue;
+                join(J, next);
+            }
+    if (count < to.count()) continue_into(to);
+}
+
+/// Layer by layer the mean of the neighbours that lie further out.
+template <int D>
+void ThinWalls<D>::continue_into(Around<D>& to) const {
+    std::array<std::uint8_t, std::tuple_size_v<decltype(to.reached)>> layer;
+    std::copy_n(to.reached.begin(), to.count(), layer.begin());
+    const CellBox<D> box{Index<D>::constant(-to.reach), Index<D>::constant(to.reach + 1)};
+    for (std::uint8_t now = 2, found = 1; found != 0; ++now) {
+        found = 0;
+        box.in_order([&](const Index<D>& by) {
+            const std::size_t at = to.at(by);
+            if (layer[at] != 0) return;
+            real sum = 0;
+            int known = 0;
+            for (int axis = 0; axis < D; ++axis) {
+                real pair = 0;  // the two sides are added first, so that a mirror changes nothing
+                for (const int side : {-1, 1}) {
+                    if (std::abs(by[axis] + side) > to.reach) continue;
+                    const std::size_t other = at + static_cast<std::size_t>(side * to.stride(axis));
+                    if (layer[other] != 0 && layer[other] < now) pair += to.phi[other], ++known;
+                }
+                sum += pair;
+            }
+            if (known == 0) return;
+            to.phi[at] = sum / known;
+            layer[at] = now;
+            found = 1;
+        });
+    }
+}
+
+template struct Around<2>;
+template struct Around<3>;
+template class ThinWalls<2>;
+template class ThinWalls<3>;
+
+}  // namespace weir::surface
