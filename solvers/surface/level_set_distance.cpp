@@ -281,6 +281,36 @@ real fraction_below_plane(real value, const Vec<D>& g) {
     return std::clamp(volume / norm, 0.0, 1.0);
 }
 
+/// As fraction_below_plane(), with each corner's simplex at its centroid.
+template <int D>
+Vec<D> moment_below_plane(real value, const Vec<D>& g) {
+    real alpha = -value, steep = 0;
+    for (int d = 0; d < D; ++d) steep += std::abs(g[d]);
+    if (std::abs(value) >= 0.5 * steep) return {};
+    std::array<int, D> axis;
+    int count = 0;
+    real norm = 1;
+    for (int d = 0; d < D; ++d)
+        if (std::abs(g[d]) > 1e-4 * steep) {
+            axis[static_cast<std::size_t>(count++)] = d;
+            alpha += 0.5 * std::abs(g[d]);
+            norm *= std::abs(g[d]) * count;
+        }
+    Vec<D> moment{};
+    for (int corner = 0; corner < (1 << count); ++corner) {
+        real reach = alpha, volume = 1;
+        for (int i = 0; i < count; ++i) reach -= corner >> i & 1 ? std::abs(g[axis[static_cast<std::size_t>(i)]]) : 0;
+        if (reach <= 0) continue;
+        for (int i = 0; i < count; ++i) volume *= corner >> i & 1 ? -reach : reach;
+        for (int i = 0; i < count; ++i) {
+            const int d = axis[static_cast<std::size_t>(i)];
+            const real from_middle = (corner >> i & 1) - 0.5 + reach / ((count + 1) * std::abs(g[d]));
+            moment[d] += (g[d] < 0 ? -1 : 1) * volume / norm * from_middle;
+        }
+    }
+    return moment;
+}
+
 /// All half cells at once, one a lane, where every axis counts in all of them; the same operations as in fraction_below_plane.
 template <int D>
 real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope) {
@@ -363,6 +393,26 @@ real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     return fraction_of_halves<D>(here, slope);
 }
 
+template <int D>
+Vec<D> LevelSet<D>::moment(const Index<D>& I) const {
+    Vec<D> moment{};
+    if (std::abs(phi(I)) > diagonal_) return moment;
+    const auto slope = slopes(I);
+    constexpr int halves = 1 << D;
+    for (int half = 0; half < halves; ++half) {
+        Vec<D> g, middle;
+        real value = phi(I);
+        for (int d = 0; d < D; ++d) {
+            const int upper = half >> d & 1;
+            g[d] = 0.5 * slope[static_cast<std::size_t>(upper)][d];
+            middle[d] = upper ? 0.25 : -0.25;
+            value += upper ? 0.5 * g[d] : -0.5 * g[d];
+        }
+        moment += (1.0 / halves) * (fraction_below_plane(value, g) * middle + 0.5 * moment_below_plane(value, g));
+    }
+    return moment;
+}
+
 /// Sum of f(I) over the open cells of the band up to a layer; block by block of equal length, so that its order is fixed.
 template <int D>
 template <class F>
@@ -410,6 +460,8 @@ real LevelSet<D>::area() const {
 
 template real fraction_below_plane(real, const Vec<2>&);
 template real fraction_below_plane(real, const Vec<3>&);
+template Vec<2> moment_below_plane(real, const Vec<2>&);
+template Vec<3> moment_below_plane(real, const Vec<3>&);
 template real fraction_of_halves(real, const std::array<Vec<2>, 2>&);
 template real fraction_of_halves(real, const std::array<Vec<3>, 2>&);
 template void LevelSet<2>::find_near();
@@ -424,6 +476,8 @@ template void LevelSet<2>::redistance();
 template void LevelSet<3>::redistance();
 template real LevelSet<2>::fraction(const Index<2>&, real) const;
 template real LevelSet<3>::fraction(const Index<3>&, real) const;
+template Vec<2> LevelSet<2>::moment(const Index<2>&) const;
+template Vec<3> LevelSet<3>::moment(const Index<3>&) const;
 template real LevelSet<2>::volume() const;
 template real LevelSet<3>::volume() const;
 template real LevelSet<2>::area() const;
