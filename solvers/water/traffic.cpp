@@ -46,7 +46,7 @@ public:
         find_surface();
         sync();  // what the markers brought, beside walls
         surface_.continue_velocity(tally_, 2);
-        if (transfer_ == "flip") sync();
+        sync();
         if (scene_.effect("viscosity") && scene_.number("fluid.viscosity") > 0) rub();
         sync();  // what forces leave
         project();
