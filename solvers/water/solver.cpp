@@ -160,7 +160,7 @@ void Water<D>::momentum_to_faces(real dt) {
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
-        // falls on water would be given to the markers there.
+        // falls on water would be given to the markers there. extend_velocity() has the rest.
         if (bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
         in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
@@ -206,6 +206,8 @@ void Water<D>::extend_velocity(real dt) {
     mark_liquid_faces();
     impose_emitters(dt, &Emitter<D>::Face::moves);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), surface_.layers() - 1);
+    // FLIP's gain beside a body is counted from what the liquid brought as the body, at its speed of now, lets it pass.
+    if (bodies_ && options_.transfer == Transfer::flip) in_solids_.constrain(before_, known_, frame_);
     in_solids_.constrain(state_.u, known_, frame_);
     sync_periodic(state_.u, state_.sides);
     rate_ = max_speed_rate();
