@@ -75,6 +75,8 @@ public:
     /// Liquid part of a cell, in [0, 1], with φ lowered by `shift`: a plane in each half cell along every axis (exact for planes; a
     /// sheet or a drop thinner than a cell still counts for what it is).
     real fraction(const Index<D>& I, real shift = 0) const;
+    /// The mean over a cell of its liquid's place about the centre [cells], with the same planes.
+    Vec<D> moment(const Index<D>& I) const;
     real volume() const;  // [m^D] of liquid in open cells, as far as solids leave them open
     real area() const;    // [m^(D−1)] of the surface, from the change of volume with φ
     std::size_t bytes() const;
@@ -154,6 +156,9 @@ void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const
 /// Volume of {x in the unit cube about 0 : value + g·x < 0}. Inclusion and exclusion of corners (Scardovelli & Zaleski 2000).
 template <int D>
 real fraction_below_plane(real value, const Vec<D>& g);
+/// The mean over that cube of x where value + g·x < 0, and 0 elsewhere.
+template <int D>
+Vec<D> moment_below_plane(real value, const Vec<D>& g);
 /// The mean of that over the half cells along every axis, in each of which φ is a plane: φ's changes a cell towards the lower and the
 /// upper neighbour are slope[0] and slope[1].
 template <int D>

@@ -134,8 +134,11 @@ bool LevelSet<D>::crosses_on_this_side(const Index<D>& I) const {
     return false;
 }
 
-/// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13). Only
-/// outside [3/4, 4/3], so that a surface that keeps its distance, above all one at rest, keeps it bit for bit.
+/// How far φ may be from a distance beside the surface: to scale one cell and not its neighbour moves the surface between them, and waves
+/// that stretch and press φ once a period gain energy by it. Steep ones pass 4/3 and stay below 8/5; bodies that float need it below 2.
+constexpr real most_stretched = 1.6;
+
+/// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13).
 template <int D>
 void LevelSet<D>::rescale_surface() {
     resize_scratch(value_, band_.size());
@@ -151,7 +154,7 @@ void LevelSet<D>::rescale_surface() {
             steepest = std::max({steepest, std::abs(slope[0][d]) * frame_.inv_h[d], std::abs(slope[1][d]) * frame_.inv_h[d]});
         }
         const real gradient = std::max({std::sqrt(central), steepest, 1e-6});
-        value_[static_cast<std::size_t>(i)] = gradient > 4.0 / 3 || gradient < 0.75 ? phi(I) / gradient : phi(I);
+        value_[static_cast<std::size_t>(i)] = gradient > most_stretched || gradient < 1 / most_stretched ? phi(I) / gradient : phi(I);
     });
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }
@@ -306,6 +309,36 @@ real fraction_below_plane(real value, const Vec<D>& g) {
     return std::clamp(volume / norm, 0.0, 1.0);
 }
 
+/// As fraction_below_plane(), with each corner's simplex at its centroid.
+template <int D>
+Vec<D> moment_below_plane(real value, const Vec<D>& g) {
+    real alpha = -value, steep = 0;
+    for (int d = 0; d < D; ++d) steep += std::abs(g[d]);
+    if (std::abs(value) >= 0.5 * steep) return {};
+    std::array<int, D> axis;
+    int count = 0;
+    real norm = 1;
+    for (int d = 0; d < D; ++d)
+        if (std::abs(g[d]) > 1e-4 * steep) {
+            axis[static_cast<std::size_t>(count++)] = d;
+            alpha += 0.5 * std::abs(g[d]);
+            norm *= std::abs(g[d]) * count;
+        }
+    Vec<D> moment{};
+    for (int corner = 0; corner < (1 << count); ++corner) {
+        real reach = alpha, volume = 1;
+        for (int i = 0; i < count; ++i) reach -= corner >> i & 1 ? std::abs(g[axis[static_cast<std::size_t>(i)]]) : 0;
+        if (reach <= 0) continue;
+        for (int i = 0; i < count; ++i) volume *= corner >> i & 1 ? -reach : reach;
+        for (int i = 0; i < count; ++i) {
+            const int d = axis[static_cast<std::size_t>(i)];
+            const real from_middle = (corner >> i & 1) - 0.5 + reach / ((count + 1) * std::abs(g[d]));
+            moment[d] += (g[d] < 0 ? -1 : 1) * volume / norm * from_middle;
+        }
+    }
+    return moment;
+}
+
 /// All half cells at once, one a lane, where every axis counts in all of them; the same operations as in fraction_below_plane.
 template <int D>
 real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope) {
@@ -408,6 +441,26 @@ real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     return fraction_of_halves<D>(here, slope);
 }
 
+template <int D>
+Vec<D> LevelSet<D>::moment(const Index<D>& I) const {
+    Vec<D> moment{};
+    if (std::abs(phi(I)) > diagonal_) return moment;
+    const auto slope = slopes(I);
+    constexpr int halves = 1 << D;
+    for (int half = 0; half < halves; ++half) {
+        Vec<D> g, middle;
+        real value = phi(I);
+        for (int d = 0; d < D; ++d) {
+            const int upper = half >> d & 1;
+            g[d] = 0.5 * slope[static_cast<std::size_t>(upper)][d];
+            middle[d] = upper ? 0.25 : -0.25;
+            value += upper ? 0.5 * g[d] : -0.5 * g[d];
+        }
+        moment += (1.0 / halves) * (fraction_below_plane(value, g) * middle + 0.5 * moment_below_plane(value, g));
+    }
+    return moment;
+}
+
 /// Sum of f(I) over the open cells of the band up to a layer; block by block of equal length, so that its order is fixed.
 template <int D>
 template <class F>
@@ -461,6 +514,8 @@ real LevelSet<D>::area() const {
 
 template real fraction_below_plane(real, const Vec<2>&);
 template real fraction_below_plane(real, const Vec<3>&);
+template Vec<2> moment_below_plane(real, const Vec<2>&);
+template Vec<3> moment_below_plane(real, const Vec<3>&);
 template real fraction_of_halves(real, const std::array<Vec<2>, 2>&);
 template real fraction_of_halves(real, const std::array<Vec<3>, 2>&);
 template void LevelSet<2>::find_near();
@@ -475,6 +530,8 @@ template void LevelSet<2>::redistance();
 template void LevelSet<3>::redistance();
 template real LevelSet<2>::fraction(const Index<2>&, real) const;
 template real LevelSet<3>::fraction(const Index<3>&, real) const;
+template Vec<2> LevelSet<2>::moment(const Index<2>&) const;
+template Vec<3> LevelSet<3>::moment(const Index<3>&) const;
 template real LevelSet<2>::volume() const;
 template real LevelSet<3>::volume() const;
 template real LevelSet<2>::area() const;

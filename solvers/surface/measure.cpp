@@ -28,8 +28,12 @@ Vec<D> Measure<D>::momentum(const MacVelocity<D>& u, real rho) const {
 
 template <int D>
 real Measure<D>::potential_energy(const Vec<D>& gravity, real rho) const {
-    return -rho * frame_.cell_volume() *
-           sum_over(frame_.cells, [&](const Index<D>& I) { return liquid_part(I) * dot(gravity, frame_.centre(I) - frame_.origin); });
+    return -rho * frame_.cell_volume() * sum_over(frame_.cells, [&](const Index<D>& I) {
+        if (!closed_.empty() && closed_(I)) return 0.0;
+        Vec<D> moment = surface_.moment(I);
+        for (int d = 0; d < D; ++d) moment[d] *= frame_.h[d];
+        return surface_.fraction(I) * dot(gravity, frame_.centre(I) - frame_.origin) + dot(gravity, moment);
+    });
 }
 
 /// Coordinate along the axis where the surface leaves liquid cell I upwards, or −infinity if its upper neighbour is liquid too.

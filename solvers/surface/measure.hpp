@@ -13,7 +13,7 @@ public:
         : frame_(frame), surface_(surface), closed_(closed) {}
     real kinetic_energy(const MacVelocity<D>& u, real rho) const;
     Vec<D> momentum(const MacVelocity<D>& u, real rho) const;
-    /// −Σ ρ g·(x − origin) over liquid; a part-filled cell counts at its centre.
+    /// −Σ ρ g·(x − origin) over liquid, which counts where it is in a part-filled cell.
     real potential_energy(const Vec<D>& gravity, real rho) const;
     /// The largest coordinate along an axis at which the surface leaves liquid in its direction.
     real furthest(int axis) const;

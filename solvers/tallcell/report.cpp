@@ -43,6 +43,7 @@ void TallCells<D>::save(Checkpoint& to) const {
     }
     state_.save(to);
     surface_.save(to);
+    leapfrog_.save(to);
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
     to.put_value("tallcell.reals", reals);
     to.put_value("tallcell.steps", steps_);
@@ -57,6 +58,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     place_solids(state_.time);
     state_.restore(from);  // what is liquid, after the solids have said what is not
     surface_.restore(from);
+    leapfrog_.restore(from);
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
     if (hand_ && from.has("hand")) hand_->restore(from);
@@ -90,7 +92,7 @@ void TallCells<D>::edited(const EditableField&) {
 template <int D>
 std::size_t TallCells<D>::bytes() const {
     std::size_t total = state_.bytes() + surface_.bytes() + pressure_.bytes() + transport_.bytes() + extrapolate_.bytes() +
-                        closed_.bytes() + in_solids_.bytes() + solids_.bytes() + tall_.bytes();
+                        leapfrog_.bytes() + closed_.bytes() + in_solids_.bytes() + solids_.bytes() + tall_.bytes();
     for (const auto& known : known_) total += known.bytes();
     return total;
 }

@@ -11,17 +11,22 @@ namespace weir::tallcell {
 template <int D>
 StepReport TallCells<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
+    if (!leapfrog_.started()) find_rate(dt);
+    leapfrog_.advance(state_.u, dt);  // u at the middle of the step
+    const real kick = leapfrog_.kick(dt, true);
+    leapfrog_.keep(state_.u, known_);
     bring_faces(dt);  // over ranks, as far as anything moves
     place_solids(state_.time + dt);
-    move_surface(dt);                             // Dφ/Dt = 0, and φ is a distance again
-    control_volume();                             // only if the scene names it
-    remesh();                                     // tall cells below the surface as it is now
-    advect(dt);                                   // Du/Dt = 0
-    forces(dt);                                   // u += dt f
-    const poisson::Report poisson = project(dt);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
+    move_surface(dt);                               // Dφ/Dt = 0, and φ is a distance again
+    control_volume();                               // only if the scene names it
+    remesh();                                       // tall cells below the surface as it is now
+    advect(dt);                                     // Du/Dt = 0
+    forces(kick);                                   // u += dt f
+    const poisson::Report poisson = project(kick);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
     const real divergence = pressure_.max_divergence(state_);
     staggered::require_room(state_, solids_, divergence);
-    extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
+    extend_velocity();                  // ∇u·∇φ = 0 beyond the liquid
+    leapfrog_.retreat(state_.u, kick);  // u at the end of the step
     if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "a velocity is no longer finite");
     state_.time += dt;
     ++steps_;
@@ -31,7 +36,25 @@ StepReport TallCells<D>::step(real dt) {
             .iterations = poisson.iterations,
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
-            .residual_max = poisson.residual_max * state_.rho / dt};
+            .residual_max = poisson.residual_max * state_.rho / kick};
+}
+
+/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move the hand's
+/// account: there the first step moves liquid with the velocity that it has.
+template <int D>
+void TallCells<D>::find_rate(real dt) {
+    if (hand_) return;
+    const MacVelocity<D> u = state_.u;
+    leapfrog_.keep(state_.u, known_);
+    forces(dt);
+    refresh(state_.u[D - 1], frame_.periodic(D - 1));
+    pressure_.restrict_velocity(state_);
+    pressure_.project(surface_.phi, state_, dt);
+    pressure_.spread(state_, dt);
+    sync_periodic(state_.u, state_.sides);
+    extend_velocity();
+    leapfrog_.begin(state_.u, dt);
+    state_.u = u;
 }
 
 template <int D>

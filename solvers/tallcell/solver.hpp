@@ -9,6 +9,7 @@
 #include "scene/solver_kind.hpp"
 #include "staggered/solid_faces.hpp"
 #include "surface/extrapolate.hpp"
+#include "surface/leapfrog.hpp"
 #include "surface/solid_faces.hpp"
 #include "surface/start.hpp"
 #include "tallcell/transport.hpp"
@@ -68,6 +69,7 @@ private:
     void fill_with_liquid(const scene::Scene& scene);
 
     // The passes of a step, in order
+    void find_rate(real dt);
     void place_solids(real t);
     void move_surface(real dt);
     void pour_and_drain_by_hand();
@@ -101,6 +103,7 @@ private:
     TallPressure<D> pressure_;
     Transport<D> transport_;
     Extrapolation<D> extrapolate_;
+    Leapfrog<D> leapfrog_;
     FaceMarks<D> known_;
     mutable Grid<real, D> tall_;  // height of the element that a cell lies in [m], made when it is shown
     real volume_target_ = 0, volume_shift_ = 0;

@@ -38,6 +38,7 @@ TallCells<D>::TallCells(const scene::Scene& scene)
     surface_ = LevelSet<D>(frame_, reach);
     transport_ = Transport<D>(frame_, state_.u, options_.maccormack, reach);
     extrapolate_ = Extrapolation<D>(frame_, norm(gravity_));
+    leapfrog_ = Leapfrog<D>(state_.u);
     for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
     tall_ = Grid<real, D>(frame_.cells);
     if (options_.volume_control) effects_.declare({.name = "volume_control", .pass = effect_pass("volume_control")});

@@ -111,23 +111,23 @@ void Water<D>::mix_pressures() {
 
 /// Turns until friction has seen the pressure.
 template <int D>
-poisson::Report Water<D>::balance_friction(real dt, poisson::Report report) {
+poisson::Report Water<D>::balance_friction(real dt, real kick, poisson::Report report) {
     StepOfFriction<D>& s = *friction_;
     s.mixing.restart();
     for (s.turns = 0; s.turns < most_turns; ++s.turns) {
         {
             const auto timed = passes_.time("effect viscosity");
-            what_friction_feels(dt);
+            what_friction_feels(kick);
             const real least = of_tolerance * options_.poisson.options.tolerance;
-            if (viscosity_->unseen(state_, s.felt, dt, s.forces.face, least) <= unseen_part) return report;
+            if (viscosity_->unseen(state_, s.felt, kick, s.forces.face, least) <= unseen_part) return report;
             if (s.turns > 0) mix_pressures();
             for_each_cell(frame_.cells, [&](const Index<D>& I) { s.p(I) = state_.p(I); });
-            if (s.turns > 0) what_friction_feels(dt);
-            rub_again(dt);
+            if (s.turns > 0) what_friction_feels(kick);
+            rub_again(kick);
         }
-        if (heat_) heat_->slow(state_, dt);
+        if (heat_) heat_->slow(state_, kick);
         const int iterations = report.iterations;
-        report = project_once(dt, true);
+        report = project_once(dt, kick, true);
         report.iterations += iterations;
     }
     return report;
@@ -140,7 +140,7 @@ poisson::Report Water<D>::balance_friction(real dt, poisson::Report report) {
     template void Water<D>::what_friction_feels(real); \
     template void Water<D>::mix_pressures();           \
     template void Water<D>::rub_again(real);           \
-    template poisson::Report Water<D>::balance_friction(real, poisson::Report);
+    template poisson::Report Water<D>::balance_friction(real, real, poisson::Report);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
 #undef WEIR_INSTANTIATE

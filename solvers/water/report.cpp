@@ -70,6 +70,7 @@ void Water<D>::save(Checkpoint& to) const {
     state_.save(to);
     if (bodies_) bodies_->save(to);
     surface_.save(to);
+    leapfrog_.save(to);
     const auto [first, last] = markers_.own(frame_);
     const std::vector<std::size_t> begins = begins_of_ranks(last - first);
     int at = 0;
@@ -111,6 +112,7 @@ void Water<D>::restore(const Checkpoint& from) {
     place_solids(state_.time);
     state_.restore(from);  // what is liquid, after the solids have said what is not
     surface_.restore(from);
+    leapfrog_.restore(from);
     restore_markers(from);
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
@@ -128,7 +130,7 @@ void Water<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
-                        (viscosity_ ? viscosity_->bytes() + friction_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.bytes() +
+                        leapfrog_.bytes() + (viscosity_ ? viscosity_->bytes() + friction_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.bytes() +
                         near_solid_.bytes() + not_solved_for_.bytes() + curvature_.bytes() + in_solids_.bytes();
     if (!held_.cut().empty()) total += all_markers_.bytes();
     if (bodies_) total += bodies_->bytes();

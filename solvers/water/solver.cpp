@@ -12,21 +12,25 @@ namespace weir::water {
 template <int D>
 StepReport Water<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
+    if (!leapfrog_.started()) find_rate(dt);
+    leapfrog_.advance(state_.u, dt);
+    const real kick = leapfrog_.kick(dt, options_.transfer == Transfer::grid);
     bring_faces(dt);
     move_bodies(dt);
     move_solids(state_.time + dt);
-    move_surface(dt);                             // Dx/Dt = u for markers, Dφ/Dt = 0
-    pour_and_drain(dt);                           // emitters, open sides
-    redistribute_markers();                       // no holes, no heaps
-    correct_surface(dt);                          // φ joins escaped markers, and is a distance again
-    conduct(dt);                                  // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
-    momentum_to_faces(dt);                        // u* = what the markers carry, or D u/Dt = 0 on the grid
-    forces(dt);                                   // u* += dt f, (I − dt ν∇²) u* = ...
-    const poisson::Report poisson = project(dt);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
+    move_surface(dt);                                   // Dx/Dt = u for markers, Dφ/Dt = 0
+    pour_and_drain(dt);                                 // emitters, open sides
+    redistribute_markers();                             // no holes, no heaps
+    correct_surface(dt);                                // φ joins escaped markers, and is a distance again
+    conduct(dt);                                        // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
+    momentum_to_faces(dt);                              // u* = what the markers carry, or D u/Dt = 0 on the grid
+    forces(kick);                                       // u* += dt f, (I − dt ν∇²) u* = ...
+    const poisson::Report poisson = project(dt, kick);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
     staggered::require_room(state_, solids_, divergence);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
+    leapfrog_.retreat(state_.u, kick);
     state_.time += dt;
     ++steps_;
     if (!held_.cut().empty()) check_own();
@@ -38,6 +42,20 @@ StepReport Water<D>::step(real dt) {
             .residual_after = poisson.residual_after,
             .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]),
             .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
+}
+
+/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies, or
+/// the hand's account: there the first step moves liquid with the velocity that it has.
+template <int D>
+void Water<D>::find_rate(real dt) {
+    if (bodies_ || hand_) return;
+    for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
+    leapfrog_.keep(state_.u, known_);
+    forces(dt);
+    project(dt, dt);
+    extend_velocity(dt);
+    leapfrog_.begin(state_.u, dt);
+    for (int a = 0; a < D; ++a) state_.u[a] = before_[a];
 }
 
 template <int D>
@@ -147,12 +165,15 @@ void Water<D>::momentum_to_faces(real dt) {
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
-        // falls on water would be given to the markers there.
+        // falls on water would be given to the markers there. extend_velocity() has the rest.
         if (bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
         in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
         if (!bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
+    } else {
+        sync_periodic(state_.u, state_.sides);
     }
+    leapfrog_.keep(state_.u, known_);
 }
 
 /// What friction feels of the forces it takes from the last pressure, so that water at rest feels none; project() sees to the rest.
@@ -168,19 +189,19 @@ void Water<D>::forces(real dt) {
 }
 
 template <int D>
-poisson::Report Water<D>::project_once(real dt, bool again) {
+poisson::Report Water<D>::project_once(real dt, real kick, bool again) {
     const auto timed = passes_.time("project");
     impose_emitters(dt, &Emitter<D>::Face::pours);
     const Grid<real, D>* curvature = options_.sigma > 0 ? &curvature_ : nullptr;
-    if (again) return pressure_.project_again(state_, surface_, dt, options_.sigma, curvature);
-    return pressure_.project(state_, surface_, dt, options_.sigma, curvature, bodies_.get(), &solids_);
+    if (again) return pressure_.project_again(state_, surface_, kick, options_.sigma, curvature);
+    return pressure_.project(state_, surface_, kick, options_.sigma, curvature, bodies_.get(), &solids_);
 }
 
 template <int D>
-poisson::Report Water<D>::project(real dt) {
-    slow(dt);
-    poisson::Report report = staggered::explained_by_room(state_, solids_, [&] { return project_once(dt, false); });
-    if (viscosity_ && !bodies_) report = balance_friction(dt, report);
+poisson::Report Water<D>::project(real dt, real kick) {
+    slow(kick);
+    poisson::Report report = staggered::explained_by_room(state_, solids_, [&] { return project_once(dt, kick, false); });
+    if (viscosity_ && !bodies_) report = balance_friction(dt, kick, report);
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);
     refresh(state_.u[D - 1], frame_.periodic(D - 1));
     return report;
@@ -192,6 +213,8 @@ void Water<D>::extend_velocity(real dt) {
     mark_liquid_faces();
     impose_emitters(dt, &Emitter<D>::Face::moves);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), surface_.layers() - 1);
+    // FLIP's gain beside a body is counted from what the liquid brought as the body, at its speed of now, lets it pass.
+    if (bodies_ && options_.transfer == Transfer::flip) in_solids_.constrain(before_, known_, frame_);
     in_solids_.constrain(state_.u, known_, frame_);
     sync_periodic(state_.u, state_.sides);
     rate_ = max_speed_rate();

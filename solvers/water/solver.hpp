@@ -11,6 +11,7 @@
 #include "staggered/solid_faces.hpp"
 #include "staggered/state.hpp"
 #include "surface/extrapolate.hpp"
+#include "surface/leapfrog.hpp"
 #include "surface/level_set.hpp"
 #include "surface/marker_motion.hpp"
 #include "surface/markers.hpp"
@@ -111,6 +112,7 @@ private:
     void stick_to_bodies(const scene::Scene& scene);
 
     // The passes of a step, in order (solver.cpp, sources.cpp)
+    void find_rate(real dt);
     void move_bodies(real dt);
     void move_solids(real t);
     void place_solids(real t);
@@ -133,13 +135,13 @@ private:
     void momentum_to_faces(real dt);
     void remember_velocity();
     void rub(real dt);
-    poisson::Report balance_friction(real dt, poisson::Report report);
+    poisson::Report balance_friction(real dt, real kick, poisson::Report report);
     void what_friction_feels(real dt);
     void rub_again(real dt);
     void mix_pressures();
-    poisson::Report project_once(real dt, bool again);
+    poisson::Report project_once(real dt, real kick, bool again);
     void forces(real dt);
-    poisson::Report project(real dt);
+    poisson::Report project(real dt, real kick);
     void extend_velocity(real dt);
     void momentum_to_markers(real dt);
 
@@ -186,6 +188,7 @@ private:
     Extrapolation<D> extrapolate_;
     FaceSums<D> sums_;
     FaceMarks<D> known_;
+    Leapfrog<D> leapfrog_;
     MacVelocity<D> before_;  // faces as the markers left them, or as they were before advection
     Grid<real, D> curvature_;
     std::unique_ptr<SurfaceViscosity<D>> viscosity_;

@@ -51,7 +51,7 @@ public:
         find_surface();
         sync();  // what the markers brought, beside walls
         surface_.continue_velocity(tally_, 2);
-        if (transfer_ == "flip") sync();
+        sync();
         sync();  // what forces leave
         if (viscous()) rub();
         project();

@@ -1,0 +1,41 @@
+// Energy of waves on tall cells: nothing puts any in.
+#include "support/test.hpp"
+#include "tallcell/solver.hpp"
+
+namespace weir::test {
+namespace {
+
+/// Of motion and of the surface above where its volume stands at rest, a metre wide [J/m].
+real wave_energy(const Solver& solver) {
+    real energy = 0;
+    for (const auto& value : solver.integrals()) {
+        if (value.name == "kinetic_energy" || value.name == "potential_energy") energy += value.value;
+        if (value.name == "volume") energy -= 0.5 * 1000 * 9.81 * value.value * value.value;
+    }
+    return energy;
+}
+
+/// As of mac_water (tests/unit/water/energy.cpp), with the same bound.
+TEST(TallCellEnergy, NoWaveGains) {
+    static const std::vector<scene::SolverSchema> schemas{tallcell::kind().schema};
+    const scene::Scene scene = scene::parse(R"(solver = "tallcell"
+dim = 2
+grid = { cells = [32, 24], size = [1.0, 0.75] }
+time = { end = 12.0 }
+fluid = { density = 1000.0 }
+liquid = [ { shape = "plane", point = [0.5, 0.4], normal = [-0.2, 1.0] } ]
+effects.gravity.g = [0.0, -9.81]
+)",
+                                            "tank.toml", schemas, {});
+    tallcell::TallCells<2> water(scene);
+    const real start = wave_energy(water);
+    real most = 0;
+    while (water.time() < 12) {
+        water.step(water.advised_dt());
+        most = std::max(most, wave_energy(water));
+    }
+    EXPECT_LT(most, 1.01 * start);
+}
+
+}  // namespace
+}  // namespace weir::test
