@@ -157,12 +157,22 @@ void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
     }
 }
 
-/// Cells that a thin solid parts, all their faces: it blocks, whatever its thickness.
+/// Cells that a thin solid parts, all their faces: it blocks, whatever its thickness. Not by free bodies, whose motion answers to every
+/// cell that closes at once.
 template <int D>
 void SolidPlacement<D>::close_parted_cells(MacState<D>& s, std::size_t box) const {
+    const auto& near = near_[box];
+    const auto is_free = [&](std::size_t i) { return solids_[i].free; };
+    if (std::all_of(near.begin(), near.end(), is_free)) return;
+    const bool mixed = std::any_of(near.begin(), near.end(), is_free);
     const Vec<D>& h = s.u.h;
-    const auto distance = [&](const Vec<D>& x) { return solids_.distance(x, near_[box]); };
-    const real steepest = solids_.steepest(near_[box]), beside = 0.5 * steepest * *std::max_element(h.begin(), h.end());
+    const auto distance = [&](const Vec<D>& x) {
+        real d = infinity;
+        for (const std::size_t i : near)
+            if (!solids_[i].free) d = std::min(d, solids_.distance(i, x));
+        return d;
+    };
+    const real steepest = solids_.steepest(near), beside = 0.5 * steepest * *std::max_element(h.begin(), h.end());
     changed_[box].rows([&](Index<D> I, int count) {
         if (!s.solid.open[0].store().holds(I[D - 1])) return;
         std::array<const real*, 1 << D> row;
@@ -174,6 +184,7 @@ void SolidPlacement<D>::close_parted_cells(MacState<D>& s, std::size_t box) cons
             if (*least > beside || *most <= 0) continue;
             Vec<D> x;
             for (int d = 0; d < D; ++d) x[d] = s.u.origin[d] + h[d] * I[d];
+            for (std::size_t c = 0; mixed && c < at.size(); ++c) at[c] = distance(corner_of(x, h, c));
             if (is_parted<D>(distance, at, x, h, steepest)) close(s, box, I);
         }
     });

@@ -122,15 +122,12 @@ bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
     return false;
 }
 
-/// Beside a thin wall the surface passes an open cell where φ changes sign on this side of it.
+/// Beside a thin wall the surface passes an open cell where φ changes sign towards one that open faces join to it.
 template <int D>
 bool LevelSet<D>::crosses_on_this_side(const Index<D>& I) const {
-    Around<D> around;
-    walls_.look(closed_, phi, I, 1, around);
-    const bool inside = phi(I) < 0;
     for (int d = 0; d < D; ++d)
         for (const int by : {-1, 1})
-            if ((around.beside(d, by) < 0) != inside) return true;
+            if (Index<D> J = I; walls_.passes(closed_, I, d, by, J) && inside_(J) != inside_(I)) return true;
     return false;
 }
 
