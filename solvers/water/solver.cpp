@@ -23,6 +23,14 @@ StepReport Water<D>::step(real dt) {
     const real divergence = pressure_.max_divergence(state_);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
+    if (getenv("VDBG")) {
+        real m = 0, mp = 0; Index<D> at{}, atp{};
+        for (std::size_t i = 0; i < product(frame_.cells); ++i) { const auto I = frame_.index_of(i); for (int a = 0; a < D; ++a) if (std::abs(state_.u[a](I)) > m && known_[a](I)==1) m = std::abs(state_.u[a](I)), at = I;
+           if (std::abs(volume_.part()(I)-0.5) > mp) mp = std::abs(volume_.part()(I)-.5), atp = I; }
+        int nan=0; for (std::size_t i = 0; i < product(frame_.cells); ++i) nan += !(std::isfinite(volume_.part()[i])) + 1000*!std::isfinite(surface_.phi[i]);
+        printf("step %ld t %.4f dt %.5f umax %.3g at %d %d phi %.3f F %.3f | Fext %.4g at %d %d phi %.3f nan %d it %d\n", (long)steps_, state_.time, dt, m, at[0], at[1], surface_.phi(at)/frame_.h_min(), volume_.part()(at), mp+.5, atp[0], atp[1], surface_.phi(atp)/frame_.h_min(), nan, poisson.iterations);
+        if (m > 15) for (int j = std::min(at[1]+5, frame_.cells[1]-1); j >= std::max(0,at[1]-5); --j) { for (int i = std::max(0,at[0]-5); i <= std::min(frame_.cells[0]-1,at[0]+5); ++i) { Index<D> J{}; J[0]=i; J[1]=j; printf("%6.2f/%5.2f", surface_.phi(J)/frame_.h_min(), volume_.part()(J)); } printf("\n"); }
+    }
     state_.time += dt;
     ++steps_;
     if (!held_.cut().empty()) check_own();
@@ -78,6 +86,7 @@ void Water<D>::move_surface(real dt) {
     const auto timed = passes_.time("move surface");
     move_markers(markers_, state_.u, frame_, dt, options_.trace, state_.sides, solids_.solids(), near_solid_);
     if (heat_) heat_->carry(state_, surface_, dt, options_.trace);
+    volume_target_ -= volume_.advect(state_, surface_.phi, dt, steps_ % 2 == 1);
     surface_.advect(state_.u, dt, reach_);
 }
 
@@ -85,7 +94,10 @@ template <int D>
 void Water<D>::correct_surface(real dt) {
     {
         const auto timed = passes_.time("level set");
-        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
+        const auto& exempt = not_solved_for(dt);
+        volume_.settle(surface_.phi, state_, exempt);
+        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_, &volume_.part()));
+        volume_.correct(surface_, state_, exempt);
         surface_.redistance();
     }
     evaporate(dt);

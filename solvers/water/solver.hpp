@@ -16,6 +16,7 @@
 #include "surface/markers.hpp"
 #include "surface/solid_faces.hpp"
 #include "surface/start.hpp"
+#include "surface/volume_fraction.hpp"
 #include "water/emitters.hpp"
 #include "water/heat.hpp"
 #include "water/pressure.hpp"
@@ -88,6 +89,7 @@ public:
     const MacState<D>& state() const { return state_; }
     const LevelSet<D>& surface() const { return surface_; }
     const Markers<D>& markers() const { return markers_; }
+    const LiquidVolume<D>& volume() const { return volume_; }
 
 private:
     // Start (start.cpp)
@@ -163,6 +165,7 @@ private:
 
     Markers<D> markers_;
     LevelSet<D> surface_;
+    LiquidVolume<D> volume_;  // what the surface is to enclose
     SurfacePressure<D> pressure_;
     Extrapolation<D> extrapolate_;
     FaceSums<D> sums_;

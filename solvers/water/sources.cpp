@@ -86,7 +86,10 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
             const Vec<D> earlier = x - (to - from) * emitter.velocity;
             const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
             const bool enters = now && !before, fills = starts && before && !(surface_.phi(frame_.cell_of(earlier)) < 0);
-            if ((enters || fills) && is_free(x)) markers_.add(x, emitter.velocity), poured += is_own_plane(frame_.cell_of(x)[D - 1]);
+            if ((enters || fills) && is_free(x)) {
+                markers_.add(x, emitter.velocity), poured += is_own_plane(frame_.cell_of(x)[D - 1]);
+                volume_.add(frame_.cell_of(x), real(1) / Markers<D>::per_cell);
+            }
         }
     });
     for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
@@ -102,8 +105,7 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
 template <int D>
 void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
-    const auto [all, departed] = let_depart();
-    if (departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
+    let_depart();
     bool pours = false;
     std::int64_t poured = 0;
     for (const auto& emitter : emitters_)

@@ -1,0 +1,169 @@
+// What makes the level set and the liquid parts of cells agree: rests that no cell can hold go on to their neighbours, and the surface moves
+// to enclose what the cells hold.
+#include "core/parallel.hpp"
+#include "surface/volume_fraction.hpp"
+
+namespace weir::surface {
+
+namespace {
+constexpr real noise = 1e-6;   // part of a cell that the pressure's tolerance may leave
+constexpr int passes = 2;      // cells that a rest goes on in a step
+constexpr real furthest = 0.1; // that the surface is moved in a step [h]
+}  // namespace
+
+/// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
+template <int D>
+real LiquidVolume<D>::rest_of(real part, real phi, bool exempt) const {
+    const real h = frame_.h_max();
+    if (part > 1 + noise) return part - 1;
+    if (part < -noise) return part;
+    if (phi < -1.5 * h && part < 1 - noise && !exempt) return part - 1;
+    if (phi > 1.0 * h && phi < 2 * h && part > noise) return part;
+    return 0;
+}
+
+/// f(first cell, count) for the lines of cells of this rank's own planes and the next ones beyond its cuts, in the order of the grid.
+template <int D>
+template <class F>
+void LiquidVolume<D>::for_each_near_line(F&& f) const {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    for (std::size_t line = 0; line < part_.size(); line += n) {
+        const Index<D> I = frame_.index_of(line);
+        if (is_own_plane(I[D - 1]) || is_own_plane(frame_.near(I, D - 1, 1)[D - 1]) || is_own_plane(frame_.near(I, D - 1, -1)[D - 1]))
+            f(line, n);
+    }
+}
+
+template <int D>
+void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    rests_.clear();
+    for_each_near_line([&](std::size_t line, std::size_t n) {
+        for (std::size_t i = line; i < line + n; ++i) {
+            const bool solid = state.cells[i] == poisson::Cell::solid;
+            const real rest = solid ? part_[i] : rest_of(part_[i], phi[i], !exempt.empty() && exempt[i]);
+            if (rest != 0) rests_.push_back({i, rest});
+        }
+    });
+}
+
+/// To neighbours in proportion to how far φ rises to them, where there is too much or a hole; or falls, where there is less than nothing, or
+/// liquid outside. To all alike where φ does neither.
+template <int D>
+void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state) {
+    for (const Rest& rest : rests_) {
+        const Index<D> I = frame_.index_of(rest.cell);
+        const bool outwards = rest.part > 0 ? part_(I) > 1 : part_(I) >= 0;
+        std::array<real, 2 * D> weight{};
+        std::array<Index<D>, 2 * D> to;
+        real sum = 0;
+        int ways = 0;
+        for (int d = 0; d < D; ++d)
+            for (const int by : {-1, 1}) {
+                const auto at = static_cast<std::size_t>(2 * d + (by + 1) / 2);
+                weight[at] = -1;
+                to[at] = I;
+                if (!frame_.step(to[at], d, by)) continue;
+                if (state.cells(to[at]) == poisson::Cell::solid) continue;
+                const Index<D> face = by < 0 ? I : I + e<D>(d);
+                if (state.solid.any() && state.cells(I) != poisson::Cell::solid && !(state.solid.open[static_cast<std::size_t>(d)](face) > 0)) continue;
+                const real rise = phi(to[at]) - phi(I);
+                weight[at] = std::max(outwards ? rise : -rise, real(0));
+                sum += weight[at];
+                ++ways;
+            }
+        if (ways == 0) continue;
+        for (std::size_t at = 0; at < 2 * D; ++at) {
+            if (weight[at] < 0) continue;
+            const real share = sum > 0 ? weight[at] / sum : real(1) / ways;
+            if (share > 0 && is_own_plane(to[at][D - 1])) missing_(to[at]) += share * rest.part;
+        }
+        if (is_own_plane(I[D - 1])) missing_(I) -= rest.part;
+    }
+}
+
+template <int D>
+void LiquidVolume<D>::settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    missing_.fill(0);
+    for (int pass = 0; pass < passes; ++pass) {
+        refresh(part_, frame_.periodic(D - 1), 1);
+        find_rests(phi, state, exempt);
+        hand_on(phi, state);
+        for_each_cell(frame_.cells, [&](const Index<D>& I) { part_(I) += missing_(I), missing_(I) = 0; });
+    }
+}
+
+template <int D>
+void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    const real h = frame_.h_min();
+    auto& phi = surface.phi;
+    refresh(phi, frame_.periodic(D - 1), 3);
+    refresh(part_, frame_.periodic(D - 1), 2);
+    {
+        const WiderPlanes wider(1);
+        for_each_cell(frame_.cells, [&](const Index<D>& I) {
+            missing_(I) = 0, near_(I) = 0;
+            const real distance = std::abs(phi(I));
+            if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
+            missing_(I) = part_(I) - surface.fraction(I);
+            near_(I) = std::max(1 - distance / h, real(0));
+        });
+    }
+    refresh(missing_, frame_.periodic(D - 1));
+    refresh(near_, frame_.periodic(D - 1));
+    for_each_cell(frame_.cells, [&](const Index<D>& I) {
+        if (std::abs(phi(I)) > 2 * h) return;
+        real excess = 0, area = 0;
+        for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
+            Index<D> J = I;
+            bool inside = true;
+            for (int d = 0, rest = corner; d < D; ++d, rest /= 3) inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
+            if (inside) excess += missing_(J), area += near_(J);
+        }
+        if (std::abs(excess) < 1e-9) return;
+        dilation_(I) = area > 0 ? std::clamp(excess / area, -furthest, furthest) * h : 0;
+        full_(I) = 2;
+    });
+    find_drops(phi, state);
+    for_each_cell(frame_.cells, [&](const Index<D>& I) {
+        if (full_(I) != 2) return;
+        full_(I) = 0;
+        phi(I) -= dilation_(I);
+    });
+    for (const std::size_t drop : drops_) join_drop(phi, frame_.index_of(drop));
+}
+
+/// Cells more than half full in which φ shows no liquid.
+template <int D>
+void LiquidVolume<D>::find_drops(const Grid<real, D>& phi, const MacState<D>& state) {
+    drops_.clear();
+    const real h = frame_.h_min();
+    for_each_near_line([&](std::size_t line, std::size_t n) {
+        for (std::size_t i = line; i < line + n; ++i)
+            if (part_[i] > 0.5 && phi[i] > 0.5 * h && state.cells[i] != poisson::Cell::solid) drops_.push_back(i);
+    });
+}
+
+/// Liquid of a cell that φ does not show: as full as the cell is under a flat surface, and as far below the middles of the cells around.
+template <int D>
+void LiquidVolume<D>::join_drop(Grid<real, D>& phi, const Index<D>& I) {
+    const real h = frame_.h_min(), here = (0.5 - std::min<real>(part_(I), 1)) * h;
+    for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
+        Index<D> J = I;
+        bool inside = true;
+        Vec<D> by{};
+        for (int d = 0, rest = corner; d < D; ++d, rest /= 3) {
+            by[d] = frame_.h[d] * (rest % 3 - 1);
+            inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
+        }
+        if (inside && is_own_plane(J[D - 1])) phi(J) = std::min(phi(J), here + norm(by));
+    }
+}
+
+#define WEIR_INSTANTIATE(D)                                                                                                          \
+    template void LiquidVolume<D>::settle(const Grid<real, D>&, const MacState<D>&, const Grid<std::uint8_t, D>&);                   \
+    template void LiquidVolume<D>::correct(LevelSet<D>&, const MacState<D>&, const Grid<std::uint8_t, D>&);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::surface
