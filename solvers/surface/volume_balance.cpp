@@ -8,7 +8,8 @@ namespace weir::surface {
 namespace {
 constexpr real noise = 1e-6;   // part of a cell that the pressure's tolerance may leave
 constexpr int passes = 2;      // cells that a rest goes on in a step
-constexpr real furthest = 0.1; // that the surface is moved in a step [h]
+constexpr real furthest = 0.1;  // that the surface is moved in a step [h]
+constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth waves of second order in both stay within it
 }  // namespace
 
 /// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
@@ -18,7 +19,7 @@ real LiquidVolume<D>::rest_of(real part, real phi, bool exempt) const {
     if (part > 1 + noise) return part - 1;
     if (part < -noise) return part;
     if (phi < -1.5 * h && part < 1 - noise && !exempt) return part - 1;
-    if (phi > 1.0 * h && phi < 2 * h && part > noise) return part;
+    if (phi > 1.0 * h && phi < reach_ && part > noise) return part;
     return 0;
 }
 
@@ -119,8 +120,9 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
             for (int d = 0, rest = corner; d < D; ++d, rest /= 3) inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
             if (inside) excess += missing_(J), area += near_(J);
         }
-        if (std::abs(excess) < 1e-9) return;
-        dilation_(I) = area > 0 ? std::clamp(excess / area, -furthest, furthest) * h : 0;
+        const real shift = area > 0 ? excess / area : 0;
+        if (std::abs(shift) <= unsure) return;
+        dilation_(I) = std::clamp(shift - std::copysign(unsure, shift), -furthest, furthest) * h;
         full_(I) = 2;
     });
     find_drops(phi, state);

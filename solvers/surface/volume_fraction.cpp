@@ -21,6 +21,7 @@ LiquidVolume<D>::LiquidVolume(const Frame<D>& frame)
 
 template <int D>
 void LiquidVolume<D>::start(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
+    reach_ = 0.999 * surface.cap();
     for_each_cell(frame_.cells, [&](const Index<D>& I) { part_(I) = !closed.empty() && closed(I) ? 0 : surface.fraction(I); });
 }
 

@@ -53,6 +53,7 @@ private:
     void join_drop(Grid<real, D>& phi, const Index<D>& I);
 
     Frame<D> frame_;
+    real reach_ = 0;  // of the level set's band [m]
     Grid<real, D> part_;
     Grid<real, D> dilation_;       // Σ c dC of the sweeps so far
     Grid<std::uint8_t, D> full_;   // c: F > ½ as the step began

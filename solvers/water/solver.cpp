@@ -23,14 +23,6 @@ StepReport Water<D>::step(real dt) {
     const real divergence = pressure_.max_divergence(state_);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
-    if (getenv("VDBG")) {
-        real m = 0, mp = 0; Index<D> at{}, atp{};
-        for (std::size_t i = 0; i < product(frame_.cells); ++i) { const auto I = frame_.index_of(i); for (int a = 0; a < D; ++a) if (std::abs(state_.u[a](I)) > m && known_[a](I)==1) m = std::abs(state_.u[a](I)), at = I;
-           if (std::abs(volume_.part()(I)-0.5) > mp) mp = std::abs(volume_.part()(I)-.5), atp = I; }
-        int nan=0; for (std::size_t i = 0; i < product(frame_.cells); ++i) nan += !(std::isfinite(volume_.part()[i])) + 1000*!std::isfinite(surface_.phi[i]);
-        printf("step %ld t %.4f dt %.5f umax %.3g at %d %d phi %.3f F %.3f | Fext %.4g at %d %d phi %.3f nan %d it %d\n", (long)steps_, state_.time, dt, m, at[0], at[1], surface_.phi(at)/frame_.h_min(), volume_.part()(at), mp+.5, atp[0], atp[1], surface_.phi(atp)/frame_.h_min(), nan, poisson.iterations);
-        if (m > 15) for (int j = std::min(at[1]+5, frame_.cells[1]-1); j >= std::max(0,at[1]-5); --j) { for (int i = std::max(0,at[0]-5); i <= std::min(frame_.cells[0]-1,at[0]+5); ++i) { Index<D> J{}; J[0]=i; J[1]=j; printf("%6.2f/%5.2f", surface_.phi(J)/frame_.h_min(), volume_.part()(J)); } printf("\n"); }
-    }
     state_.time += dt;
     ++steps_;
     if (!held_.cut().empty()) check_own();
@@ -152,6 +144,7 @@ void Water<D>::momentum_to_faces(real dt) {
     impose_emitters(dt, &Emitter<D>::Face::moves);
     in_solids_.forget(known_);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
+    still_air();
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
         // falls on water would be given to the markers there.
@@ -159,6 +152,21 @@ void Water<D>::momentum_to_faces(real dt) {
         in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
         if (!bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
+    }
+}
+
+/// Farther from the liquid nothing says what moves: what stood there is of earlier steps, and would fall for ever.
+template <int D>
+void Water<D>::still_air() {
+    for (int a = 0; a < D; ++a) {
+        const auto& known = known_[static_cast<std::size_t>(a)];
+        auto& u = state_.u[a];
+        for_each_line(known.extent(), [&](const Index<D>&, std::size_t at) {
+            const std::uint8_t* mark = known.data() + at;
+            real* face = u.data() + at;
+#pragma omp simd
+            for (int i = 0; i < known.extent()[0]; ++i) face[i] = mark[i] ? face[i] : 0;
+        });
     }
 }
 

@@ -120,6 +120,7 @@ private:
     void conduct(real dt);
     void slow(real dt);
     void momentum_to_faces(real dt);
+    void still_air();
     void rub(real dt);
     void forces(real dt);
     poisson::Report project(real dt);

@@ -226,7 +226,8 @@ void Water<D>::redistribute_markers() {
         }
         const int count = markers_.in_cell(cell);
         heaps |= count > many;
-        if (count >= few || surface_.phi[cell] > deep || (!closed_.empty() && closed_[cell])) continue;
+        const bool bare = count == 0 && volume_.part()[cell] > 0.5 && surface_.phi[cell] < 0;  // liquid that has lost its markers
+        if (count >= few || (surface_.phi[cell] > deep && !bare) || (!closed_.empty() && closed_[cell])) continue;
         const Index<D> I = frame_.index_of(cell);
         const std::size_t before = markers_.count();
         changed |= fill_cell(I, few);
