@@ -23,26 +23,28 @@ real LiquidVolume<D>::rest_of(real part, real phi, bool exempt) const {
     return 0;
 }
 
-/// f(first cell, count) for the lines of cells of this rank's own planes and the next ones beyond its cuts, in the order of the grid.
+/// f(first, last) for the parts of lines with liquid, of this rank's own planes and the next ones beyond its cuts, in the order of the grid.
 template <int D>
 template <class F>
 void LiquidVolume<D>::for_each_near_line(F&& f) const {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
-    for (std::size_t line = 0; line < part_.size(); line += n) {
-        const Index<D> I = frame_.index_of(line);
-        if (is_own_plane(I[D - 1]) || is_own_plane(frame_.near(I, D - 1, 1)[D - 1]) || is_own_plane(frame_.near(I, D - 1, -1)[D - 1]))
-            f(line, n);
+    for (std::size_t line = 0; line < lines_.size(); ++line) {
+        const Index<D> I = frame_.index_of(line * n);
+        if (!is_own_plane(I[D - 1]) && !is_own_plane(frame_.near(I, D - 1, 1)[D - 1]) && !is_own_plane(frame_.near(I, D - 1, -1)[D - 1]))
+            continue;
+        const Extent& wet = lines_[line];
+        if (!wet.empty()) f(line * n + static_cast<std::size_t>(wet.begin), line * n + static_cast<std::size_t>(wet.end));
     }
 }
 
 template <int D>
 void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
     rests_.clear();
-    for_each_near_line([&](std::size_t line, std::size_t n) {
-        for (std::size_t i = line; i < line + n; ++i) {
+    for_each_near_line([&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
             const bool solid = state.cells[i] == poisson::Cell::solid;
             const real rest = solid ? part_[i] : rest_of(part_[i], phi[i], !exempt.empty() && exempt[i]);
-            if (rest != 0) rests_.push_back({i, rest});
+            if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > 1 : part_[i] >= 0});
         }
     });
 }
@@ -53,7 +55,7 @@ template <int D>
 void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state) {
     for (const Rest& rest : rests_) {
         const Index<D> I = frame_.index_of(rest.cell);
-        const bool outwards = rest.part > 0 ? part_(I) > 1 : part_(I) >= 0;
+        const bool outwards = rest.outwards;
         std::array<real, 2 * D> weight{};
         std::array<Index<D>, 2 * D> to;
         real sum = 0;
@@ -76,21 +78,38 @@ void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state
         for (std::size_t at = 0; at < 2 * D; ++at) {
             if (weight[at] < 0) continue;
             const real share = sum > 0 ? weight[at] / sum : real(1) / ways;
-            if (share > 0 && is_own_plane(to[at][D - 1])) missing_(to[at]) += share * rest.part;
+            if (share > 0 && is_own_plane(to[at][D - 1])) part_(to[at]) += share * rest.part;
         }
-        if (is_own_plane(I[D - 1])) missing_(I) -= rest.part;
+        if (is_own_plane(I[D - 1])) part_(I) -= rest.part;
     }
 }
 
 template <int D>
 void LiquidVolume<D>::settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
-    missing_.fill(0);
     for (int pass = 0; pass < passes; ++pass) {
-        refresh(part_, frame_.periodic(D - 1), 1);
+        refresh(part_, frame_.periodic(D - 1), 2);
+        find_reach();
         find_rests(phi, state, exempt);
         hand_on(phi, state);
-        for_each_cell(frame_.cells, [&](const Index<D>& I) { part_(I) += missing_(I), missing_(I) = 0; });
     }
+}
+
+/// F minus φ's fraction, and the surface that there is, in the cells near it.
+template <int D>
+void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    const real h = frame_.h_min();
+    const auto& band = surface.band();
+    parallel_for(0, static_cast<int>(band.size()), [&](int i) {
+        const Index<D>& I = band[static_cast<std::size_t>(i)];
+        if (!is_own_plane(I[D - 1])) return;
+        missing_(I) = 0, near_(I) = 0, full_(I) = 0;
+        const real distance = std::abs(surface.phi(I));
+        if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
+        missing_(I) = part_(I) - surface.fraction(I);
+        near_(I) = std::max(1 - distance / h, real(0));
+    });
+    refresh(missing_, frame_.periodic(D - 1));
+    refresh(near_, frame_.periodic(D - 1));
 }
 
 template <int D>
@@ -99,19 +118,17 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
     auto& phi = surface.phi;
     refresh(phi, frame_.periodic(D - 1), 3);
     refresh(part_, frame_.periodic(D - 1), 2);
-    {
-        const WiderPlanes wider(1);
-        for_each_cell(frame_.cells, [&](const Index<D>& I) {
-            missing_(I) = 0, near_(I) = 0;
-            const real distance = std::abs(phi(I));
-            if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
-            missing_(I) = part_(I) - surface.fraction(I);
-            near_(I) = std::max(1 - distance / h, real(0));
+    find_reach();
+    compare(surface, state, exempt);
+    const auto& band = surface.band();
+    const auto for_each_in_band = [&](auto&& f) {
+        parallel_for(0, static_cast<int>(band.size()), [&](int i) {
+            const Index<D>& I = band[static_cast<std::size_t>(i)];
+            if (is_own_plane(I[D - 1])) f(I);
         });
-    }
-    refresh(missing_, frame_.periodic(D - 1));
-    refresh(near_, frame_.periodic(D - 1));
-    for_each_cell(frame_.cells, [&](const Index<D>& I) {
+    };
+    for_each_in_band([&](const Index<D>& I) {
+        dilation_(I) = 0;
         if (std::abs(phi(I)) > 2 * h) return;
         real excess = 0, area = 0;
         for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
@@ -121,16 +138,10 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
             if (inside) excess += missing_(J), area += near_(J);
         }
         const real shift = area > 0 ? excess / area : 0;
-        if (std::abs(shift) <= unsure) return;
-        dilation_(I) = std::clamp(shift - std::copysign(unsure, shift), -furthest, furthest) * h;
-        full_(I) = 2;
+        if (std::abs(shift) > unsure) dilation_(I) = std::clamp(shift - std::copysign(unsure, shift), -furthest, furthest) * h;
     });
     find_drops(phi, state);
-    for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        if (full_(I) != 2) return;
-        full_(I) = 0;
-        phi(I) -= dilation_(I);
-    });
+    for_each_in_band([&](const Index<D>& I) { phi(I) -= dilation_(I), missing_(I) = 0, near_(I) = 0; });
     for (const std::size_t drop : drops_) join_drop(phi, frame_.index_of(drop));
 }
 
@@ -139,8 +150,8 @@ template <int D>
 void LiquidVolume<D>::find_drops(const Grid<real, D>& phi, const MacState<D>& state) {
     drops_.clear();
     const real h = frame_.h_min();
-    for_each_near_line([&](std::size_t line, std::size_t n) {
-        for (std::size_t i = line; i < line + n; ++i)
+    for_each_near_line([&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
             if (part_[i] > 0.5 && phi[i] > 0.5 * h && state.cells[i] != poisson::Cell::solid) drops_.push_back(i);
     });
 }

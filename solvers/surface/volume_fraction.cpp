@@ -15,8 +15,10 @@ LiquidVolume<D>::LiquidVolume(const Frame<D>& frame)
     : frame_(frame), part_(frame.cells), dilation_(frame.cells), full_(frame.cells), missing_(frame.cells), near_(frame.cells) {
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
-        flux_[at] = courant_[at] = Grid<real, D>(frame.cells + e<D>(a));
+        flux_[at] = Grid<real, D>(frame.cells + e<D>(a));
     }
+    lines_.resize(product(frame.cells) / static_cast<std::size_t>(frame.cells[0]), {frame.cells[0], 0});
+    reach_of_ = lines_;
 }
 
 template <int D>
@@ -67,79 +69,181 @@ real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const Index<D>& d
     return courant > 0 ? through : -through;
 }
 
-/// One direction: fluxes of all faces along `axis`, then F −= ΔF − c ΔC.
+/// f(line) for the lines of cells of this rank's own planes, and of so many planes more beyond its cuts; threaded over planes.
+template <int D>
+template <class F>
+void LiquidVolume<D>::for_each_own_line(int beyond, F&& f) const {
+    const WiderPlanes wider(beyond);
+    const int planes = frame_.cells[D - 1], lines = static_cast<int>(lines_.size()) / planes;
+    for_each_plane(0, planes, [&](int k) {
+        for (int j = 0; j < lines; ++j) f(static_cast<std::size_t>(k * lines + j));
+    });
+}
+
+/// Of each line the part that holds liquid, and the part that liquid can come to in one sweep along each axis.
+template <int D>
+void LiquidVolume<D>::find_reach() {
+    const int n = frame_.cells[0];
+    const auto wet = [&](std::size_t line) {
+        const real* F = part_.data() + line * static_cast<std::size_t>(n);
+        Extent extent{0, n};
+        while (extent.begin < n && F[extent.begin] == 0) ++extent.begin;
+        while (extent.end > extent.begin && F[extent.end - 1] == 0) --extent.end;
+        lines_[line] = extent.empty() ? Extent{n, 0} : extent;
+    };
+    for_each_own_line(2, wet);
+    for_each_own_line(1, [&](std::size_t line) {
+        Extent extent = lines_[line];
+        const Index<D> I = frame_.index_of(line * static_cast<std::size_t>(n));
+        for (int corner = 0; corner < (D == 2 ? 3 : 9); ++corner) {
+            Index<D> J = frame_.near(I, D - 1, corner % 3 - 1);
+            if constexpr (D == 3) J = frame_.near(J, 1, corner / 3 - 1);
+            extent.join(lines_[frame_.linear(J) / static_cast<std::size_t>(n)]);
+        }
+        const bool wraps = frame_.periodic(0) && !extent.empty() && (extent.begin == 0 || extent.end == n);
+        if (!extent.empty()) extent = wraps ? Extent{0, n} : Extent{std::max(extent.begin - 1, 0), std::min(extent.end + 1, n)};
+        reach_of_[line] = extent;
+    });
+}
+
+/// The fluxes of the faces first, first + 1, .. of a line along `axis`; `lower` and `upper`: the cells beside the first one.
+template <int D>
+void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t lower, std::size_t upper, int count) {
+    const real *u = s.u + face, *open = s.open ? s.open + face : nullptr, *below = part_.data() + lower, *above = part_.data() + upper;
+    real* flux = s.flux + face;
+    int cut = 0;
+#pragma omp simd reduction(| : cut)
+    for (int i = 0; i < count; ++i) {
+        const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
+        flux[i] = C * F;
+        cut |= F > dust && F < 1 - dust;
+    }
+    for (int i = 0; cut != 0 && i < count; ++i) {
+        const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
+        if (C == 0 || F <= dust || F >= 1 - dust) continue;
+        flux[i] = liquid_through(*s.phi, frame_.index_of((C > 0 ? lower : upper) + static_cast<std::size_t>(i)), s.axis, C);
+    }
+}
+
+/// On a side of the domain: through walls nothing, through open sides only outwards; around a periodic axis as inside.
+template <int D>
+void LiquidVolume<D>::find_side_flux(const Sweep& s, const MacState<D>& state, const Index<D>& I, std::size_t face) {
+    const int end = I[s.axis] == 0 ? 0 : 1;
+    if (frame_.periodic(s.axis))
+        return find_fluxes(s, face, frame_.linear(frame_.near(I, s.axis, -1)), frame_.linear(frame_.near(I, s.axis, 0)), 1);
+    s.flux[face] = 0;
+    if (!state.sides.open(s.axis, end) || (s.u[face] > 0) != (end == 1)) return;
+    const std::size_t donor = frame_.linear(frame_.near(I, s.axis, -end));
+    find_fluxes(s, face, donor, donor, 1);
+}
+
+/// One direction: fluxes of all faces along `axis` near liquid, then F −= ΔF − c ΔC.
 template <int D>
 void LiquidVolume<D>::sweep(const MacState<D>& state, const Grid<real, D>& phi, real dt, int axis, real& departed) {
-    const auto at = static_cast<std::size_t>(axis);
-    auto &flux = flux_[at], &courant = courant_[at];
-    const auto& u = state.u[axis];
-    const real* open = state.solid.any() ? state.solid.open[at].data() : nullptr;
-    const real scale = dt * frame_.inv_h[axis];
-    const Index<D> faces = flux.extent();
-    const int n = frame_.cells[axis];
+    const auto at = static_cast<std::size_t>(axis), n = static_cast<std::size_t>(frame_.cells[0]);
+    Grid<real, D>& flux = flux_[at];
+    const Sweep s{axis, dt * frame_.inv_h[axis], state.u[axis].data(), state.solid.any() ? state.solid.open[at].data() : nullptr, &phi,
+                  flux.data()};
     refresh(part_, frame_.periodic(D - 1), 2);
-    const int last = faces[D - 1], begin = detail::own_share.lower(0), end = std::min(last, detail::own_share.upper(last - 1) + 1);
-    parallel_for(begin, end, [&](int k) {
-        Index<D> lo{}, hi = faces;
-        lo[D - 1] = k, hi[D - 1] = k + 1;
-        const int rows = D == 3 ? hi[1] : 1;
-        for (int j = 0; j < rows; ++j) {
-            Index<D> I = lo;
-            if constexpr (D == 3) I[1] = j;
-            for (; I[0] < faces[0]; ++I[0]) {
-                const std::size_t face = flux.linear(I);
-                real C = scale * u[face] * (open ? open[face] : 1);
-                const bool side = !frame_.periodic(axis) && (I[axis] == 0 || I[axis] == n);
-                if (side && (!state.sides.open(axis, I[axis] == 0 ? 0 : 1) || (C > 0) == (I[axis] == 0))) C = 0;
-                courant[face] = C;
-                real through = 0;
-                if (C != 0) {
-                    const Index<D> donor = frame_.near(I, axis, C > 0 ? -1 : 0);
-                    const real F = part_(donor);
-                    through = F > dust && F < 1 - dust ? liquid_through(phi, donor, axis, C) : C * F;
-                }
-                flux[face] = through;
-            }
+    const int own_begin = detail::own_share.begin;
+    for_each_own_line(axis == D - 1 ? 1 : 0, [&](std::size_t line) {
+        // The faces below a line's cells, and those above the last line's
+        const Index<D> I = frame_.index_of(line * n);
+        if (I[D - 1] < own_begin) return;
+        Extent reach = reach_of_[line];
+        if (axis > 0 && I[axis] > 0) reach.join(reach_of_[line - static_cast<std::size_t>(part_.stride(axis)) / n]);
+        if (reach.empty()) return;
+        const std::size_t face = flux.linear(I), cell = line * n, begin = static_cast<std::size_t>(reach.begin);
+        if (axis == 0) {
+            const int first = std::max(reach.begin, 1), last = std::min(reach.end, frame_.cells[0] - 1);  // faces with a cell on both sides
+            if (first <= last)
+                find_fluxes(s, face + static_cast<std::size_t>(first), cell + static_cast<std::size_t>(first) - 1,
+                            cell + static_cast<std::size_t>(first), last - first + 1);
+            if (reach.begin == 0) find_side_flux(s, state, I, face);
+            if (Index<D> J = I; reach.end == frame_.cells[0]) J[0] = reach.end, find_side_flux(s, state, J, face + n);
+            return;
+        }
+        const auto side_fluxes = [&](Index<D> J) {
+            J[0] = reach.begin;
+            for (; J[0] < reach.end; ++J[0]) find_side_flux(s, state, J, flux.linear(J));
+        };
+        if (I[axis] == 0)
+            side_fluxes(I);
+        else
+            find_fluxes(s, face + begin, cell + begin - static_cast<std::size_t>(part_.stride(axis)), cell + begin,
+                        reach.end - reach.begin);
+        if (I[axis] + 1 == frame_.cells[axis]) side_fluxes(I + e<D>(axis));
+    });
+    add_fluxes(s, flux);
+    for (const int side : {0, 1})
+        if (!frame_.periodic(axis) && state.sides.open(axis, side)) departed += through_side(flux, axis, side);
+}
+
+template <int D>
+void LiquidVolume<D>::add_fluxes(const Sweep& s, const Grid<real, D>& flux) {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    const auto up = flux.stride(s.axis);
+    for_each_own_line(0, [&](std::size_t line) {
+        const Extent& reach = reach_of_[line];
+        if (reach.empty()) return;
+        const std::size_t face = flux.linear(frame_.index_of(line * n));
+        const real *f = flux.data() + face, *u = s.u + face, *open = s.open ? s.open + face : nullptr;
+        real *F = part_.data() + line * n, *sum = dilation_.data() + line * n;
+        const std::uint8_t* full = full_.data() + line * n;
+#pragma omp simd
+        for (int i = reach.begin; i < reach.end; ++i) {
+            const real lower = u[i] * (open ? open[i] : 1), upper = u[i + up] * (open ? open[i + up] : 1);
+            const real dilation = full[i] ? s.scale * (upper - lower) : 0;
+            sum[i] += dilation;
+            F[i] += dilation - (f[i + up] - f[i]);
         }
     });
-    const auto up = flux.stride(axis);
-    for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        const real *f = &flux(I), *c = &courant(I);
-        const real dilation = full_(I) ? c[up] - c[0] : 0;
-        dilation_(I) += dilation;
-        part_(I) += dilation - (f[up] - f[0]);
+}
+
+/// Parts of cells that have left through an open side.
+template <int D>
+real LiquidVolume<D>::through_side(const Grid<real, D>& flux, int axis, int side) const {
+    const int n = frame_.cells[axis];
+    return plane_sum(frame_.cells[D - 1], [&](int k) {
+        real sum = 0;
+        Index<D> lo{}, hi = flux.extent();
+        if (axis == D - 1 && k != (side == 0 ? 0 : n - 1)) return sum;
+        lo[D - 1] = k, hi[D - 1] = k + 1;
+        lo[axis] = side == 0 ? 0 : n, hi[axis] = lo[axis] + 1;
+        const int rows = D == 3 ? hi[1] : lo[1] + 1;
+        for (int j = lo[1]; j < rows; ++j) {
+            Index<D> I = lo;
+            I[1] = j;
+            for (; I[0] < hi[0]; ++I[0]) {
+                Index<D> cell = I;
+                cell[axis] -= side;
+                const Extent& reach = reach_of_[frame_.linear(cell) / static_cast<std::size_t>(frame_.cells[0])];
+                if (cell[0] >= reach.begin && cell[0] < reach.end) sum += std::abs(flux(I));
+            }
+        }
+        return sum;
     });
-    if (frame_.periodic(axis)) return;
-    for (const int side : {0, 1}) {
-        if (!state.sides.open(axis, side)) continue;
-        const int wall = side == 0 ? 0 : n;
-        Index<D> lo{}, hi = faces;
-        lo[axis] = wall, hi[axis] = wall + 1;
-        departed += plane_sum(frame_.cells[D - 1], [&](int k) {
-            real sum = 0;
-            Index<D> from = lo, to = hi;
-            if (axis == D - 1) {
-                if (k != (side == 0 ? 0 : n - 1)) return sum;
-            } else {
-                from[D - 1] = k, to[D - 1] = k + 1;
-            }
-            const int rows = D == 3 ? to[1] : from[1] + 1;
-            for (int j = from[1]; j < rows; ++j) {
-                Index<D> I = from;
-                I[1] = j;
-                for (I[0] = from[0]; I[0] < to[0]; ++I[0]) sum += std::abs(flux(I));
-            }
-            return sum;
-        });
-    }
 }
 
 template <int D>
 real LiquidVolume<D>::advect(const MacState<D>& state, const Grid<real, D>& phi, real dt, bool reversed) {
     real departed = 0;
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { dilation_(I) = 0, full_(I) = part_(I) > 0.5; });
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    refresh(part_, frame_.periodic(D - 1), 2);
+    find_reach();
+    for_each_own_line(0, [&](std::size_t line) {
+        for (int i = reach_of_[line].begin; i < reach_of_[line].end; ++i) {
+            const std::size_t cell = line * n + static_cast<std::size_t>(i);
+            dilation_[cell] = 0, full_[cell] = part_[cell] > 0.5;
+        }
+    });
     for (int i = 0; i < D; ++i) sweep(state, phi, dt, reversed ? D - 1 - i : i, departed);
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { part_(I) -= dilation_(I); });
+    for_each_own_line(0, [&](std::size_t line) {
+        for (int i = reach_of_[line].begin; i < reach_of_[line].end; ++i) {
+            const std::size_t cell = line * n + static_cast<std::size_t>(i);
+            part_[cell] -= dilation_[cell];
+        }
+    });
     return departed * frame_.cell_volume();
 }
 
@@ -160,8 +264,8 @@ void LiquidVolume<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t LiquidVolume<D>::bytes() const {
-    std::size_t total = part_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() + rests_.capacity() * sizeof(Rest);
-    for (std::size_t a = 0; a < D; ++a) total += flux_[a].bytes() + courant_[a].bytes();
+    std::size_t total = part_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() + rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) + 2 * lines_.capacity() * sizeof(Extent);
+    for (std::size_t a = 0; a < D; ++a) total += flux_[a].bytes();
     return total;
 }
 

@@ -39,9 +39,21 @@ public:
     std::size_t bytes() const;
 
 private:
-    struct Sweep;
+    struct Sweep {
+        int axis;
+        real scale;  // dt/h
+        const real *u, *open;
+        const Grid<real, D>* phi;
+        real* flux;
+    };
+    template <class F>
+    void for_each_own_line(int beyond, F&& f) const;
+    void find_reach();
     void sweep(const MacState<D>& state, const Grid<real, D>& phi, real dt, int axis, real& departed);
-    void flux_of_row(const Sweep& s, const Index<D>& first);
+    void find_fluxes(const Sweep& s, std::size_t face, std::size_t lower, std::size_t upper, int count);
+    void find_side_flux(const Sweep& s, const MacState<D>& state, const Index<D>& I, std::size_t face);
+    void add_fluxes(const Sweep& s, const Grid<real, D>& flux);
+    real through_side(const Grid<real, D>& flux, int axis, int side) const;
     Vec<D> normal(const Grid<real, D>& phi, const Index<D>& I) const;
     real liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const;
     real rest_of(real part, real phi, bool exempt) const;
@@ -49,6 +61,7 @@ private:
     void hand_on(const Grid<real, D>& phi, const MacState<D>& state);
     template <class F>
     void for_each_near_line(F&& f) const;
+    void compare(const LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
     void find_drops(const Grid<real, D>& phi, const MacState<D>& state);
     void join_drop(Grid<real, D>& phi, const Index<D>& I);
 
@@ -58,10 +71,12 @@ private:
     Grid<real, D> dilation_;       // Σ c dC of the sweeps so far
     Grid<std::uint8_t, D> full_;   // c: F > ½ as the step began
     Grid<real, D> missing_, near_; // F − φ's fraction, and how much surface a cell has
-    std::array<Grid<real, D>, D> flux_, courant_;
+    std::array<Grid<real, D>, D> flux_;
+    std::vector<Extent> lines_, reach_of_;  // of every line of cells: where F is not 0, and where it may come to be
     struct Rest {
         std::size_t cell;
         real part;
+        bool outwards;
     };
     std::vector<Rest> rests_;
     std::vector<std::size_t> drops_;
