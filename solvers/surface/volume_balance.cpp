@@ -1,6 +1,7 @@
 // What makes the level set and the liquid parts of cells agree: rests that no cell can hold go on to their neighbours, and the surface moves
 // to enclose what the cells hold.
 #include "core/parallel.hpp"
+#include "surface/marker_lanes.hpp"
 #include "surface/volume_fraction.hpp"
 
 namespace weir::surface {
@@ -12,14 +13,25 @@ constexpr real furthest = 0.1;  // that the surface is moved in a step [h]
 constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth waves of second order in both stay within it
 }  // namespace
 
+/// Where F and φ need not agree: in cells that someone else decides about, and in those that moving solids cut.
+template <int D>
+bool LiquidVolume<D>::is_exempt(std::size_t cell, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const {
+    if (!exempt.empty() && exempt[cell]) return true;
+    if (!moving_) return false;
+    const Index<D> I = frame_.index_of(cell);
+    for (std::size_t a = 0; a < D; ++a)
+        if (state.solid.open[a](I) < 1 || state.solid.open[a](I + e<D>(static_cast<int>(a))) < 1) return true;
+    return false;
+}
+
 /// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
 template <int D>
-real LiquidVolume<D>::rest_of(real part, real phi, bool exempt) const {
-    const real h = frame_.h_max();
+real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const {
+    const real h = frame_.h_max(), part = part_[cell];
     if (part > 1 + noise) return part - 1;
     if (part < -noise) return part;
-    if (phi < -1.5 * h && part < 1 - noise && !exempt) return part - 1;
-    if (phi > 1.0 * h && phi < reach_ && part > noise) return part;
+    if (phi < -1.5 * h && part < 1 - noise) return is_exempt(cell, state, exempt) ? 0 : part - 1;
+    if (phi > h && phi < reach_ && part > noise) return is_exempt(cell, state, exempt) ? 0 : part;
     return 0;
 }
 
@@ -43,7 +55,7 @@ void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& st
     for_each_near_line([&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const bool solid = state.cells[i] == poisson::Cell::solid;
-            const real rest = solid ? part_[i] : rest_of(part_[i], phi[i], !exempt.empty() && exempt[i]);
+            const real rest = solid ? part_[i] : rest_of(i, phi[i], state, exempt);
             if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > 1 : part_[i] >= 0});
         }
     });
@@ -104,12 +116,37 @@ void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& sta
         if (!is_own_plane(I[D - 1])) return;
         missing_(I) = 0, near_(I) = 0, full_(I) = 0;
         const real distance = std::abs(surface.phi(I));
-        if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
+        if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || is_exempt(part_.linear(I), state, exempt)) return;
         missing_(I) = part_(I) - surface.fraction(I);
         near_(I) = std::max(1 - distance / h, real(0));
     });
     refresh(missing_, frame_.periodic(D - 1));
     refresh(near_, frame_.periodic(D - 1));
+}
+
+/// Sums of both over a cell and those around it.
+template <int D>
+std::array<real, 2> LiquidVolume<D>::around(const Index<D>& I) const {
+    real excess = 0, area = 0;
+    bool inner = true;
+    for (int d = 0; d < D; ++d) inner = inner && is_inner(frame_, I, d);
+    if (inner) {
+        const std::size_t at = missing_.linear(I);
+        for (int k = D == 2 ? 0 : -1; k <= (D == 2 ? 0 : 1); ++k)
+            for (int j = -1; j <= 1; ++j) {
+                const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(at) + j * missing_.stride(1) + (D == 2 ? 0 : k * missing_.stride(D - 1));
+                const real *m = missing_.data() + row, *a = near_.data() + row;
+                excess += m[-1] + m[0] + m[1], area += a[-1] + a[0] + a[1];
+            }
+        return {excess, area};
+    }
+    for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
+        Index<D> J = I;
+        bool inside = true;
+        for (int d = 0, rest = corner; d < D; ++d, rest /= 3) inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
+        if (inside) excess += missing_(J), area += near_(J);
+    }
+    return {excess, area};
 }
 
 template <int D>
@@ -130,13 +167,7 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
     for_each_in_band([&](const Index<D>& I) {
         dilation_(I) = 0;
         if (std::abs(phi(I)) > 2 * h) return;
-        real excess = 0, area = 0;
-        for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
-            Index<D> J = I;
-            bool inside = true;
-            for (int d = 0, rest = corner; d < D; ++d, rest /= 3) inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
-            if (inside) excess += missing_(J), area += near_(J);
-        }
+        const auto [excess, area] = around(I);
         const real shift = area > 0 ? excess / area : 0;
         if (std::abs(shift) > unsure) dilation_(I) = std::clamp(shift - std::copysign(unsure, shift), -furthest, furthest) * h;
     });

@@ -8,6 +8,15 @@ namespace weir::surface {
 namespace {
 /// Parts nearer to 0 or 1 than this are not cut: what they hold goes in proportion.
 constexpr real dust = 1e-6;
+
+/// Part of a cell outside solids, from its faces.
+template <int D>
+real open_part(const MacState<D>& state, const Index<D>& I) {
+    real sum = 0;
+    for (std::size_t a = 0; a < D; ++a) sum += state.solid.open[a](I) + state.solid.open[a](I + e<D>(static_cast<int>(a)));
+    return sum / (2 * D);
+}
+
 }  // namespace
 
 template <int D>
@@ -22,9 +31,21 @@ LiquidVolume<D>::LiquidVolume(const Frame<D>& frame)
 }
 
 template <int D>
-void LiquidVolume<D>::start(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
+void LiquidVolume<D>::start(const LevelSet<D>& surface, const MacState<D>& state, bool moving) {
     reach_ = 0.999 * surface.cap();
-    for_each_cell(frame_.cells, [&](const Index<D>& I) { part_(I) = !closed.empty() && closed(I) ? 0 : surface.fraction(I); });
+    moving_ = moving;
+    for_each_cell(frame_.cells, [&](const Index<D>& I) {
+        real open = state.cells(I) == poisson::Cell::solid ? 0 : 1;
+        if (moving && state.solid.any() && open > 0) open = open_part(state, I);
+        part_(I) = open > 0 ? open * surface.fraction(I) : 0;
+    });
+}
+
+template <int D>
+void LiquidVolume<D>::follow(const LevelSet<D>& surface, const MacState<D>& state, real shift) {
+    for (const Index<D>& I : surface.band())
+        if (is_own_plane(I[D - 1]) && state.cells(I) != poisson::Cell::solid)
+            part_(I) += surface.fraction(I) - surface.fraction(I, -shift);
 }
 
 /// Gradient of a plane in cell I, by cell: φ's, or where φ has none that is near a distance's, that of −F (Youngs 1984: central, smoothed).

@@ -17,8 +17,8 @@ public:
     LiquidVolume() = default;
     explicit LiquidVolume(const Frame<D>& frame);
 
-    /// F of a level set.
-    void start(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
+    /// F of a level set. Where solids move (`moving`), cells that they cut hold what is outside them, else a whole cell's.
+    void start(const LevelSet<D>& surface, const MacState<D>& state, bool moving);
     /// Moves F by dt in state.u, through the open parts of faces; φ is of before the step, `reversed` the order of the sweeps. Answers
     /// what has left through open sides [m^D].
     real advect(const MacState<D>& state, const Grid<real, D>& phi, real dt, bool reversed);
@@ -26,6 +26,8 @@ public:
     void add(const Index<D>& I, real cells) {
         if (is_own_plane(I[D - 1])) part_(I) += cells;
     }
+    /// What a level set has gained that has been moved outwards by `shift`, for a source or sink that moves the surface.
+    void follow(const LevelSet<D>& surface, const MacState<D>& state, real shift);
     /// Hands on what no cell can hold (F > 1, F < 0), towards where there is room; and what stands deep in the liquid or just outside it
     /// to the surface. Nothing is lost.
     void settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
@@ -35,6 +37,7 @@ public:
     const Grid<real, D>& part() const { return part_; }
     real volume() const;  // [m^D]
     void save(Checkpoint& to) const;
+    static bool is_saved(const Checkpoint& from) { return from.has("surface.liquid_part"); }
     void restore(const Checkpoint& from);
     std::size_t bytes() const;
 
@@ -56,17 +59,20 @@ private:
     real through_side(const Grid<real, D>& flux, int axis, int side) const;
     Vec<D> normal(const Grid<real, D>& phi, const Index<D>& I) const;
     real liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const;
-    real rest_of(real part, real phi, bool exempt) const;
+    real rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const;
+    bool is_exempt(std::size_t cell, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const;
     void find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
     void hand_on(const Grid<real, D>& phi, const MacState<D>& state);
     template <class F>
     void for_each_near_line(F&& f) const;
     void compare(const LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
+    std::array<real, 2> around(const Index<D>& I) const;
     void find_drops(const Grid<real, D>& phi, const MacState<D>& state);
     void join_drop(Grid<real, D>& phi, const Index<D>& I);
 
     Frame<D> frame_;
     real reach_ = 0;  // of the level set's band [m]
+    bool moving_ = false;
     Grid<real, D> part_;
     Grid<real, D> dilation_;       // Σ c dC of the sweeps so far
     Grid<std::uint8_t, D> full_;   // c: F > ½ as the step began

@@ -110,6 +110,7 @@ void Water<D>::evaporate(real dt) {
     const auto timed = passes_.time("evaporate");
     const real before = surface_.volume();
     surface_.dilate(-wanted / area);
+    volume_.follow(surface_, state_, -wanted / area);
     const real lost = before - surface_.volume();
     heat_->leaves(state_, lost, volume_target_);
     volume_target_ -= lost;

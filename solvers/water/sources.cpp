@@ -142,6 +142,7 @@ void Water<D>::pour_and_drain_by_hand() {
                 const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed + static_cast<std::uint64_t>(steps_) + 1);
                 if ((occupied >> half_of(x, centre) & 1) || !brush.covers(x) || !is_free(x)) continue;
                 markers_.add(x, brush.velocity);
+                volume_.add(I, each / frame_.cell_volume());
                 account(brush.velocity, each);
             }
         }
@@ -151,6 +152,7 @@ void Water<D>::pour_and_drain_by_hand() {
             Vec<D> u{};
             if (markers_.carries_velocity())
                 for (int a = 0; a < D; ++a) u[a] = markers_.v[static_cast<std::size_t>(a)][p];
+            volume_.add(frame_.cell_of(markers_.position(p)), -each / frame_.cell_volume());
             account(u, -each);
             return false;
         });
