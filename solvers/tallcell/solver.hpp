@@ -11,6 +11,7 @@
 #include "surface/extrapolate.hpp"
 #include "surface/solid_faces.hpp"
 #include "surface/start.hpp"
+#include "surface/volume_fraction.hpp"
 #include "tallcell/transport.hpp"
 
 namespace weir::tallcell {
@@ -98,6 +99,7 @@ private:
     Grid<std::uint8_t, D> closed_;
     FacesInSolids<D> in_solids_;
     LevelSet<D> surface_;
+    LiquidVolume<D> volume_;  // what the surface is to enclose
     TallPressure<D> pressure_;
     Transport<D> transport_;
     Extrapolation<D> extrapolate_;
