@@ -13,25 +13,14 @@ constexpr real furthest = 0.1;  // that the surface is moved in a step [h]
 constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth waves of second order in both stay within it
 }  // namespace
 
-/// Where F and φ need not agree: in cells that someone else decides about, and in those that moving solids cut.
-template <int D>
-bool LiquidVolume<D>::is_exempt(std::size_t cell, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const {
-    if (!exempt.empty() && exempt[cell]) return true;
-    if (!moving_) return false;
-    const Index<D> I = frame_.index_of(cell);
-    for (std::size_t a = 0; a < D; ++a)
-        if (state.solid.open[a](I) < 1 || state.solid.open[a](I + e<D>(static_cast<int>(a))) < 1) return true;
-    return false;
-}
-
 /// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
 template <int D>
 real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const {
-    const real h = frame_.h_max(), part = part_[cell];
-    if (part > 1 + noise) return part - 1;
+    const real h = frame_.h_max(), part = part_[cell], room = capacity(cell, state);
+    if (part > room + noise) return part - room;
     if (part < -noise) return part;
-    if (phi < -1.5 * h && part < 1 - noise) return is_exempt(cell, state, exempt) ? 0 : part - 1;
-    if (phi > h && phi < reach_ && part > noise) return is_exempt(cell, state, exempt) ? 0 : part;
+    if (phi < -1.5 * h && part < room - noise) return !exempt.empty() && exempt[cell] ? 0 : part - room;
+    if (phi > h && phi < reach_ && part > noise) return part;
     return 0;
 }
 
@@ -56,7 +45,7 @@ void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& st
         for (std::size_t i = first; i < last; ++i) {
             const bool solid = state.cells[i] == poisson::Cell::solid;
             const real rest = solid ? part_[i] : rest_of(i, phi[i], state, exempt);
-            if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > 1 : part_[i] >= 0});
+            if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > capacity(i, state) : part_[i] >= 0});
         }
     });
 }
@@ -98,12 +87,14 @@ void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state
 
 template <int D>
 void LiquidVolume<D>::settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    refresh(part_, frame_.periodic(D - 1), 2);
     for (int pass = 0; pass < passes; ++pass) {
-        refresh(part_, frame_.periodic(D - 1), 2);
         find_reach();
         find_rests(phi, state, exempt);
         hand_on(phi, state);
+        refresh(part_, frame_.periodic(D - 1), 2);
     }
+    find_reach();
 }
 
 /// F minus φ's fraction, and the surface that there is, in the cells near it.
@@ -116,7 +107,8 @@ void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& sta
         if (!is_own_plane(I[D - 1])) return;
         missing_(I) = 0, near_(I) = 0, full_(I) = 0;
         const real distance = std::abs(surface.phi(I));
-        if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || is_exempt(part_.linear(I), state, exempt)) return;
+        if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
+        if (capacity(part_.linear(I), state) < 1) return;  // beside a solid that moves φ is only continued
         missing_(I) = part_(I) - surface.fraction(I);
         near_(I) = std::max(1 - distance / h, real(0));
     });
@@ -154,8 +146,6 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
     const real h = frame_.h_min();
     auto& phi = surface.phi;
     refresh(phi, frame_.periodic(D - 1), 3);
-    refresh(part_, frame_.periodic(D - 1), 2);
-    find_reach();
     compare(surface, state, exempt);
     const auto& band = surface.band();
     const auto for_each_in_band = [&](auto&& f) {

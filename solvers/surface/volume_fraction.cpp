@@ -9,14 +9,6 @@ namespace {
 /// Parts nearer to 0 or 1 than this are not cut: what they hold goes in proportion.
 constexpr real dust = 1e-6;
 
-/// Part of a cell outside solids, from its faces.
-template <int D>
-real open_part(const MacState<D>& state, const Index<D>& I) {
-    real sum = 0;
-    for (std::size_t a = 0; a < D; ++a) sum += state.solid.open[a](I) + state.solid.open[a](I + e<D>(static_cast<int>(a)));
-    return sum / (2 * D);
-}
-
 }  // namespace
 
 template <int D>
@@ -35,17 +27,24 @@ void LiquidVolume<D>::start(const LevelSet<D>& surface, const MacState<D>& state
     reach_ = 0.999 * surface.cap();
     moving_ = moving;
     for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        real open = state.cells(I) == poisson::Cell::solid ? 0 : 1;
-        if (moving && state.solid.any() && open > 0) open = open_part(state, I);
-        part_(I) = open > 0 ? open * surface.fraction(I) : 0;
+        part_(I) = state.cells(I) == poisson::Cell::solid ? 0 : capacity(part_.linear(I), state) * surface.fraction(I);
     });
+}
+
+template <int D>
+real LiquidVolume<D>::capacity(std::size_t cell, const MacState<D>& state) const {
+    if (!moving_) return 1;
+    const Index<D> I = frame_.index_of(cell);
+    real sum = 0;
+    for (std::size_t a = 0; a < D; ++a) sum += state.solid.open[a](I) + state.solid.open[a](I + e<D>(static_cast<int>(a)));
+    return sum / (2 * D);
 }
 
 template <int D>
 void LiquidVolume<D>::follow(const LevelSet<D>& surface, const MacState<D>& state, real shift) {
     for (const Index<D>& I : surface.band())
         if (is_own_plane(I[D - 1]) && state.cells(I) != poisson::Cell::solid)
-            part_(I) += surface.fraction(I) - surface.fraction(I, -shift);
+            part_(I) += capacity(part_.linear(I), state) * (surface.fraction(I) - surface.fraction(I, -shift));
 }
 
 /// Gradient of a plane in cell I, by cell: φ's, or where φ has none that is near a distance's, that of −F (Youngs 1984: central, smoothed).
@@ -90,14 +89,17 @@ real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const Index<D>& d
     return courant > 0 ? through : -through;
 }
 
-/// f(line) for the lines of cells of this rank's own planes, and of so many planes more beyond its cuts; threaded over planes.
+/// f(line) for the lines of cells of this rank's own planes, of `below` planes before them and `above` after them, around a periodic axis
+/// too where `ring`; threaded over planes.
 template <int D>
 template <class F>
-void LiquidVolume<D>::for_each_own_line(int beyond, F&& f) const {
-    const WiderPlanes wider(beyond);
+void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) const {
     const int planes = frame_.cells[D - 1], lines = static_cast<int>(lines_.size()) / planes;
-    for_each_plane(0, planes, [&](int k) {
-        for (int j = 0; j < lines; ++j) f(static_cast<std::size_t>(k * lines + j));
+    int begin = detail::own_share.lower(0) - below, end = detail::own_share.upper(planes) + above;
+    if (!ring || end - begin >= planes) begin = std::max(begin, 0), end = std::min(end, planes);
+    parallel_for(begin, end, [&](int k) {
+        const int plane = (k + planes) % planes;
+        for (int j = 0; j < lines; ++j) f(static_cast<std::size_t>(plane * lines + j));
     });
 }
 
@@ -112,8 +114,9 @@ void LiquidVolume<D>::find_reach() {
         while (extent.end > extent.begin && F[extent.end - 1] == 0) --extent.end;
         lines_[line] = extent.empty() ? Extent{n, 0} : extent;
     };
-    for_each_own_line(2, wet);
-    for_each_own_line(1, [&](std::size_t line) {
+    const bool ring = frame_.periodic(D - 1);
+    for_each_own_line(2, 2, ring, wet);
+    for_each_own_line(1, 1, ring, [&](std::size_t line) {
         Extent extent = lines_[line];
         const Index<D> I = frame_.index_of(line * static_cast<std::size_t>(n));
         for (int corner = 0; corner < (D == 2 ? 3 : 9); ++corner) {
@@ -142,7 +145,9 @@ void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t 
     for (int i = 0; cut != 0 && i < count; ++i) {
         const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
         if (C == 0 || F <= dust || F >= 1 - dust) continue;
-        flux[i] = liquid_through(*s.phi, frame_.index_of((C > 0 ? lower : upper) + static_cast<std::size_t>(i)), s.axis, C);
+        const std::size_t donor = (C > 0 ? lower : upper) + static_cast<std::size_t>(i);
+        const real room = capacity(donor, *s.state);
+        flux[i] = room < 1 ? C * std::min(F / std::max(room, dust), real(1)) : liquid_through(*s.phi, frame_.index_of(donor), s.axis, C);
     }
 }
 
@@ -164,13 +169,10 @@ void LiquidVolume<D>::sweep(const MacState<D>& state, const Grid<real, D>& phi, 
     const auto at = static_cast<std::size_t>(axis), n = static_cast<std::size_t>(frame_.cells[0]);
     Grid<real, D>& flux = flux_[at];
     const Sweep s{axis, dt * frame_.inv_h[axis], state.u[axis].data(), state.solid.any() ? state.solid.open[at].data() : nullptr, &phi,
-                  flux.data()};
-    refresh(part_, frame_.periodic(D - 1), 2);
-    const int own_begin = detail::own_share.begin;
-    for_each_own_line(axis == D - 1 ? 1 : 0, [&](std::size_t line) {
+                  &state, flux.data()};
+    for_each_own_line(0, axis == D - 1 ? 1 : 0, false, [&](std::size_t line) {
         // The faces below a line's cells, and those above the last line's
         const Index<D> I = frame_.index_of(line * n);
-        if (I[D - 1] < own_begin) return;
         Extent reach = reach_of_[line];
         if (axis > 0 && I[axis] > 0) reach.join(reach_of_[line - static_cast<std::size_t>(part_.stride(axis)) / n]);
         if (reach.empty()) return;
@@ -204,7 +206,7 @@ template <int D>
 void LiquidVolume<D>::add_fluxes(const Sweep& s, const Grid<real, D>& flux) {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     const auto up = flux.stride(s.axis);
-    for_each_own_line(0, [&](std::size_t line) {
+    for_each_own_line(0, 0, false, [&](std::size_t line) {
         const Extent& reach = reach_of_[line];
         if (reach.empty()) return;
         const std::size_t face = flux.linear(frame_.index_of(line * n));
@@ -252,14 +254,17 @@ real LiquidVolume<D>::advect(const MacState<D>& state, const Grid<real, D>& phi,
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     refresh(part_, frame_.periodic(D - 1), 2);
     find_reach();
-    for_each_own_line(0, [&](std::size_t line) {
+    for_each_own_line(0, 0, false, [&](std::size_t line) {
         for (int i = reach_of_[line].begin; i < reach_of_[line].end; ++i) {
             const std::size_t cell = line * n + static_cast<std::size_t>(i);
             dilation_[cell] = 0, full_[cell] = part_[cell] > 0.5;
         }
     });
-    for (int i = 0; i < D; ++i) sweep(state, phi, dt, reversed ? D - 1 - i : i, departed);
-    for_each_own_line(0, [&](std::size_t line) {
+    for (int i = 0; i < D; ++i) {
+        if (i > 0) refresh(part_, frame_.periodic(D - 1), 2);
+        sweep(state, phi, dt, reversed ? D - 1 - i : i, departed);
+    }
+    for_each_own_line(0, 0, false, [&](std::size_t line) {
         for (int i = reach_of_[line].begin; i < reach_of_[line].end; ++i) {
             const std::size_t cell = line * n + static_cast<std::size_t>(i);
             part_[cell] -= dilation_[cell];

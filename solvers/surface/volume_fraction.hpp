@@ -47,10 +47,11 @@ private:
         real scale;  // dt/h
         const real *u, *open;
         const Grid<real, D>* phi;
+        const MacState<D>* state;
         real* flux;
     };
     template <class F>
-    void for_each_own_line(int beyond, F&& f) const;
+    void for_each_own_line(int below, int above, bool ring, F&& f) const;
     void find_reach();
     void sweep(const MacState<D>& state, const Grid<real, D>& phi, real dt, int axis, real& departed);
     void find_fluxes(const Sweep& s, std::size_t face, std::size_t lower, std::size_t upper, int count);
@@ -60,7 +61,8 @@ private:
     Vec<D> normal(const Grid<real, D>& phi, const Index<D>& I) const;
     real liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const;
     real rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const;
-    bool is_exempt(std::size_t cell, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const;
+    /// What a cell can hold: where solids move, its part outside them, from its faces; else all of it, as the surface counts it too.
+    real capacity(std::size_t cell, const MacState<D>& state) const;
     void find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
     void hand_on(const Grid<real, D>& phi, const MacState<D>& state);
     template <class F>
