@@ -16,10 +16,11 @@ constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth wave
 /// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
 template <int D>
 real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const {
+    if (!exempt.empty() && exempt[cell]) return 0;
     const real h = frame_.h_max(), part = part_[cell], room = capacity(cell, state);
     if (part > room + noise) return part - room;
     if (part < -noise) return part;
-    if (phi < -1.5 * h && part < room - noise) return !exempt.empty() && exempt[cell] ? 0 : part - room;
+    if (phi < -1.5 * h && part < room - noise) return part - room;
     if (phi > h && phi < reach_ && part > noise) return part;
     return 0;
 }

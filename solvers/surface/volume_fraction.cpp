@@ -139,7 +139,7 @@ void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t 
 #pragma omp simd reduction(| : cut)
     for (int i = 0; i < count; ++i) {
         const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
-        flux[i] = C * F;
+        flux[i] = C * (F < 1 ? F : 1);
         cut |= F > dust && F < 1 - dust;
     }
     for (int i = 0; cut != 0 && i < count; ++i) {

@@ -78,7 +78,7 @@ void Water<D>::move_surface(real dt) {
     const auto timed = passes_.time("move surface");
     move_markers(markers_, state_.u, frame_, dt, options_.trace, state_.sides, solids_.solids(), near_solid_);
     if (heat_) heat_->carry(state_, surface_, dt, options_.trace);
-    volume_target_ -= volume_.advect(state_, surface_.phi, dt, steps_ % 2 == 1);
+    if (keeps_volume_) volume_target_ -= volume_.advect(state_, surface_.phi, dt, steps_ % 2 == 1);
     surface_.advect(state_.u, dt, reach_);
 }
 
@@ -87,9 +87,9 @@ void Water<D>::correct_surface(real dt) {
     {
         const auto timed = passes_.time("level set");
         const auto& exempt = not_solved_for(dt);
-        volume_.settle(surface_.phi, state_, exempt);
-        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_, &volume_.part()));
-        volume_.correct(surface_, state_, exempt);
+        if (keeps_volume_) volume_.settle(surface_.phi, state_, exempt);
+        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_, keeps_volume_ ? &volume_.part() : nullptr));
+        if (keeps_volume_) volume_.correct(surface_, state_, exempt);
         surface_.redistance();
     }
     evaporate(dt);
@@ -145,7 +145,7 @@ void Water<D>::momentum_to_faces(real dt) {
     impose_emitters(dt, &Emitter<D>::Face::moves);
     in_solids_.forget(known_);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
-    still_air();
+    if (keeps_volume_) still_air();
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
         // falls on water would be given to the markers there.

@@ -105,7 +105,8 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
 template <int D>
 void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
-    let_depart();
+    const auto [all, departed] = let_depart();
+    if (!keeps_volume_ && departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
     bool pours = false;
     std::int64_t poured = 0;
     for (const auto& emitter : emitters_)
@@ -228,7 +229,7 @@ void Water<D>::redistribute_markers() {
         }
         const int count = markers_.in_cell(cell);
         heaps |= count > many;
-        const bool bare = count == 0 && volume_.part()[cell] > 0.5 && surface_.phi[cell] < 0;  // liquid that has lost its markers
+        const bool bare = count == 0 && surface_.phi[cell] < -0.3 * frame_.h_min();  // liquid that has lost its markers
         if (count >= few || (surface_.phi[cell] > deep && !bare) || (!closed_.empty() && closed_[cell])) continue;
         const Index<D> I = frame_.index_of(cell);
         const std::size_t before = markers_.count();
