@@ -1,5 +1,5 @@
-// What makes the level set and the liquid parts of cells agree: rests that no cell can hold go on to their neighbours, and the surface moves
-// to enclose what the cells hold.
+// What makes the level set and the liquid parts of cells agree: rests that no cell can hold go on to their neighbours, and the surface
+// moves to enclose what the cells hold.
 #include "core/parallel.hpp"
 #include "surface/marker_lanes.hpp"
 #include "surface/volume_fraction.hpp"
@@ -7,8 +7,8 @@
 namespace weir::surface {
 
 namespace {
-constexpr real noise = 1e-6;   // part of a cell that the pressure's tolerance may leave
-constexpr int passes = 2;      // cells that a rest goes on in a step
+constexpr real noise = 1e-6;    // part of a cell that the pressure's tolerance may leave
+constexpr int passes = 2;       // cells that a rest goes on in a step
 constexpr real furthest = 0.1;  // that the surface is moved in a step [h]
 constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth waves of second order in both stay within it
 }  // namespace
@@ -25,7 +25,8 @@ real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const MacState<D>& sta
     return 0;
 }
 
-/// f(first, last) for the parts of lines with liquid, of this rank's own planes and the next ones beyond its cuts, in the order of the grid.
+/// f(first, last) for the parts of lines with liquid, of this rank's own planes and the next ones beyond its cuts, in the order of the
+/// grid.
 template <int D>
 template <class F>
 void LiquidVolume<D>::for_each_near_line(F&& f) const {
@@ -51,8 +52,8 @@ void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& st
     });
 }
 
-/// To neighbours in proportion to how far φ rises to them, where there is too much or a hole; or falls, where there is less than nothing, or
-/// liquid outside. To all alike where φ does neither.
+/// To neighbours in proportion to how far φ rises to them, where there is too much or a hole; or falls, where there is less than nothing,
+/// or liquid outside. To all alike where φ does neither.
 template <int D>
 void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state) {
     for (const Rest& rest : rests_) {
@@ -70,7 +71,9 @@ void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state
                 if (!frame_.step(to[at], d, by)) continue;
                 if (state.cells(to[at]) == poisson::Cell::solid) continue;
                 const Index<D> face = by < 0 ? I : I + e<D>(d);
-                if (state.solid.any() && state.cells(I) != poisson::Cell::solid && !(state.solid.open[static_cast<std::size_t>(d)](face) > 0)) continue;
+                if (state.solid.any() && state.cells(I) != poisson::Cell::solid &&
+                    !(state.solid.open[static_cast<std::size_t>(d)](face) > 0))
+                    continue;
                 const real rise = phi(to[at]) - phi(I);
                 weight[at] = std::max(outwards ? rise : -rise, real(0));
                 sum += weight[at];
@@ -127,7 +130,8 @@ std::array<real, 2> LiquidVolume<D>::around(const Index<D>& I) const {
         const std::size_t at = missing_.linear(I);
         for (int k = D == 2 ? 0 : -1; k <= (D == 2 ? 0 : 1); ++k)
             for (int j = -1; j <= 1; ++j) {
-                const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(at) + j * missing_.stride(1) + (D == 2 ? 0 : k * missing_.stride(D - 1));
+                const std::ptrdiff_t row =
+                    static_cast<std::ptrdiff_t>(at) + j * missing_.stride(1) + (D == 2 ? 0 : k * missing_.stride(D - 1));
                 const real *m = missing_.data() + row, *a = near_.data() + row;
                 excess += m[-1] + m[0] + m[1], area += a[-1] + a[0] + a[1];
             }
@@ -194,8 +198,8 @@ void LiquidVolume<D>::join_drop(Grid<real, D>& phi, const Index<D>& I) {
     }
 }
 
-#define WEIR_INSTANTIATE(D)                                                                                                          \
-    template void LiquidVolume<D>::settle(const Grid<real, D>&, const MacState<D>&, const Grid<std::uint8_t, D>&);                   \
+#define WEIR_INSTANTIATE(D)                                                                                        \
+    template void LiquidVolume<D>::settle(const Grid<real, D>&, const MacState<D>&, const Grid<std::uint8_t, D>&); \
     template void LiquidVolume<D>::correct(LevelSet<D>&, const MacState<D>&, const Grid<std::uint8_t, D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -168,8 +168,9 @@ template <int D>
 void LiquidVolume<D>::sweep(const MacState<D>& state, const Grid<real, D>& phi, real dt, int axis, real& departed) {
     const auto at = static_cast<std::size_t>(axis), n = static_cast<std::size_t>(frame_.cells[0]);
     Grid<real, D>& flux = flux_[at];
-    const Sweep s{axis, dt * frame_.inv_h[axis], state.u[axis].data(), state.solid.any() ? state.solid.open[at].data() : nullptr, &phi,
-                  &state, flux.data()};
+    const Sweep s{
+        axis,       dt * frame_.inv_h[axis], state.u[axis].data(), state.solid.any() ? state.solid.open[at].data() : nullptr, &phi, &state,
+        flux.data()};
     for_each_own_line(0, axis == D - 1 ? 1 : 0, false, [&](std::size_t line) {
         // The faces below a line's cells, and those above the last line's
         const Index<D> I = frame_.index_of(line * n);
@@ -290,7 +291,8 @@ void LiquidVolume<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t LiquidVolume<D>::bytes() const {
-    std::size_t total = part_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() + rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) + 2 * lines_.capacity() * sizeof(Extent);
+    std::size_t total = part_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() +
+                        rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) + 2 * lines_.capacity() * sizeof(Extent);
     for (std::size_t a = 0; a < D; ++a) total += flux_[a].bytes();
     return total;
 }

@@ -76,9 +76,9 @@ private:
     real reach_ = 0;  // of the level set's band [m]
     bool moving_ = false;
     Grid<real, D> part_;
-    Grid<real, D> dilation_;       // Σ c dC of the sweeps so far
-    Grid<std::uint8_t, D> full_;   // c: F > ½ as the step began
-    Grid<real, D> missing_, near_; // F − φ's fraction, and how much surface a cell has
+    Grid<real, D> dilation_;        // Σ c dC of the sweeps so far
+    Grid<std::uint8_t, D> full_;    // c: F > ½ as the step began
+    Grid<real, D> missing_, near_;  // F − φ's fraction, and how much surface a cell has
     std::array<Grid<real, D>, D> flux_;
     std::vector<Extent> lines_, reach_of_;  // of every line of cells: where F is not 0, and where it may come to be
     struct Rest {

@@ -26,7 +26,8 @@ template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
     make_whole();
     const OwnPlanes mine = held_.own();
-    std::vector<Integral> list = Measure<D>(frame_, surface_, closed_, &volume_.part()).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    std::vector<Integral> list =
+        Measure<D>(frame_, surface_, closed_, &volume_.part()).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
     list[0].value = volume_.volume();
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});
@@ -96,8 +97,8 @@ void TallCells<D>::edited(const EditableField&) {
 
 template <int D>
 std::size_t TallCells<D>::bytes() const {
-    std::size_t total = state_.bytes() + surface_.bytes() + volume_.bytes() + pressure_.bytes() + transport_.bytes() + extrapolate_.bytes() +
-                        closed_.bytes() + in_solids_.bytes() + solids_.bytes() + tall_.bytes();
+    std::size_t total = state_.bytes() + surface_.bytes() + volume_.bytes() + pressure_.bytes() + transport_.bytes() +
+                        extrapolate_.bytes() + closed_.bytes() + in_solids_.bytes() + solids_.bytes() + tall_.bytes();
     for (const auto& known : known_) total += known.bytes();
     return total;
 }

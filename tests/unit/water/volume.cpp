@@ -31,8 +31,8 @@ template <int D>
 std::string sieve(const std::string& transfer) {
     std::string plate;
     for (const auto& [from, to] : {std::pair{"-0.1", "0.1"}, {"0.2", "0.3"}, {"0.4", "0.6"}})
-        plate += (plate.empty() ? "" : ", ") + fmt::format("{{ shape = \"box\", min = {}, max = {} }}", list({from, "0.46", "-0.1"}, D),
-                                                           list({to, "0.56", "0.6"}, D));
+        plate += (plate.empty() ? "" : ", ") +
+                 fmt::format("{{ shape = \"box\", min = {}, max = {} }}", list({from, "0.46", "-0.1"}, D), list({to, "0.56", "0.6"}, D));
     return fmt::format(R"(solver = "mac_water"
 dim = {}
 grid = {{ cells = {}, size = {} }}
@@ -138,7 +138,8 @@ TEST_IN_2D_AND_3D("in a flow without divergence parts stay in [0, 1] and keep th
     for (int step = 0; step < 60; ++step) volume.advect(state, water.surface().phi, 0.24 * h, step % 2 == 1);
     EXPECT_NEAR(volume.volume(), before, 1e-13) << "sums of 3000 cells in 60 steps, 1e-16 of the volume each, at random";
     real least = 1, most = 0;
-    for (std::size_t i = 0; i < volume.part().size(); ++i) least = std::min(least, volume.part()[i]), most = std::max(most, volume.part()[i]);
+    for (std::size_t i = 0; i < volume.part().size(); ++i)
+        least = std::min(least, volume.part()[i]), most = std::max(most, volume.part()[i]);
     // Weymouth & Yue's bound: Σ|u| dt/h <= 0.48 < 1/2; 1e-6 is what is not cut, 3e-8 what a cut may be wrong by
     EXPECT_GT(least, -1e-5);
     EXPECT_LT(most, 1 + 1e-5);
