@@ -344,7 +344,7 @@ real LevelSet<D>::cubic(const Vec<D>& x) const {
 }
 
 template <int D>
-std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
+std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part) {
     const real h = frame_.h_min();
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
     const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
@@ -373,6 +373,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers) {
     std::size_t count = 0;
     for_each_escaped([&, begin = first, end = last](std::size_t p) {
         if (p >= begin && p < end) ++count;
+        if (part && (*part)(frame_.cell_of(markers.position(p))) < 0.5 / Markers<D>::per_cell) return;
         join_sphere(markers.position(p), radius);
     });
     return count;

@@ -11,6 +11,7 @@
 #include "surface/level_set_ranks.hpp"
 #include "surface/marker_motion.hpp"
 #include "surface/markers.hpp"
+#include "surface/plane_cut.hpp"
 #include "surface/thin_walls.hpp"
 
 #include <algorithm>
@@ -47,7 +48,8 @@ public:
     void make_whole() { gather(phi); }
     void make_layers_whole() { gather(layer_); }
     /// Joins spheres around escaped markers; answers how many of this rank's own had escaped. Markers must be sorted.
-    std::size_t rescue_escaped(const Markers<D>& markers);
+    /// `part`, where given: the liquid part of each cell; without liquid in its cell a marker does not count.
+    std::size_t rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part = nullptr);
     /// How many of this rank's own markers that had escaped are outside even now: drops too small for the grid.
     std::size_t count_airborne(const Markers<D>& markers) const;
     /// Makes φ a distance again and finds the band.
@@ -153,14 +155,11 @@ void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const
     parallel_for(static_cast<int>(place(first)), static_cast<int>(place(last)), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }
 
-/// Volume of {x in the unit cube about 0 : value + g·x < 0}. Inclusion and exclusion of corners (Scardovelli & Zaleski 2000).
-template <int D>
-real fraction_below_plane(real value, const Vec<D>& g);
-/// The mean over that cube of x where value + g·x < 0, and 0 elsewhere.
+/// The mean over the unit cube about 0 of x where value + g·x < 0, and 0 elsewhere.
 template <int D>
 Vec<D> moment_below_plane(real value, const Vec<D>& g);
-/// The mean of that over the half cells along every axis, in each of which φ is a plane: φ's changes a cell towards the lower and the
-/// upper neighbour are slope[0] and slope[1].
+/// The mean of fraction_below_plane() over the half cells along every axis, in each of which φ is a plane: φ's changes a cell towards the
+/// lower and the upper neighbour are slope[0] and slope[1].
 template <int D>
 real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope);
 

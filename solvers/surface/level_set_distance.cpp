@@ -278,34 +278,6 @@ real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
     return inside ? -distance : distance;
 }
 
-template <int D>
-real fraction_below_plane(real value, const Vec<D>& g) {
-    real alpha = -value, steep = 0;
-    for (int d = 0; d < D; ++d) steep += std::abs(g[d]);
-    if (std::abs(value) >= 0.5 * steep) return value < 0 ? 1 : 0;
-    std::array<real, D> m;
-    int count = 0;
-    real norm = 1;
-    for (int d = 0; d < D; ++d)
-        if (std::abs(g[d]) > 1e-4 * steep) {  // a flatter axis changes the volume by less than 1e-8 and the formula loses digits
-            m[static_cast<std::size_t>(count++)] = std::abs(g[d]);
-            alpha += 0.5 * std::abs(g[d]);
-        }
-    for (int i = 0; i < count; ++i) norm *= m[static_cast<std::size_t>(i)] * (i + 1);
-    real volume = 0;
-    for (int corner = 0; corner < (1 << count); ++corner) {
-        real reach = alpha;
-        bool odd = false;
-        for (int i = 0; i < count; ++i)
-            if (corner >> i & 1) reach -= m[static_cast<std::size_t>(i)], odd = !odd;
-        if (reach <= 0) continue;
-        real power = 1;
-        for (int i = 0; i < count; ++i) power *= reach;
-        volume += odd ? -power : power;
-    }
-    return std::clamp(volume / norm, 0.0, 1.0);
-}
-
 /// As fraction_below_plane(), with each corner's simplex at its centroid.
 template <int D>
 Vec<D> moment_below_plane(real value, const Vec<D>& g) {
@@ -509,8 +481,6 @@ real LevelSet<D>::area() const {
     return frame_.cell_volume() / (2 * width) * sum;
 }
 
-template real fraction_below_plane(real, const Vec<2>&);
-template real fraction_below_plane(real, const Vec<3>&);
 template Vec<2> moment_below_plane(real, const Vec<2>&);
 template Vec<3> moment_below_plane(real, const Vec<3>&);
 template real fraction_of_halves(real, const std::array<Vec<2>, 2>&);

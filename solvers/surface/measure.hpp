@@ -9,8 +9,9 @@ namespace weir::surface {
 template <int D>
 class Measure {
 public:
-    Measure(const Frame<D>& frame, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed)
-        : frame_(frame), surface_(surface), closed_(closed) {}
+    /// `part`: the liquid part of each cell; none: that of the surface.
+    Measure(const Frame<D>& frame, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, const Grid<real, D>* part = nullptr)
+        : frame_(frame), surface_(surface), closed_(closed), part_(part) {}
     real kinetic_energy(const MacVelocity<D>& u, real rho) const;
     Vec<D> momentum(const MacVelocity<D>& u, real rho) const;
     /// −Σ ρ g·(x − origin) over liquid, which counts where it is in a part-filled cell.
@@ -24,7 +25,10 @@ public:
 
 private:
     /// Liquid part of a cell; where φ is only continued, in cells that solids close, there is none.
-    real liquid_part(const Index<D>& I) const { return !closed_.empty() && closed_(I) ? 0 : surface_.open_part(I) * surface_.fraction(I); }
+    real liquid_part(const Index<D>& I) const {
+        if (part_) return (*part_)(I);
+        return !closed_.empty() && closed_(I) ? 0 : surface_.open_part(I) * surface_.fraction(I);
+    }
     real crossing(const Index<D>& I, int axis) const;
     template <class F>
     real sum_over_faces(int a, F&& f) const;
@@ -32,6 +36,7 @@ private:
     const Frame<D>& frame_;
     const LevelSet<D>& surface_;
     const Grid<std::uint8_t, D>& closed_;
+    const Grid<real, D>* part_;
 };
 
 }  // namespace weir::surface

@@ -43,6 +43,13 @@ struct SurfaceTally {
         tally.refresh({cells}, 1, 1 + visits * (layers - 1));
         tally.refresh({cells}, layers);
     }
+    /// Liquid parts of cells before each sweep, before, between and after what is handed on; φ, and how far both stand apart.
+    void liquid_parts(Tally& tally) const {
+        constexpr int passes = 2;
+        tally.refresh({cells}, 2, D + 1 + passes);
+        tally.refresh({cells}, 3);
+        tally.refresh({cells}, 1, 2);
+    }
     /// Which faces are known as far as a slope looks behind the last layer; a layer is found from three planes at the cuts, or four around
     /// the axis, later ones from one.
     void continue_velocity(Tally& tally, int to) const {

@@ -26,7 +26,10 @@ template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
     make_whole();
     const OwnPlanes mine = held_.own();
-    std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    std::vector<Integral> list =
+        Measure<D>(frame_, surface_, closed_, &volume_.part()).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
+    list[0].value = volume_.volume();
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});
     if (hand_) geometry::sum_up(*hand_, D, list);
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
@@ -44,6 +47,7 @@ void TallCells<D>::save(Checkpoint& to) const {
     state_.save(to);
     surface_.save(to);
     leapfrog_.save(to);
+    volume_.save(to);
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
     to.put_value("tallcell.reals", reals);
     to.put_value("tallcell.steps", steps_);
@@ -59,6 +63,10 @@ void TallCells<D>::restore(const Checkpoint& from) {
     state_.restore(from);  // what is liquid, after the solids have said what is not
     surface_.restore(from);
     leapfrog_.restore(from);
+    if (volume_.is_saved(from))
+        volume_.restore(from);
+    else
+        volume_.start(surface_, state_, solids_.moving());  // a file from before there was one
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
     if (hand_ && from.has("hand")) hand_->restore(from);
@@ -91,8 +99,8 @@ void TallCells<D>::edited(const EditableField&) {
 
 template <int D>
 std::size_t TallCells<D>::bytes() const {
-    std::size_t total = state_.bytes() + surface_.bytes() + pressure_.bytes() + transport_.bytes() + extrapolate_.bytes() +
-                        leapfrog_.bytes() + closed_.bytes() + in_solids_.bytes() + solids_.bytes() + tall_.bytes();
+    std::size_t total = state_.bytes() + surface_.bytes() + volume_.bytes() + pressure_.bytes() + transport_.bytes() +
+                        extrapolate_.bytes() + leapfrog_.bytes() + closed_.bytes() + in_solids_.bytes() + solids_.bytes() + tall_.bytes();
     for (const auto& known : known_) total += known.bytes();
     return total;
 }

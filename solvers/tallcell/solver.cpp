@@ -71,7 +71,10 @@ void TallCells<D>::place_solids(real t) {
 template <int D>
 void TallCells<D>::move_surface(real dt) {
     const auto timed = passes_.time("level set");
+    volume_target_ -= volume_.advect(state_, surface_.phi, dt, steps_ % 2 == 1);
     surface_.advect(state_.u, dt, reach_);
+    volume_.settle(surface_.phi, state_, closed_);
+    volume_.correct(surface_, state_, closed_);
     surface_.redistance();
     if (hand_) pour_and_drain_by_hand();
 }
@@ -86,12 +89,14 @@ void TallCells<D>::pour_and_drain_by_hand() {
     const real before = surface_.volume();
     Vec<D> u{};  // mean over the cells that change sides
     real changed = 0;
+    std::vector<Index<D>> edited;
     for (std::size_t cell = 0; cell < product(frame_.cells); ++cell) {
         const Index<D> I = frame_.index_of(cell);
         if (!closed_.empty() && closed_(I)) continue;
         real& phi = surface_.phi(I);
         const real inside = brush.radius - norm(frame_.centre(I) - brush.centre), was = phi;
         phi = pours ? std::min(phi, -inside) : std::max(phi, inside);
+        if (phi != was) edited.push_back(I);
         if ((was < 0) == (phi < 0)) continue;
         changed += 1;
         for (int a = 0; a < D; ++a) {
@@ -103,6 +108,7 @@ void TallCells<D>::pour_and_drain_by_hand() {
     surface_.redistance();
     const real volume = surface_.volume() - before;
     volume_target_ += volume;
+    for (const Index<D>& I : edited) volume_.add(I, volume / frame_.cell_volume() / static_cast<real>(edited.size()));
     hand_->mass += state_.rho * volume;
     for (int a = 0; a < D && changed > 0; ++a) hand_->impulse[a] += state_.rho * volume * u[a] / changed;
 }

@@ -12,6 +12,7 @@
 #include "surface/leapfrog.hpp"
 #include "surface/solid_faces.hpp"
 #include "surface/start.hpp"
+#include "surface/volume_fraction.hpp"
 #include "tallcell/transport.hpp"
 
 namespace weir::tallcell {
@@ -100,6 +101,7 @@ private:
     Grid<std::uint8_t, D> closed_;
     FacesInSolids<D> in_solids_;
     LevelSet<D> surface_;
+    LiquidVolume<D> volume_;  // what the surface is to enclose
     TallPressure<D> pressure_;
     Transport<D> transport_;
     Extrapolation<D> extrapolate_;

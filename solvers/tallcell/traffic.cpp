@@ -79,6 +79,7 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     tally.gather({sizeof(real), across.count});  // how far anything moves
     tally.refresh(surface.faces, reach);
     tally.refresh({cells}, reach, 2);  // the level set, before and after it moves
+    surface.liquid_parts(tally);
     surface.distance(tally);
     const std::size_t told = sizeof(int) * static_cast<std::size_t>(n[up] + 2);  // of rows of the lattice, once knots are placed
     tally.everywhere(told, 1, told * static_cast<std::size_t>(of.ranks));

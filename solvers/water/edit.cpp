@@ -61,6 +61,7 @@ bool Water<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, s
         for (int a = 0; a < D; ++a) x[a] = at[i][a], u[a] = velocity[i][a];
         if (!is_free(x)) throw BadInput("marker " + std::to_string(i) + " would stand in a solid, or on the upper edge of the domain");
         added.add(x, u), markers_.add(x, u);
+        volume_.add(frame_.cell_of(x), real(1) / Markers<D>::per_cell);
     }
     volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(at.size());
     markers_.sort(frame_);
@@ -80,6 +81,8 @@ bool Water<D>::remove_particles(std::string_view set, std::span<const unsigned c
     std::vector<std::size_t> lost;
     for (std::size_t p = 0; p < all; ++p)
         if (gone[p]) lost.push_back(surface_.phi.linear(frame_.cell_of(markers_.position(p))));
+    const real each = volume_target_ / frame_.cell_volume() / static_cast<real>(std::max<std::size_t>(all, 1));
+    for (const std::size_t cell : lost) volume_.add(frame_.index_of(cell), -each);
     markers_.retain([&](std::size_t p) { return !gone[p]; });
     markers_.sort(frame_);
     volume_target_ *= static_cast<real>(markers_.count()) / static_cast<real>(all);

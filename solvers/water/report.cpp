@@ -47,8 +47,11 @@ std::vector<Integral> Water<D>::integrals() const {
     const auto [first, last] = markers_.own(frame_);
     const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
     const std::int64_t escaped = sum_of_ranks(escaped_), reseeded = sum_of_ranks(reseeded_);
-    std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
-    list.insert(list.begin() + 1, {"marker_volume", list[0].unit, markers_.volume * count});
+    const Measure<D> measure(frame_, surface_, closed_, keeps_volume_ ? &volume_.part() : nullptr);
+    std::vector<Integral> list = measure.integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
+    if (keeps_volume_) list[0].value = volume_.volume();
+    list.insert(list.begin() + 2, {"marker_volume", list[0].unit, markers_.volume * count});
     list.push_back({"markers", "", count});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     if (hand_) geometry::sum_up(*hand_, D, list);
@@ -71,6 +74,7 @@ void Water<D>::save(Checkpoint& to) const {
     if (bodies_) bodies_->save(to);
     surface_.save(to);
     leapfrog_.save(to);
+    volume_.save(to);
     const auto [first, last] = markers_.own(frame_);
     const std::vector<std::size_t> begins = begins_of_ranks(last - first);
     int at = 0;
@@ -113,6 +117,10 @@ void Water<D>::restore(const Checkpoint& from) {
     state_.restore(from);  // what is liquid, after the solids have said what is not
     surface_.restore(from);
     leapfrog_.restore(from);
+    if (volume_.is_saved(from))
+        volume_.restore(from);
+    else
+        volume_.start(surface_, state_, solids_.moving());  // a file from before there was one
     restore_markers(from);
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
@@ -129,9 +137,10 @@ void Water<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t Water<D>::bytes() const {
-    std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + pressure_.bytes() + extrapolate_.bytes() + before_.bytes() +
-                        leapfrog_.bytes() + (viscosity_ ? viscosity_->bytes() + friction_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + closed_.bytes() +
-                        near_solid_.bytes() + not_solved_for_.bytes() + curvature_.bytes() + in_solids_.bytes();
+    std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + volume_.bytes() + pressure_.bytes() + extrapolate_.bytes() +
+                        before_.bytes() + leapfrog_.bytes() + (viscosity_ ? viscosity_->bytes() + friction_->bytes() : 0) +
+                        (heat_ ? heat_->bytes() : 0) + closed_.bytes() + near_solid_.bytes() + not_solved_for_.bytes() +
+                        curvature_.bytes() + in_solids_.bytes();
     if (!held_.cut().empty()) total += all_markers_.bytes();
     if (bodies_) total += bodies_->bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();

@@ -101,6 +101,7 @@ void Water<D>::move_surface(real dt) {
     const auto timed = passes_.time("move surface");
     move_markers(markers_, state_.u, frame_, dt, options_.trace, state_.sides, solids_.solids(), near_solid_);
     if (heat_) heat_->carry(state_, surface_, dt, options_.trace);
+    if (keeps_volume_) volume_target_ -= volume_.advect(state_, surface_.phi, dt, steps_ % 2 == 1);
     surface_.advect(state_.u, dt, reach_);
 }
 
@@ -108,7 +109,10 @@ template <int D>
 void Water<D>::correct_surface(real dt) {
     {
         const auto timed = passes_.time("level set");
-        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_));
+        const auto& exempt = not_solved_for(dt);
+        if (keeps_volume_) volume_.settle(surface_.phi, state_, exempt);
+        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_, keeps_volume_ ? &volume_.part() : nullptr));
+        if (keeps_volume_) volume_.correct(surface_, state_, exempt);
         surface_.redistance();
     }
     evaporate(dt);
@@ -129,6 +133,7 @@ void Water<D>::evaporate(real dt) {
     const auto timed = passes_.time("evaporate");
     const real before = surface_.volume();
     surface_.dilate(-wanted / area);
+    volume_.follow(surface_, state_, -wanted / area);
     const real lost = before - surface_.volume();
     heat_->leaves(state_, lost, volume_target_);
     volume_target_ -= lost;
@@ -163,6 +168,7 @@ void Water<D>::momentum_to_faces(real dt) {
     impose_emitters(dt, &Emitter<D>::Face::moves);
     in_solids_.forget(known_);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
+    if (keeps_volume_) still_air();
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
         // falls on water would be given to the markers there. extend_velocity() has the rest.
@@ -174,6 +180,21 @@ void Water<D>::momentum_to_faces(real dt) {
         sync_periodic(state_.u, state_.sides);
     }
     leapfrog_.keep(state_.u, known_);
+}
+
+/// Farther from the liquid nothing says what moves: what stood there is of earlier steps, and would fall for ever.
+template <int D>
+void Water<D>::still_air() {
+    for (int a = 0; a < D; ++a) {
+        const auto& known = known_[static_cast<std::size_t>(a)];
+        auto& u = state_.u[a];
+        for_each_line(known.extent(), [&](const Index<D>&, std::size_t at) {
+            const std::uint8_t* mark = known.data() + at;
+            real* face = u.data() + at;
+#pragma omp simd
+            for (int i = 0; i < known.extent()[0]; ++i) face[i] = mark[i] ? face[i] : 0;
+        });
+    }
 }
 
 /// What friction feels of the forces it takes from the last pressure, so that water at rest feels none; project() sees to the rest.

@@ -17,6 +17,7 @@
 #include "surface/markers.hpp"
 #include "surface/solid_faces.hpp"
 #include "surface/start.hpp"
+#include "surface/volume_fraction.hpp"
 #include "water/emitters.hpp"
 #include "water/heat.hpp"
 #include "water/mixing.hpp"
@@ -102,6 +103,7 @@ public:
     const MacState<D>& state() const { return state_; }
     const LevelSet<D>& surface() const { return surface_; }
     const Markers<D>& markers() const { return markers_; }
+    const LiquidVolume<D>& volume() const { return volume_; }
 
 private:
     // Start (start.cpp)
@@ -134,6 +136,7 @@ private:
     void slow(real dt);
     void momentum_to_faces(real dt);
     void remember_velocity();
+    void still_air();
     void rub(real dt);
     poisson::Report balance_friction(real dt, real kick, poisson::Report report);
     void what_friction_feels(real dt);
@@ -184,6 +187,8 @@ private:
 
     Markers<D> markers_;
     LevelSet<D> surface_;
+    LiquidVolume<D> volume_;    // what the surface is to enclose
+    bool keeps_volume_ = true;  // not beside solids that move, nor with tension: a corrected surface keeps bodies and drops from rest
     SurfacePressure<D> pressure_;
     Extrapolation<D> extrapolate_;
     FaceSums<D> sums_;

@@ -86,7 +86,10 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
             const Vec<D> earlier = x - (to - from) * emitter.velocity;
             const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
             const bool enters = now && !before, fills = starts && before && !(surface_.phi(frame_.cell_of(earlier)) < 0);
-            if ((enters || fills) && is_free(x)) markers_.add(x, emitter.velocity), poured += is_own_plane(frame_.cell_of(x)[D - 1]);
+            if ((enters || fills) && is_free(x)) {
+                markers_.add(x, emitter.velocity), poured += is_own_plane(frame_.cell_of(x)[D - 1]);
+                volume_.add(frame_.cell_of(x), real(1) / Markers<D>::per_cell);
+            }
         }
     });
     for_each_serial(emitter.lo, emitter.hi, [&](const Index<D>& I) {
@@ -103,7 +106,7 @@ template <int D>
 void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
     const auto [all, departed] = let_depart();
-    if (departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
+    if (!keeps_volume_ && departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
     bool pours = false;
     std::int64_t poured = 0;
     for (const auto& emitter : emitters_)
@@ -140,6 +143,7 @@ void Water<D>::pour_and_drain_by_hand() {
                 const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed + static_cast<std::uint64_t>(steps_) + 1);
                 if ((occupied >> half_of(x, centre) & 1) || !brush.covers(x) || !is_free(x)) continue;
                 markers_.add(x, brush.velocity);
+                volume_.add(I, each / frame_.cell_volume());
                 account(brush.velocity, each);
             }
         }
@@ -149,6 +153,7 @@ void Water<D>::pour_and_drain_by_hand() {
             Vec<D> u{};
             if (markers_.carries_velocity())
                 for (int a = 0; a < D; ++a) u[a] = markers_.v[static_cast<std::size_t>(a)][p];
+            volume_.add(frame_.cell_of(markers_.position(p)), -each / frame_.cell_volume());
             account(u, -each);
             return false;
         });
@@ -224,7 +229,8 @@ void Water<D>::redistribute_markers() {
         }
         const int count = markers_.in_cell(cell);
         heaps |= count > many;
-        if (count >= few || surface_.phi[cell] > deep || (!closed_.empty() && closed_[cell])) continue;
+        const bool bare = count == 0 && surface_.phi[cell] < -0.3 * frame_.h_min();  // liquid that has lost its markers
+        if (count >= few || (surface_.phi[cell] > deep && !bare) || (!closed_.empty() && closed_[cell])) continue;
         const Index<D> I = frame_.index_of(cell);
         const std::size_t before = markers_.count();
         changed |= fill_cell(I, few);

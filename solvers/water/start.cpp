@@ -36,6 +36,7 @@ Water<D>::Water(const scene::Scene& scene)
     refuse_flat_cells(scene, frame_);
     markers_ = all_markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
+    volume_ = LiquidVolume<D>(frame_);
     pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
     const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);  // σ k²/ρ of a wave of ten cells
     extrapolate_ = Extrapolation<D>(frame_, norm(gravity_) + capillary);
@@ -145,6 +146,8 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
     }
     volume_target_ = surface_.volume();
+    keeps_volume_ = !solids_.moving() && options_.sigma == 0;
+    volume_.start(surface_, state_, solids_.moving());
     if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
     pressure_.set_surface(surface_, closed_, state_);
 }
@@ -161,8 +164,7 @@ void Water<D>::seed_markers() {
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);
             const Stencil<D> stencil(frame_, x);
-            if (surface_.at(x) < 0 && (!solids_.any() || solids_.solids().distance(x) > 0))
-                markers_.add(x, sample(state_.u, stencil));
+            if (surface_.at(x) < 0 && (!solids_.any() || solids_.solids().distance(x) > 0)) markers_.add(x, sample(state_.u, stencil));
         }
     }
     markers_.sort(frame_);

@@ -98,6 +98,7 @@ private:
     }
     /// The distance; then what is liquid, and how it is joined.
     void find_surface() {
+        surface_.liquid_parts(tally_);
         surface_.distance(tally_);
         if (scene_.effect("surface_tension")) tally_.refresh({cells_}, 1);  // curvature
         if (!windowed_) return tally_.gather(cells_);

@@ -140,7 +140,7 @@ real strouhal(const RunRecord& run, const Reference&) {
 }
 
 /// How far the wake reaches behind the first solid along the line of the probe "wake", over its breadth: where the speed changes sign.
-real wake_length(const RunRecord& run, const Reference&) {
+real wake_in_breadths(const RunRecord& run, const Reference&) {
     const ProbeSeries& probe = run.probe("wake");
     const scene::Table& body = run.scene->root().tables("solids").at(0);
     const real rear = body.has("radius") ? body.numbers("centre").at(0) + body.number("radius") : body.numbers("max").at(0);
@@ -166,7 +166,7 @@ std::vector<Metric> everyday_metrics() {
             {"viscous_current", "", "Reach of a viscous gravity current over Huppert's", Quantity::value, viscous_current},
             {"drag", "", "Mean force along the stream over rho U^2/2 times the breadth", Quantity::value, drag},
             {"strouhal", "", "Frequency of the force across the stream times breadth over speed", Quantity::value, strouhal},
-            {"wake_length", "", "Length of the wake that turns back, in breadths", Quantity::value, wake_length}};
+            {"wake_length", "", "Length of the wake that turns back, in breadths", Quantity::value, wake_in_breadths}};
 }
 
 }  // namespace weir::validation

@@ -84,7 +84,7 @@ TEST_IN_2D_AND_3D("volume control is an effect: named it holds the ledger's volu
     };
     const auto missing = [](const water::Water<D>& water) {
         const real airborne = water.markers().volume * static_cast<real>(water.surface().count_airborne(water.markers()));
-        return std::abs(1 - (integral(water, "volume") + airborne) / integral(water, "volume_target"));
+        return std::abs(1 - (integral(water, "surface_volume") + airborne) / integral(water, "volume_target"));
     };
     const auto without = broken({}), with = broken({{"effects.volume_control", "{}"}});
     EXPECT_FALSE(has_shift(*without));

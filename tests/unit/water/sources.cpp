@@ -53,7 +53,7 @@ TEST_IN_2D_AND_3D("an emitter fills, an open side drains, and surface and marker
                 last = ledger;
             }
             const real airborne = water.markers().volume * static_cast<real>(water.surface().count_airborne(water.markers()));
-            worst = std::max(worst, std::abs(integral(water, "volume") + airborne - ledger));
+            worst = std::max(worst, std::abs(integral(water, "surface_volume") + airborne - ledger));
         }
         EXPECT_LT(worst, 0.05 * most) << transfer << ": volume control moves the surface by 2% of a cell a step";
         EXPECT_LT(last, 0.9 * start) << transfer << ": the layer flows out";

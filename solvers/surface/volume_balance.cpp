@@ -1,0 +1,208 @@
+// What makes the level set and the liquid parts of cells agree: rests that no cell can hold go on to their neighbours, and the surface
+// moves to enclose what the cells hold.
+#include "core/parallel.hpp"
+#include "surface/marker_lanes.hpp"
+#include "surface/volume_fraction.hpp"
+
+namespace weir::surface {
+
+namespace {
+constexpr real noise = 1e-6;    // part of a cell that the pressure's tolerance may leave
+constexpr int passes = 2;       // cells that a rest goes on in a step
+constexpr real furthest = 0.1;  // that the surface is moved in a step [h]
+constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth waves of second order in both stay within it
+}  // namespace
+
+/// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
+template <int D>
+real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const {
+    if (!exempt.empty() && exempt[cell]) return 0;
+    const real h = frame_.h_max(), part = part_[cell], room = capacity(cell, state);
+    if (part > room + noise) return part - room;
+    if (part < -noise) return part;
+    if (phi < -1.5 * h && part < room - noise) return part - room;
+    if (phi > h && phi < reach_ && part > noise) return part;
+    return 0;
+}
+
+/// f(first, last) for the parts of lines with liquid, of this rank's own planes and the next ones beyond its cuts, in the order of the
+/// grid.
+template <int D>
+template <class F>
+void LiquidVolume<D>::for_each_near_line(F&& f) const {
+    const auto n = static_cast<std::size_t>(frame_.cells[0]);
+    for (std::size_t line = 0; line < lines_.size(); ++line) {
+        const Index<D> I = frame_.index_of(line * n);
+        if (!is_own_plane(I[D - 1]) && !is_own_plane(frame_.near(I, D - 1, 1)[D - 1]) && !is_own_plane(frame_.near(I, D - 1, -1)[D - 1]))
+            continue;
+        const Extent& wet = lines_[line];
+        if (!wet.empty()) f(line * n + static_cast<std::size_t>(wet.begin), line * n + static_cast<std::size_t>(wet.end));
+    }
+}
+
+template <int D>
+void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    rests_.clear();
+    for_each_near_line([&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const bool solid = state.cells[i] == poisson::Cell::solid;
+            const real rest = solid ? part_[i] : rest_of(i, phi[i], state, exempt);
+            if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > capacity(i, state) : part_[i] >= 0});
+        }
+    });
+}
+
+/// To neighbours in proportion to how far φ rises to them, where there is too much or a hole; or falls, where there is less than nothing,
+/// or liquid outside. To all alike where φ does neither.
+template <int D>
+void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state) {
+    for (const Rest& rest : rests_) {
+        const Index<D> I = frame_.index_of(rest.cell);
+        const bool outwards = rest.outwards;
+        std::array<real, 2 * D> weight{};
+        std::array<Index<D>, 2 * D> to;
+        real sum = 0;
+        int ways = 0;
+        for (int d = 0; d < D; ++d)
+            for (const int by : {-1, 1}) {
+                const auto at = static_cast<std::size_t>(2 * d + (by + 1) / 2);
+                weight[at] = -1;
+                to[at] = I;
+                if (!frame_.step(to[at], d, by)) continue;
+                if (state.cells(to[at]) == poisson::Cell::solid) continue;
+                const Index<D> face = by < 0 ? I : I + e<D>(d);
+                if (state.solid.any() && state.cells(I) != poisson::Cell::solid &&
+                    !(state.solid.open[static_cast<std::size_t>(d)](face) > 0))
+                    continue;
+                const real rise = phi(to[at]) - phi(I);
+                weight[at] = std::max(outwards ? rise : -rise, real(0));
+                sum += weight[at];
+                ++ways;
+            }
+        if (ways == 0) continue;
+        for (std::size_t at = 0; at < 2 * D; ++at) {
+            if (weight[at] < 0) continue;
+            const real share = sum > 0 ? weight[at] / sum : real(1) / ways;
+            if (share > 0 && is_own_plane(to[at][D - 1])) part_(to[at]) += share * rest.part;
+        }
+        if (is_own_plane(I[D - 1])) part_(I) -= rest.part;
+    }
+}
+
+template <int D>
+void LiquidVolume<D>::settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    refresh(part_, frame_.periodic(D - 1), 2);
+    for (int pass = 0; pass < passes; ++pass) {
+        find_reach();
+        find_rests(phi, state, exempt);
+        hand_on(phi, state);
+        refresh(part_, frame_.periodic(D - 1), 2);
+    }
+    find_reach();
+}
+
+/// F minus φ's fraction, and the surface that there is, in the cells near it.
+template <int D>
+void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    const real h = frame_.h_min();
+    const auto& band = surface.band();
+    parallel_for(0, static_cast<int>(band.size()), [&](int i) {
+        const Index<D>& I = band[static_cast<std::size_t>(i)];
+        if (!is_own_plane(I[D - 1])) return;
+        missing_(I) = 0, near_(I) = 0, full_(I) = 0;
+        const real distance = std::abs(surface.phi(I));
+        if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
+        if (capacity(part_.linear(I), state) < 1) return;  // beside a solid that moves φ is only continued
+        missing_(I) = part_(I) - surface.fraction(I);
+        near_(I) = std::max(1 - distance / h, real(0));
+    });
+    refresh(missing_, frame_.periodic(D - 1));
+    refresh(near_, frame_.periodic(D - 1));
+}
+
+/// Sums of both over a cell and those around it.
+template <int D>
+std::array<real, 2> LiquidVolume<D>::around(const Index<D>& I) const {
+    real excess = 0, area = 0;
+    bool inner = true;
+    for (int d = 0; d < D; ++d) inner = inner && is_inner(frame_, I, d);
+    if (inner) {
+        const std::size_t at = missing_.linear(I);
+        for (int k = D == 2 ? 0 : -1; k <= (D == 2 ? 0 : 1); ++k)
+            for (int j = -1; j <= 1; ++j) {
+                const std::ptrdiff_t row =
+                    static_cast<std::ptrdiff_t>(at) + j * missing_.stride(1) + (D == 2 ? 0 : k * missing_.stride(D - 1));
+                const real *m = missing_.data() + row, *a = near_.data() + row;
+                excess += m[-1] + m[0] + m[1], area += a[-1] + a[0] + a[1];
+            }
+        return {excess, area};
+    }
+    for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
+        Index<D> J = I;
+        bool inside = true;
+        for (int d = 0, rest = corner; d < D; ++d, rest /= 3) inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
+        if (inside) excess += missing_(J), area += near_(J);
+    }
+    return {excess, area};
+}
+
+template <int D>
+void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    const real h = frame_.h_min();
+    auto& phi = surface.phi;
+    refresh(phi, frame_.periodic(D - 1), 3);
+    compare(surface, state, exempt);
+    const auto& band = surface.band();
+    const auto for_each_in_band = [&](auto&& f) {
+        parallel_for(0, static_cast<int>(band.size()), [&](int i) {
+            const Index<D>& I = band[static_cast<std::size_t>(i)];
+            if (is_own_plane(I[D - 1])) f(I);
+        });
+    };
+    for_each_in_band([&](const Index<D>& I) {
+        dilation_(I) = 0;
+        if (std::abs(phi(I)) > 2 * h) return;
+        const auto [excess, area] = around(I);
+        const real shift = area > 0 ? excess / area : 0;
+        if (std::abs(shift) > unsure) dilation_(I) = std::clamp(shift - std::copysign(unsure, shift), -furthest, furthest) * h;
+    });
+    find_drops(phi, state);
+    for_each_in_band([&](const Index<D>& I) { phi(I) -= dilation_(I), missing_(I) = 0, near_(I) = 0; });
+    for (const std::size_t drop : drops_) join_drop(phi, frame_.index_of(drop));
+}
+
+/// Cells more than half full in which φ shows no liquid.
+template <int D>
+void LiquidVolume<D>::find_drops(const Grid<real, D>& phi, const MacState<D>& state) {
+    drops_.clear();
+    const real h = frame_.h_min();
+    for_each_near_line([&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            if (part_[i] > 0.5 && phi[i] > 0.5 * h && state.cells[i] != poisson::Cell::solid) drops_.push_back(i);
+    });
+}
+
+/// Liquid of a cell that φ does not show: as full as the cell is under a flat surface, and as far below the middles of the cells around.
+template <int D>
+void LiquidVolume<D>::join_drop(Grid<real, D>& phi, const Index<D>& I) {
+    const real h = frame_.h_min(), here = (0.5 - std::min<real>(part_(I), 1)) * h;
+    for (int corner = 0; corner < (D == 2 ? 9 : 27); ++corner) {
+        Index<D> J = I;
+        bool inside = true;
+        Vec<D> by{};
+        for (int d = 0, rest = corner; d < D; ++d, rest /= 3) {
+            by[d] = frame_.h[d] * (rest % 3 - 1);
+            inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
+        }
+        if (inside && is_own_plane(J[D - 1])) phi(J) = std::min(phi(J), here + norm(by));
+    }
+}
+
+#define WEIR_INSTANTIATE(D)                                                                                        \
+    template void LiquidVolume<D>::settle(const Grid<real, D>&, const MacState<D>&, const Grid<std::uint8_t, D>&); \
+    template void LiquidVolume<D>::correct(LevelSet<D>&, const MacState<D>&, const Grid<std::uint8_t, D>&);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::surface
