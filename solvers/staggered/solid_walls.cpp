@@ -38,7 +38,7 @@ bool is_body(const geometry::Solid<D>& solid) {
 /// One wall, as the geometry gives it.
 template <int D>
 SolidWall<D> wall_between(const MacState<D>& s, const geometry::Solids<D>& solids, int a, const Index<D>& I, const Index<D>& N, int across,
-                          int way, real last) {
+                          int way, const std::vector<geometry::Pose<D>>& last) {
     const Vec<D> x = s.u.face_centre(a, I), beyond = s.u.face_centre(a, N);
     const std::size_t k = solids.nearest(beyond);
     SolidWall<D> wall{across, way, solids[k].no_slip, 0, 0, 0, 0};
@@ -53,7 +53,7 @@ SolidWall<D> wall_between(const MacState<D>& s, const geometry::Solids<D>& solid
     const auto& pose = solids.pose(k);
     wall.nearer = 1 / theta;
     wall.now = pose.velocity_at(at)[a];
-    wall.last = solids[k].motion.moves() ? solids[k].motion.pose(last).velocity_at(at)[a] : wall.now;
+    wall.last = solids[k].motion.moves() ? last[k].velocity_at(at)[a] : wall.now;
     wall.turn = turn_of(pose, at, a, across);
     return wall;
 }
@@ -69,13 +69,16 @@ template <int D>
 void SolidWalls<D>::find(const MacState<D>& s, const SolidPlacement<D>& placement, real now, real last) {
     const real largest = *std::max_element(s.u.h.begin(), s.u.h.end());
     // no solid goes farther than this from where it was placed, unless it starts from rest faster than the fluid beside it
-    const real margin = placement.moving() ? (0.1 + 2 * (now - last) * placement.max_rate(s)) * largest : 0;
+    const real margin = now > last ? (0.05 + 1.2 * (now - last) * placement.max_rate(s)) * largest : 0;
     stick_ = false;  // the same on all ranks, whoever has walls
     for (std::size_t k = 0; k < placement.solids().count(); ++k)
         stick_ = stick_ || (placement.solids()[k].no_slip && !placement.solids()[k].free);
+    last_.resize(placement.solids().count());
+    for (std::size_t k = 0; k < last_.size(); ++k)
+        if (placement.solids()[k].motion.moves()) last_[k] = placement.solids()[k].motion.pose(last);
     for (int a = 0; a < D; ++a) {
         set_mask(s, placement, a, margin);
-        find_nodes(s, placement, a, last);
+        find_nodes(s, placement, a);
     }
     any_ = true, begin_ = detail::own_share.begin, end_ = detail::own_share.end;
 }
@@ -91,8 +94,8 @@ void SolidWalls<D>::set_mask(const MacState<D>& s, const SolidPlacement<D>& plac
     std::vector<std::size_t> all(solids.count());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
     const real reach = SolidPlacement<D>::reach(s.u.h, solids.steepest(all)), known = 2 * reach;
-    const real near = margin <= 0.5 * reach ? reach + margin : infinity;
-    const auto is_far = [&](const Index<D>& I) { return std::min(placement.corner_distance(I), known) > near; };
+    const real near = margin < reach ? reach + margin : infinity;
+    const auto is_far = [&](const Index<D>& I) { return std::min(placement.corner_distance(I), known) >= near; };
     for_each_cell(open.extent(), [&](const Index<D>& I) {
         mask(I) = open(I) > 0 ? 1 : 0;
         if (open(I) == 0 || is_far(I)) return;
@@ -104,18 +107,15 @@ void SolidWalls<D>::set_mask(const MacState<D>& s, const SolidPlacement<D>& plac
 }
 
 template <int D>
-void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& placement, int a, real last) {
+void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& placement, int a) {
     const auto at = static_cast<std::size_t>(a);
     const geometry::Solids<D>& solids = placement.solids();
     const auto &mask = takes_part_[at], &open = s.solid.open[at];
     Nodes<D> free = free_faces(s.u, s.sides, a);
     free.lo[D - 1] = detail::own_share.lower(free.lo[D - 1]), free.hi[D - 1] = detail::own_share.upper(free.hi[D - 1]);
     nodes_[at].clear(), walls_[at].clear(), held_[at].clear();
-    CellBox<D>{free.lo, free.hi}.in_order([&](const Index<D>& I) {
-        if (mask(I) == 0) {
-            if (open(I) > 0) held_[at].push_back({I, solids.velocity(s.u.face_centre(a, I))[a]});
-            return;
-        }
+    const auto look = [&](const Index<D>& I) {
+        if (mask(I) == 0) return held_[at].push_back({I, solids.velocity(s.u.face_centre(a, I))[a]});
         const std::size_t begin = walls_[at].size();
         for (int b = 0; b < D; ++b)
             for (const int way : {-1, 1}) {
@@ -123,10 +123,17 @@ void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& pl
                 if (mask(beyond) != 0) continue;
                 const Wrapped<D> N(s, a, beyond);
                 if (N.inside && !is_body(solids[solids.nearest(s.u.face_centre(a, N.node))]))
-                    walls_[at].push_back(wall_between(s, solids, a, I, N.node, b, way, last));
+                    walls_[at].push_back(wall_between(s, solids, a, I, N.node, b, way, last_));
             }
-        if (walls_[at].size() == begin) return;
-        nodes_[at].push_back({I, begin, walls_[at].size()});
+        if (walls_[at].size() > begin) nodes_[at].push_back({I, begin, walls_[at].size()});
+    };
+    CellBox<D>{free.lo, free.hi}.rows([&](Index<D> I, int count) {
+        const real *m = mask.at(I), *w = &open(I);
+        for (int i = 0; i < count; ++i, ++I[0]) {
+            bool amid = m[i] != 0;  // of faces that take part, as most are
+            for (int b = 0; b < D; ++b) amid = amid && m[i - mask.stride(b)] != 0 && m[i + mask.stride(b)] != 0;
+            if (!amid && w[i] > 0) look(I);
+        }
     });
 }
 

@@ -73,12 +73,13 @@ public:
 
 private:
     void set_mask(const MacState<D>& s, const SolidPlacement<D>& placement, int a, real margin);
-    void find_nodes(const MacState<D>& s, const SolidPlacement<D>& placement, int a, real last);
+    void find_nodes(const MacState<D>& s, const SolidPlacement<D>& placement, int a);
 
     std::array<Padded<D>, D> takes_part_;
     std::array<std::vector<WallNode<D>>, D> nodes_;
     std::array<std::vector<SolidWall<D>>, D> walls_;
     std::array<std::vector<HeldFace<D>>, D> held_;
+    std::vector<geometry::Pose<D>> last_;  // of each solid that moves
     bool stick_ = false, any_ = false;
     int begin_ = 0, end_ = 0;  // the planes that they were found of
 };
