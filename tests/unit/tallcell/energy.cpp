@@ -16,7 +16,7 @@ real wave_energy(const Solver& solver) {
 }
 
 /// As of mac_water (tests/unit/water/energy.cpp), with the same bound.
-TEST(TallCellEnergy, NoWaveGains) {
+TEST("no wave gains energy on tall cells") {
     static const std::vector<scene::SolverSchema> schemas{tallcell::kind().schema};
     const scene::Scene scene = scene::parse(R"(solver = "tallcell"
 dim = 2
