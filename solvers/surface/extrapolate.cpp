@@ -255,6 +255,21 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
     }
 }
 
+template <int D>
+void still_air(MacVelocity<D>& u, const FaceMarks<D>& known) {
+    for (int a = 0; a < D; ++a) {
+        const auto& marks = known[static_cast<std::size_t>(a)];
+        for_each_line(marks.extent(), [&](const Index<D>&, std::size_t at) {
+            const std::uint8_t* mark = marks.data() + at;
+            real* face = u[a].data() + at;
+#pragma omp simd
+            for (int i = 0; i < marks.extent()[0]; ++i) face[i] = mark[i] ? face[i] : 0;
+        });
+    }
+}
+
+template void still_air<2>(MacVelocity<2>&, const FaceMarks<2>&);
+template void still_air<3>(MacVelocity<3>&, const FaceMarks<3>&);
 template class Extrapolation<2>;
 template class Extrapolation<3>;
 

@@ -62,4 +62,9 @@ private:
     std::vector<std::uint8_t> joins_;           // of one row of faces
 };
 
+/// Sets every face without a mark to 0. Farther from the liquid nothing says what moves: what stood there is of earlier steps, and gravity
+/// would accelerate it for ever.
+template <int D>
+void still_air(MacVelocity<D>& u, const FaceMarks<D>& known);
+
 }  // namespace weir::surface

@@ -157,6 +157,7 @@ void TallCells<D>::extend_velocity() {
     const auto timed = passes_.time("extrapolate");
     mark_liquid_faces();
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), surface_.layers() - 1);
+    still_air<D>(state_.u, known_);
     in_solids_.constrain(state_.u, known_, frame_);
     sync_periodic(state_.u, state_.sides);
     rate_ = max_speed_rate();

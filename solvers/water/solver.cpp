@@ -168,7 +168,7 @@ void Water<D>::momentum_to_faces(real dt) {
     impose_emitters(dt, &Emitter<D>::Face::moves);
     in_solids_.forget(known_);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
-    if (keeps_volume_) still_air();
+    if (keeps_volume_) still_air<D>(state_.u, known_);
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
         // falls on water would be given to the markers there. extend_velocity() has the rest.
@@ -180,21 +180,6 @@ void Water<D>::momentum_to_faces(real dt) {
         sync_periodic(state_.u, state_.sides);
     }
     leapfrog_.keep(state_.u, known_);
-}
-
-/// Farther from the liquid nothing says what moves: what stood there is of earlier steps, and would fall for ever.
-template <int D>
-void Water<D>::still_air() {
-    for (int a = 0; a < D; ++a) {
-        const auto& known = known_[static_cast<std::size_t>(a)];
-        auto& u = state_.u[a];
-        for_each_line(known.extent(), [&](const Index<D>&, std::size_t at) {
-            const std::uint8_t* mark = known.data() + at;
-            real* face = u.data() + at;
-#pragma omp simd
-            for (int i = 0; i < known.extent()[0]; ++i) face[i] = mark[i] ? face[i] : 0;
-        });
-    }
 }
 
 /// What friction feels of the forces it takes from the last pressure, so that water at rest feels none; project() sees to the rest.

@@ -136,7 +136,6 @@ private:
     void slow(real dt);
     void momentum_to_faces(real dt);
     void remember_velocity();
-    void still_air();
     void rub(real dt);
     poisson::Report balance_friction(real dt, real kick, poisson::Report report);
     void what_friction_feels(real dt);
