@@ -26,6 +26,11 @@ template <int D>
 void LiquidVolume<D>::start(const LevelSet<D>& surface, const MacState<D>& state, bool moving) {
     reach_ = 0.999 * surface.cap();
     moving_ = moving;
+    if (!moving && state.solid.any()) {
+        open_ = Grid<real, D>(frame_.cells);
+        for_each_cell(frame_.cells, [&](const Index<D>& I) { open_(I) = surface.open_part(I); });
+        refresh(open_, frame_.periodic(D - 1), 2);
+    }
     for_each_cell(frame_.cells, [&](const Index<D>& I) {
         part_(I) = state.cells(I) == poisson::Cell::solid ? 0 : capacity(part_.linear(I), state) * surface.fraction(I);
     });
@@ -33,7 +38,7 @@ void LiquidVolume<D>::start(const LevelSet<D>& surface, const MacState<D>& state
 
 template <int D>
 real LiquidVolume<D>::capacity(std::size_t cell, const MacState<D>& state) const {
-    if (!moving_) return 1;
+    if (!moving_) return open_.empty() ? 1 : open_[cell];
     const Index<D> I = frame_.index_of(cell);
     real sum = 0;
     for (std::size_t a = 0; a < D; ++a) sum += state.solid.open[a](I) + state.solid.open[a](I + e<D>(static_cast<int>(a)));
@@ -79,13 +84,15 @@ Vec<D> LiquidVolume<D>::normal(const Grid<real, D>& phi, const Index<D>& I) cons
 
 /// Of the donor's liquid what leaves with |courant| of its volume, through its upper face where courant > 0.
 template <int D>
-real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const {
-    const real F = part_(donor), width = std::min(std::abs(courant), real(1));
+real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const MacState<D>& state, const Index<D>& donor, int axis,
+                                     real courant) const {
+    const real room = std::max(capacity(part_.linear(donor), state), dust), F = std::min(part_(donor) / room, real(1));
+    const real width = std::min(std::abs(courant) / room, real(1));
     const Vec<D> g = normal(phi, donor);
     real steep = 0;
     for (int d = 0; d < D; ++d) steep += std::abs(g[d]);
     if (steep == 0) return courant * F;
-    const real through = std::min(liquid_in_slab(plane_with_fraction(F, g), g, axis, courant > 0 ? 1 : 0, width), F);
+    const real through = room * std::min(liquid_in_slab(plane_with_fraction(F, g), g, axis, courant > 0 ? 1 : 0, width), F);
     return courant > 0 ? through : -through;
 }
 
@@ -147,7 +154,12 @@ void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t 
         if (C == 0 || F <= dust || F >= 1 - dust) continue;
         const std::size_t donor = (C > 0 ? lower : upper) + static_cast<std::size_t>(i);
         const real room = capacity(donor, *s.state);
-        flux[i] = room < 1 ? C * std::min(F / std::max(room, dust), real(1)) : liquid_through(*s.phi, frame_.index_of(donor), s.axis, C);
+        if (F >= room - dust)
+            flux[i] = C;
+        else if (moving_ && room < 1)
+            flux[i] = C * F / room;
+        else
+            flux[i] = liquid_through(*s.phi, *s.state, frame_.index_of(donor), s.axis, C);
     }
 }
 
@@ -258,7 +270,7 @@ real LiquidVolume<D>::advect(const MacState<D>& state, const Grid<real, D>& phi,
     for_each_own_line(0, 0, false, [&](std::size_t line) {
         for (int i = reach_of_[line].begin; i < reach_of_[line].end; ++i) {
             const std::size_t cell = line * n + static_cast<std::size_t>(i);
-            dilation_[cell] = 0, full_[cell] = part_[cell] > 0.5;
+            dilation_[cell] = 0, full_[cell] = part_[cell] > 0.5 * capacity(cell, state);
         }
     });
     for (int i = 0; i < D; ++i) {
@@ -291,7 +303,7 @@ void LiquidVolume<D>::restore(const Checkpoint& from) {
 
 template <int D>
 std::size_t LiquidVolume<D>::bytes() const {
-    std::size_t total = part_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() +
+    std::size_t total = part_.bytes() + open_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() +
                         rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) + 2 * lines_.capacity() * sizeof(Extent);
     for (std::size_t a = 0; a < D; ++a) total += flux_[a].bytes();
     return total;

@@ -17,7 +17,7 @@ public:
     LiquidVolume() = default;
     explicit LiquidVolume(const Frame<D>& frame);
 
-    /// F of a level set. Where solids move (`moving`), cells that they cut hold what is outside them, else a whole cell's.
+    /// F of a level set. Cells that solids cut hold what is outside them.
     void start(const LevelSet<D>& surface, const MacState<D>& state, bool moving);
     /// Moves F by dt in state.u, through the open parts of faces; φ is of before the step, `reversed` the order of the sweeps. Answers
     /// what has left through open sides [m^D].
@@ -59,9 +59,9 @@ private:
     void add_fluxes(const Sweep& s, const Grid<real, D>& flux);
     real through_side(const Grid<real, D>& flux, int axis, int side) const;
     Vec<D> normal(const Grid<real, D>& phi, const Index<D>& I) const;
-    real liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const;
+    real liquid_through(const Grid<real, D>& phi, const MacState<D>& state, const Index<D>& donor, int axis, real courant) const;
     real rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const;
-    /// What a cell can hold: where solids move, its part outside them, from its faces; else all of it, as the surface counts it too.
+    /// What a cell can hold: its part outside solids; where they move, from its faces.
     real capacity(std::size_t cell, const MacState<D>& state) const;
     void find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
     void hand_on(const Grid<real, D>& phi, const MacState<D>& state);
@@ -75,7 +75,7 @@ private:
     Frame<D> frame_;
     real reach_ = 0;  // of the level set's band [m]
     bool moving_ = false;
-    Grid<real, D> part_;
+    Grid<real, D> part_, open_;     // open_: parts outside solids that stand; none without solids
     Grid<real, D> dilation_;        // Σ c dC of the sweeps so far
     Grid<std::uint8_t, D> full_;    // c: F > ½ as the step began
     Grid<real, D> missing_, near_;  // F − φ's fraction, and how much surface a cell has

@@ -186,8 +186,9 @@ private:
 
     Markers<D> markers_;
     LevelSet<D> surface_;
-    LiquidVolume<D> volume_;    // what the surface is to enclose
-    bool keeps_volume_ = true;  // not beside solids that move, nor with tension: a corrected surface keeps bodies and drops from rest
+    LiquidVolume<D> volume_;  // what the surface is to enclose
+    bool keeps_volume_ =
+        true;  // not beside solids that move, with volume_control, nor with tension: a corrected surface keeps bodies and drops from rest
     SurfacePressure<D> pressure_;
     Extrapolation<D> extrapolate_;
     FaceSums<D> sums_;

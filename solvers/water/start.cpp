@@ -146,7 +146,7 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
     }
     volume_target_ = surface_.volume();
-    keeps_volume_ = !solids_.moving() && options_.sigma == 0;
+    keeps_volume_ = !solids_.moving() && options_.sigma == 0 && !options_.volume_control;
     volume_.start(surface_, state_, solids_.moving());
     if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
     pressure_.set_surface(surface_, closed_, state_);
