@@ -26,8 +26,8 @@ template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
     make_whole();
     const OwnPlanes mine = held_.own();
-    std::vector<Integral> list =
-        Measure<D>(frame_, surface_, closed_, &volume_.part()).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    std::vector<Integral> list = Measure<D>(frame_, surface_, closed_, &volume_.part())
+                                     .integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
     list[0].value = volume_.volume();
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});

@@ -48,7 +48,7 @@ std::vector<Integral> Water<D>::integrals() const {
     const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
     const std::int64_t escaped = sum_of_ranks(escaped_), reseeded = sum_of_ranks(reseeded_);
     const Measure<D> measure(frame_, surface_, closed_, keeps_volume_ ? &volume_.part() : nullptr);
-    std::vector<Integral> list = measure.integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    std::vector<Integral> list = measure.integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
     if (keeps_volume_) list[0].value = volume_.volume();
     list.insert(list.begin() + 2, {"marker_volume", list[0].unit, markers_.volume * count});
