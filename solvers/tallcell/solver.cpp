@@ -89,14 +89,18 @@ void TallCells<D>::pour_and_drain_by_hand() {
     const real before = surface_.volume();
     Vec<D> u{};  // mean over the cells that change sides
     real changed = 0;
-    std::vector<Index<D>> edited;
+    std::vector<std::pair<Index<D>, real>> part_before;  // of cells that the brush may change, and their neighbours
+    for (std::size_t cell = 0; cell < product(frame_.cells); ++cell) {
+        const Index<D> I = frame_.index_of(cell);
+        if ((closed_.empty() || !closed_(I)) && norm(frame_.centre(I) - brush.centre) < brush.radius + 3 * norm(frame_.h))
+            part_before.emplace_back(I, surface_.fraction(I));
+    }
     for (std::size_t cell = 0; cell < product(frame_.cells); ++cell) {
         const Index<D> I = frame_.index_of(cell);
         if (!closed_.empty() && closed_(I)) continue;
         real& phi = surface_.phi(I);
         const real inside = brush.radius - norm(frame_.centre(I) - brush.centre), was = phi;
         phi = pours ? std::min(phi, -inside) : std::max(phi, inside);
-        if (phi != was) edited.push_back(I);
         if ((was < 0) == (phi < 0)) continue;
         changed += 1;
         for (int a = 0; a < D; ++a) {
@@ -108,7 +112,7 @@ void TallCells<D>::pour_and_drain_by_hand() {
     surface_.redistance();
     const real volume = surface_.volume() - before;
     volume_target_ += volume;
-    for (const Index<D>& I : edited) volume_.add(I, volume / frame_.cell_volume() / static_cast<real>(edited.size()));
+    for (const auto& [I, part] : part_before) volume_.add(I, surface_.fraction(I) - part);
     hand_->mass += state_.rho * volume;
     for (int a = 0; a < D && changed > 0; ++a) hand_->impulse[a] += state_.rho * volume * u[a] / changed;
 }

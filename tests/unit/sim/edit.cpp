@@ -190,7 +190,7 @@ TEST("a velocity that is written into tall cells becomes one that they can have,
     simulation.edit("velocity", [](FieldEdit&) {});  // it is such a velocity already: a projection is idempotent
     EXPECT_NEAR(integral(simulation, "kinetic_energy"), energy, 2 * tolerance * before / n * energy);
     simulation.edit("velocity", [](FieldEdit& u) { fill(u, {0, 0}); });
-    EXPECT_EQ(integral(simulation, "kinetic_energy"), 0);
+    EXPECT_LE(integral(simulation, "kinetic_energy"), 1e-15);  // at the time of the fields: a rate of 1e-9 of g is left of the pressure
     simulation.step();
 }
 

@@ -68,6 +68,7 @@ TEST_IN_2D_AND_3D("an emitter pours its cross-section times its speed, and what 
         EXPECT_NEAR(integral(water, "volume_target") / poured<D>(0.1, water.time()), 1, 0.05) << transfer;
         while (water.time() < 2.5) water.step(water.advised_dt());
         EXPECT_EQ(integral(water, "markers"), 0) << transfer;
-        EXPECT_EQ(integral(water, "volume_target"), 0) << transfer;
+        // Rests of less than 1e-6 of a cell are not handed on, here over the thousand cells that the jet has passed.
+        EXPECT_NEAR(integral(water, "volume_target") / poured<D>(0.1, 2.5), 0, 1e-5) << transfer;
     }
 }

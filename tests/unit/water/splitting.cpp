@@ -91,18 +91,18 @@ TEST("a film's steady speed does not depend on the step") {
     }
 }
 
-// The surface moves with the velocity of before and the pressure is of the surface of after: a leapfrog whose velocity starts half a step
-// late. Read half a step later its error is of second order; on its own clock it lags, at first order.
-TEST("a standing wave lags half a step, and is of second order but for that") {
+// Surface and forces are leapfrog: what is left of the lag of half a step, ω/2 where forces acted at the end of each, is below a twentieth
+// of it with every transfer. By FLIP and APIC the markers' noise is of the size of what steps still change, so that the order is that of
+// "grid".
+TEST("a standing wave does not lag, and is of second order in the step") {
     set_threads(1);                            // threads would only wait for one another on so few cells
-    constexpr real omega = 7.836, time = 0.2;  // ω² = g k tanh(k d); a quarter of a period, where the lag is seen best
-    for (const char* transfer : {"grid", "flip", "apic"}) {
-        const real coarse = amplitude(transfer, time, 16), middle = amplitude(transfer, time, 32), fine = amplitude(transfer, time, 64);
-        EXPECT_NEAR(order(coarse, middle, fine), 1, 0.1) << transfer;
-        EXPECT_NEAR((coarse - fine) / (time / 16 - time / 64), 0.5 * omega, 0.05 * omega) << transfer;
+    constexpr real omega = 7.836, time = 0.2;  // ω² = g k tanh(k d); a quarter of a period, where a lag is seen best
+    for (const std::string transfer : {"grid", "flip", "apic"}) {
+        const real coarse = amplitude(transfer.c_str(), time, 16), middle = amplitude(transfer.c_str(), time, 32),
+                   fine = amplitude(transfer.c_str(), time, 64);
+        EXPECT_LT(std::abs(coarse - fine) / (time / 16 - time / 64), 0.05 * 0.5 * omega) << transfer;
+        EXPECT_TRUE(transfer != "grid" || order(coarse, middle, fine) >= 1.8) << order(coarse, middle, fine);
     }
-    const auto lagged = [&](int steps) { return amplitude("grid", time * steps / (steps - 0.5), steps); };
-    EXPECT_GE(order(lagged(16), lagged(32), lagged(64)), 1.8);
 }
 
 }  // namespace weir::water
