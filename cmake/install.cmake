@@ -4,7 +4,7 @@ set(weir_package ${CMAKE_INSTALL_LIBDIR}/cmake/weir)
 get_property(libraries GLOBAL PROPERTY WEIR_LIBRARIES)
 install(TARGETS ${libraries} EXPORT weirTargets COMPONENT library)
 set(WEIR_PUBLIC_HEADERS
-  sim/simulation.hpp sim/probes.hpp sim/registry.hpp                              # a scene in, steps, fields and probes out
+  sim/simulation.hpp sim/probes.hpp sim/registry.hpp sim/thread_choice.hpp                           # a scene in, steps, fields and probes out
   scene/scene.hpp scene/schema.hpp scene/solver_kind.hpp                          # what a scene may say, and a solver of one's own
   core/solver.hpp core/effects.hpp core/hand.hpp core/passes.hpp core/checkpoint.hpp core/error.hpp core/types.hpp core/parallel.hpp
   output/frames.hpp)                                                              # VTK series

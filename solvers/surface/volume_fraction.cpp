@@ -20,6 +20,7 @@ LiquidVolume<D>::LiquidVolume(const Frame<D>& frame)
     }
     lines_.resize(product(frame.cells) / static_cast<std::size_t>(frame.cells[0]), {frame.cells[0], 0});
     reach_of_ = lines_;
+    rests_.reserve(512), drops_.reserve(64);
 }
 
 template <int D>

@@ -39,11 +39,10 @@ StepReport TallCells<D>::step(real dt) {
             .residual_max = poisson.residual_max * state_.rho / kick};
 }
 
-/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move the hand's
-/// account: there the first step moves liquid with the velocity that it has.
+/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it.
 template <int D>
 void TallCells<D>::find_rate(real dt) {
-    if (hand_) return;
+    const Hand account = hand_ ? *hand_ : Hand();
     const MacVelocity<D> u = state_.u;
     leapfrog_.keep(state_.u);
     forces(dt);
@@ -55,6 +54,7 @@ void TallCells<D>::find_rate(real dt) {
     extend_velocity();
     leapfrog_.begin(state_.u, dt);
     state_.u = u;
+    if (hand_) *hand_ = account;
 }
 
 template <int D>

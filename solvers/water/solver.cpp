@@ -44,11 +44,12 @@ StepReport Water<D>::step(real dt) {
             .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
 }
 
-/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies or
-/// the account of interactive forcing, or where emitters begin: there the first step moves liquid with the velocity that it has.
+/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies,
+/// or where emitters begin: there the first step moves liquid with the velocity that it has.
 template <int D>
 void Water<D>::find_rate(real dt) {
-    if (bodies_ || hand_ || !emitters_.empty()) return;
+    if (bodies_ || !emitters_.empty()) return;
+    const Hand account = hand_ ? *hand_ : Hand();
     for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
     leapfrog_.keep(state_.u);
     forces(dt);
@@ -56,6 +57,7 @@ void Water<D>::find_rate(real dt) {
     extend_velocity(dt);
     leapfrog_.begin(state_.u, dt);
     for (int a = 0; a < D; ++a) state_.u[a] = before_[a];
+    if (hand_) *hand_ = account;
 }
 
 template <int D>

@@ -56,7 +56,7 @@ const std::vector<std::string> solids{
     "0.7], rate = 1 } } ]",
     "solids = [ { shape = \"plane\", point = [0.8, 0.8], normal = [-1, -1], motion = { kind = \"keyframes\", centre = [0.8, 0.8], frames = "
     "[ { t = 0, "
-    "offset = [0, 0], angle = 0 }, { t = 1, offset = [0, 0], angle = 1 } ] } } ]",
+    "offset = [0, 0], angle = 0 }, { t = 1, offset = [0, 0], angle = 0 } ] } } ]",
     "solids = [ { shape = \"union\", of = [ { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9] } ] } ]",
     "solids = [ { shape = \"difference\", from = { shape = \"box\", min = [0.7, 0.7], max = [0.9, 0.9] }, minus = [ { shape = "
     "\"sphere\", centre = [0.7, 0.7], radius = 0.05 } ] } ]",

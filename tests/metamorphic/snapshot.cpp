@@ -177,6 +177,7 @@ Snapshot snapshot(const Simulation& simulation, const std::vector<Integral>& sta
     Snapshot s;
     const scene::Scene& scene = simulation.scene();
     s.dim = scene.dim(), s.time = simulation.time(), s.start = start, s.end = simulation.solver().integrals();
+    std::erase_if(s.end, [](const Integral& i) { return i.name.find("torque") != std::string::npos; });  // of forces about the origin
     const auto &cells = scene.root().numbers("grid.cells"), &size = scene.root().numbers("grid.size");
     const FieldSet shown = simulation.fields();
     // Particles are single numbers of seven digits: what rounding moves them in a step is a speed.

@@ -438,7 +438,7 @@ def test_particles_come_and_go():
 
 
 def test_observers_look_on_and_steer():
-    sim = weir.Simulation(dam)
+    sim = weir.Simulation(dam, set={"output.at": "exact"})
     frames, steps = [], []
     sim.observe(lambda s, report: frames.append(round(s.time, 9)))
     sim.observe(lambda s, report: steps.append((s.steps, report.dt)), every=2)
