@@ -35,7 +35,8 @@ StepReport Water<D>::step(real dt) {
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
             .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]),
-            .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
+            .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0,
+            .viscous_turns = friction_ ? friction_->turns : 0};
 }
 
 template <int D>
