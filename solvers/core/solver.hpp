@@ -33,6 +33,7 @@ struct StepReport {
     real density_error = not_applicable;      // particle solvers: mean compression
     real max_density_error = not_applicable;  // particle solvers: max compression
     int viscous_iterations = 0;               // of the solve for the friction of a liquid with a free surface
+    int viscous_turns = 0;                    // how often friction and pressure were solved for once more
 };
 
 enum class Where { cell, face, particle };

@@ -23,6 +23,7 @@ struct StepShape {
     double beside = 0;           // particles that a neighbour reads, where that is known; 0: as many as planes hold on the mean
     double particles = 0;        // all there are, of solvers that consist of them
     int viscous_iterations = 1;  // of the solve for friction, where there is one
+    int viscous_turns = 0;       // after the first
 };
 
 /// What a rank sends in a step: to those who read beside its cuts, and what everybody is to know.

@@ -48,6 +48,7 @@ json step_json(std::int64_t step, real t, const StepReport& report, double secon
     put(j, "max_density_error", report.max_density_error);
     j["iterations"] = report.iterations;
     if (report.viscous_iterations > 0) j["viscous_iterations"] = report.viscous_iterations;
+    if (report.viscous_turns > 0) j["viscous_turns"] = report.viscous_turns;
     put(j, "residual_before", report.residual_before);
     put(j, "residual_after", report.residual_after);
     put(j, "residual_max", report.residual_max);

@@ -23,6 +23,14 @@ struct Window {
     static int stride(int a) { return a == 0 ? 1 : a == 1 ? side : side * side; }
 
     Window(const Grid<real, D>& all, const Frame<D>& frame, const Index<D>& I) {
+        bool inside = true;
+        for (int d = 0; d < D; ++d) inside = inside && I[d] >= reach && I[d] + reach < frame.cells[d];
+        if (inside)
+            copy(&all(I), all);
+        else
+            copy_mirrored(all, frame, I);
+    }
+    void copy_mirrored(const Grid<real, D>& all, const Frame<D>& frame, const Index<D>& I) {
         for (std::size_t at = 0; at < phi.size(); ++at) {
             const Vec<D> by = offset(at);
             Index<D> J = I;
@@ -37,6 +45,12 @@ struct Window {
             }
             phi[at] = all(J);
         }
+    }
+    void copy(const real* middle, const Grid<real, D>& all) {
+        real* to = phi.data();
+        for (int k = D == 2 ? 0 : -reach; k <= (D == 2 ? 0 : reach); ++k)
+            for (int j = -reach; j <= reach; ++j, to += side)
+                std::copy_n(middle + (D == 2 ? 0 : k * all.stride(D - 1)) + j * all.stride(1) - reach, side, to);
     }
     /// From the middle [cells].
     static Vec<D> offset(std::size_t at) {

@@ -56,6 +56,7 @@ void Water<D>::rub(real dt) {
     StepOfFriction<D>& s = *friction_;
     for (int a = 0; a < D; ++a)
         for_each_cell(s.forces[a].extent(), [&](const Index<D>& I) { s.forces[a](I) = state_.u[a](I) - s.before[a](I); });
+    if (heat_) heat_->slow(state_, dt);  // how far the faces of this step follow; the velocity itself is slowed before the pressure
     copy<D>(s.before.face, state_.u.face);
     if (state_.grip) bodies_->grip(state_, solids_, dt);
     const bool thick = !bodies_ && dt * state_.nu > frame_.h_min() * frame_.h_min();

@@ -41,7 +41,8 @@ StepReport Water<D>::step(real dt) {
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
             .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]),
-            .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
+            .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0,
+            .viscous_turns = friction_ ? friction_->turns : 0};
 }
 
 /// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies,

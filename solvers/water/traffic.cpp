@@ -66,8 +66,6 @@ public:
     }
 
 private:
-    /// Of friction and pressure, which the shape of a step does not say.
-    int further_turns() const { return 0; }
     bool viscous() const { return scene_.effect("viscosity") && scene_.number("fluid.viscosity") > 0; }
     void sync() { tally_.refresh({faces_[D - 1]}, 1); }
     void largest(int planes) { tally_.gather({sizeof(real), planes}); }
@@ -115,14 +113,15 @@ private:
         tally_.refresh({cells_}, 2);
         continue_felt();
         tally_.refresh(faces_, 1, shape_.viscous_iterations);
-        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + further_turns() + 2 * shape_.viscous_iterations);
+        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + shape_.viscous_turns + 2 * shape_.viscous_iterations);
         sync(), sync();
     }
     /// Marks and values, two layers.
     void continue_felt() { tally_.refresh(faces_, 1, 4); }
-    /// Friction and pressure by turns: what is compared, how pressures are mixed, the velocity on both sides of cuts.
+    /// Friction and pressure by turns, some four messages in a thousand too few where there are any: what is compared, how pressures are
+    /// mixed, the velocity on both sides of cuts.
     void balance_friction() {
-        const int turns = further_turns();
+        const int turns = shape_.viscous_turns;
         for (int turn = 0; turn <= turns; ++turn) {
             continue_felt();
             tally_.gather({sizeof(real), faces_[D - 1].count}, 4);
@@ -152,7 +151,7 @@ private:
     }
     void project() {
         if (windowed_) poisson::tally_multigrid_setup<D>(n_, periodic_, weight_, runs(), tally_);
-        solve(shape_.iterations - further_turns());
+        solve(shape_.iterations - shape_.viscous_turns);
         if (viscous()) balance_friction();
         sync();
         largest(n_[D - 1]);  // of what diverges
