@@ -28,7 +28,7 @@ cd "$root/solvers"
 printf '#include "%s"\n' particles/{beside_bodies,bodies_in_liquid,device_ice,ice,ice_pieces,vapour}.cpp geometry/mesh/mesh.cpp rigid/*.cpp >"$work/pieces.cpp"
 printf '#include "%s"\n' particles/device_fluid.cpp pbf/device_solver.cpp "$work/kernel_text.cpp" >"$work/step.cpp"
 compile() { # NAME SOURCE
-    ${CXX:-c++} -std=c++20 ${CXXFLAGS:--O2} -ffp-contract=off -ffunction-sections -fdata-sections -I"$work" -I. -I"$root" -c "$2" \
+    ${CXX:-c++} -std=c++20 ${CXXFLAGS:--O2} -ffp-contract=off -DFMT_HEADER_ONLY -ffunction-sections -fdata-sections -I"$work" -I. -I"$root" -c "$2" \
         -o "$work/$1.o"
 }
 pids=()

@@ -40,7 +40,7 @@ StepReport Water<D>::step(real dt) {
             .iterations = poisson.iterations,
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
-            .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]),
+            .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]) * (kick / dt),
             .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0,
             .viscous_turns = friction_ ? friction_->turns : 0};
 }
@@ -174,8 +174,9 @@ void Water<D>::momentum_to_faces(real dt) {
     if (keeps_volume_) still_air<D>(state_.u, known_);
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
-        // falls on water would be given to the markers there. extend_velocity() has the rest.
-        if (bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
+        // falls on water would be given to the markers there. extend_velocity() has the rest; it looks also at faces that no marker is
+        // near, so that all of before_ must be of this step: what stood there of earlier ones no checkpoint has.
+        for (int a = 0; bodies_ && a < D; ++a) before_[a] = state_.u[a];
         in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
         if (!bodies_) copy_faces_near(markers_, frame_, state_.u, before_);

@@ -318,7 +318,7 @@ TEST(
 }
 
 TEST("the executable runs the session that was kept, to the same bytes; a checkpoint of it continues it") {
-    Play play("solver = \"pbf\"\n" + pool);
+    Play play("solver = \"sph\"\n" + pool);
     play.drag({{0.3, 0.3, 0}}, {{0.9, 0.4, 0}});
     play.key("Up");
     play.run_for(0.05);
