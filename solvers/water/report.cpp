@@ -138,7 +138,8 @@ void Water<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t Water<D>::bytes() const {
     std::size_t total = state_.bytes() + markers_.bytes() + surface_.bytes() + volume_.bytes() + pressure_.bytes() + extrapolate_.bytes() +
-                        before_.bytes() + leapfrog_.bytes() + (viscosity_ ? viscosity_->bytes() + friction_->bytes() + sizeof(*viscosity_) + sizeof(*friction_) : 0) +
+                        before_.bytes() + leapfrog_.bytes() +
+                        (viscosity_ ? viscosity_->bytes() + friction_->bytes() + sizeof(*viscosity_) + sizeof(*friction_) : 0) +
                         (heat_ ? heat_->bytes() : 0) + closed_.bytes() + near_solid_.bytes() + not_solved_for_.bytes() +
                         curvature_.bytes() + in_solids_.bytes();
     if (!held_.cut().empty()) total += all_markers_.bytes();

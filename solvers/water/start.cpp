@@ -51,7 +51,9 @@ Water<D>::Water(const scene::Scene& scene)
     if (options_.viscosity > 0 && state_.nu > 0) {
         viscosity_ = std::make_unique<SurfaceViscosity<D>>(frame_, state_, options_.viscosity, all_stick(solids_.solids()));
         friction_ = std::make_unique<StepOfFriction<D>>(state_);
-        effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes() + friction_->bytes()});
+        effects_.declare({.name = "viscosity",
+                          .pass = effect_pass("viscosity"),
+                          .bytes = viscosity_->bytes() + friction_->bytes() + sizeof(*viscosity_) + sizeof(*friction_)});
     }
     if (options_.volume_control) effects_.declare({.name = "volume_control", .pass = effect_pass("volume_control")});
     read_emitters(scene);

@@ -318,7 +318,7 @@ TEST(
 }
 
 TEST("the executable runs the session that was kept, to the same bytes; a checkpoint of it continues it") {
-    Play play("solver = \"sph\"\n" + pool);
+    Play play("solver = \"pbf\"\n" + pool);
     play.drag({{0.3, 0.3, 0}}, {{0.9, 0.4, 0}});
     play.key("Up");
     play.run_for(0.05);
@@ -331,6 +331,7 @@ TEST("the executable runs the session that was kept, to the same bytes; a checkp
     const auto checkpoint = Checkpoint::read(out / "checkpoint.weir");
     Simulation replay(scene_of(checkpoint));
     replay.restore(checkpoint);
+    while (!replay.finished()) replay.step();  // the checkpoint stands before the steps that the end has shortened
     EXPECT_TRUE(state_of(replay) == state_of(play.session.simulation()));
     const auto saved = Checkpoint::read(play.session.folder() / "checkpoint.weir");
     Simulation continued(scene_of(saved));
