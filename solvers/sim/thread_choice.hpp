@@ -24,6 +24,7 @@ struct StepTime {
 class StepClock {
 public:
     StepClock();
+    /// Since construction.
     StepTime elapsed() const;
 
 private:
@@ -35,6 +36,7 @@ private:
 /// since. Results do not depend on the number of threads; only time does.
 class ThreadChoice {
 public:
+    /// `most`: the threads that the work is enough for.
     explicit ThreadChoice(int most) : most_(most), chosen_(most), count_(most) {}
 
     /// Threads for the next step.
@@ -44,12 +46,18 @@ public:
     /// One line for the user, once for each choice: threads have cost time, or have waited longer than they have worked. Else empty.
     std::string warning();
 
+    /// Steps on each count in a trial.
     static constexpr int steps_of_trial = 2;
-    static constexpr double hopeless = 2;  // times the step of the other count
-    static constexpr double worth = 0.9;   // of a step's present time, for a change
+    /// Ends a trial: times the step of the other count.
+    static constexpr double hopeless = 2;
+    /// Part of a step's present time, for a change.
+    static constexpr double worth = 0.9;
+    /// Part of the time that trials may cost.
     static constexpr double cost_allowed = 0.02;
-    static constexpr int steps_between = 100;   // trials, at least
-    static constexpr int steps_of_waiting = 8;  // in a row, for a warning
+    /// Steps between trials, at least.
+    static constexpr int steps_between = 100;
+    /// Steps that wait, in a row, for a warning.
+    static constexpr int steps_of_waiting = 8;
 
 private:
     enum class Phase { steady, other, present };

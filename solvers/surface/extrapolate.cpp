@@ -259,9 +259,12 @@ template <int D>
 void still_air(MacVelocity<D>& u, const FaceMarks<D>& known) {
     for (int a = 0; a < D; ++a) {
         const auto& marks = known[static_cast<std::size_t>(a)];
-        for_each_line(marks.extent(), [&](const Index<D>&, std::size_t at) {
-            const std::uint8_t* mark = marks.data() + at;
-            real* face = u[a].data() + at;
+        Index<D> rows = marks.extent();  // of ghost planes, too: what stands there is read before the next halo exchange
+        rows[0] = 1;
+        for_each_held(marks, Index<D>{}, rows, [&](const Index<D>& I) {
+            if (!u[a].store().holds(I[D - 1])) return;
+            const std::uint8_t* mark = &marks(I);
+            real* face = &u[a](I);
 #pragma omp simd
             for (int i = 0; i < marks.extent()[0]; ++i) face[i] = mark[i] ? face[i] : 0;
         });

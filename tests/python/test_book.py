@@ -248,4 +248,4 @@ def test_the_site_in_a_browser(site, tmp_path):
                    (tmp_path, os.environ))
     found = re.search(r'<div id="found">(.*?)</div>', drawn("index.html?q=tall%20knots"), re.S)
     assert found and "book/theory/tallcell.html" in found[1]
-    assert drawn("book/theory/mac.html").count('class="katex-display"') == 2
+    assert drawn("book/theory/mac.html").count('class="katex-display"') == 3
