@@ -148,7 +148,8 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
     }
     volume_target_ = surface_.volume();
-    keeps_volume_ = !solids_.moving() && options_.sigma == 0 && !options_.volume_control;
+    // With emitters beside solids the liquid parts are not yet the same bits in parallel (MPI) as in one process.
+    keeps_volume_ = !solids_.moving() && options_.sigma == 0 && !options_.volume_control && (emitters_.empty() || !solids_.any());
     volume_.start(surface_, state_, solids_.moving());
     if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
     pressure_.set_surface(surface_, closed_, state_);
