@@ -88,6 +88,8 @@ public:
     std::span<const std::size_t> near(std::size_t box) const { return near_[box]; }
     /// Distance from the lower corner of a cell, or two of reach() if it is more; as it was when solids were near last.
     real corner_distance(const Index<D>& I) const { return corner_(I); }
+    /// Both planes of corners of this plane of cells are stored here.
+    bool holds_corners(int plane) const { return corner_.store().holds(plane) && corner_.store().holds(plane + 1); }
     /// u·n = u_solid·n on closed faces.
     void set_faces(MacState<D>& s) const;
     /// The solids move at other speeds than when they were placed.

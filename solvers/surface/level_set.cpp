@@ -71,10 +71,11 @@ void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::arr
 template <int D>
 void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
     if (open_part_.empty()) open_part_ = Grid<real, D>(frame_.cells, 1);
-    const bool ring = frame_.periodic(D - 1), alone = open_part_.store().windowed();
+    const bool ring = frame_.periodic(D - 1), alone = closed_.store().windowed();
+    if (alone) open_part_.store().open(wide() + 1, ring);
     for (const CellBox<D>& box : solids.changed())
         for_each_held(open_part_, box.lo, box.hi, [&](const Index<D>& I) {
-            if (alone && !is_own_plane(I[D - 1])) return;
+            if (alone && (!is_own_plane(I[D - 1]) || !solids.holds_corners(I[D - 1]))) return;
             real mean = 0, least = infinity;
             Vec<D> slope{};
             for (unsigned corner = 0; corner < 1U << D; ++corner) {
@@ -87,9 +88,7 @@ void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
             }
             open_part_(I) = least >= 0 ? 1 : fraction_below_plane<D>(-mean, -1.0 * slope);
         });
-    if (!alone) return;
-    open_part_.store().open(wide() + 1, ring);
-    refresh(open_part_, ring, wide() + 1);
+    if (alone) refresh(open_part_, ring, wide() + 1);
 }
 
 /// Closed cells beside open ones of these planes (none named: of all), and beside those, to skin_.
