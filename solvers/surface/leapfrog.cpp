@@ -12,18 +12,24 @@ namespace weir::surface {
 constexpr real least_kick = 0.5, most_kick = 1.5;
 
 template <int D>
-Leapfrog<D>::Leapfrog(const MacVelocity<D>& u, bool whole) : rate_(u.cells, u.h, u.origin), whole_(whole) {}
+Leapfrog<D>::Leapfrog(const MacVelocity<D>& u, bool whole) : rate_(u.cells, u.h, u.origin), at_end_(rate_), whole_(whole) {}
+
+/// f(a, first place, count) for every line of faces.
+template <int D, class F>
+static void for_each_line_of(const MacVelocity<D>& u, F&& f) {
+    for (int a = 0; a < D; ++a) for_each_line(u[a].extent(), [&](const Index<D>&, std::size_t at) { f(a, at, u[a].extent()[0]); });
+}
 
 template <int D>
-void Leapfrog<D>::add(MacVelocity<D>& u, real time) const {
-    for (int a = 0; a < D; ++a)
-        for_each_line(u[a].extent(), [&](const Index<D>&, std::size_t at) {
-            real* to = u[a].data() + at;
-            const real* rate = rate_[a].data() + at;
-            const int count = u[a].extent()[0];
+void Leapfrog<D>::advance(MacVelocity<D>& u, real dt) const {
+    const real time = 0.5 * dt - ahead_;
+    if (whole_ || time == 0) return;
+    for_each_line_of(u, [&](int a, std::size_t at, int count) {
+        real* to = u[a].data() + at;
+        const real* rate = rate_[a].data() + at;
 #pragma omp simd
-            for (int i = 0; i < count; ++i) to[i] += time * rate[i];
-        });
+        for (int i = 0; i < count; ++i) to[i] += time * rate[i];
+    });
 }
 
 template <int D>
@@ -36,35 +42,43 @@ real Leapfrog<D>::kick(real dt, bool on_grid) {
 }
 
 template <int D>
+void Leapfrog<D>::keep(const MacVelocity<D>& u) {
+    for_each_line_of(u, [&](int a, std::size_t at, int count) { std::copy_n(u[a].data() + at, count, rate_[a].data() + at); });
+}
+
+template <int D>
 void Leapfrog<D>::keep(const MacVelocity<D>& u, const FaceMarks<D>& known) {
-    for (int a = 0; a < D; ++a)
-        for_each_line(u[a].extent(), [&](const Index<D>&, std::size_t at) {
-            const real* from = u[a].data() + at;
-            const std::uint8_t* mark = known[static_cast<std::size_t>(a)].data() + at;
-            real* to = rate_[a].data() + at;
-            const int count = u[a].extent()[0];
+    for_each_line_of(u, [&](int a, std::size_t at, int count) {
+        const real* from = u[a].data() + at;
+        const std::uint8_t* mark = known[static_cast<std::size_t>(a)].data() + at;
+        real* to = rate_[a].data() + at;
 #pragma omp simd
-            for (int i = 0; i < count; ++i) to[i] = mark[i] != 0 ? from[i] : infinity;
-        });
+        for (int i = 0; i < count; ++i) to[i] = mark[i] != 0 ? from[i] : infinity;
+    });
 }
 
 template <int D>
-void Leapfrog<D>::find_rate(const MacVelocity<D>& u, real dt) {
-    const real inv = 1 / dt;
-    for (int a = 0; a < D; ++a)
-        for_each_line(u[a].extent(), [&](const Index<D>&, std::size_t at) {
-            const real* from = u[a].data() + at;
-            real* rate = rate_[a].data() + at;
-            const int count = u[a].extent()[0];
+void Leapfrog<D>::finish(const MacVelocity<D>& u, real kick) {
+    const real inv = 1 / kick;
+    for_each_line_of(u, [&](int a, std::size_t at, int count) {
+        const real* from = u[a].data() + at;
+        real* rate = rate_[a].data() + at;
 #pragma omp simd
-            for (int i = 0; i < count; ++i) rate[i] = rate[i] < infinity ? (from[i] - rate[i]) * inv : 0;
-        });
+        for (int i = 0; i < count; ++i) rate[i] = rate[i] < infinity ? (from[i] - rate[i]) * inv : 0;
+    });
 }
 
 template <int D>
-void Leapfrog<D>::retreat(MacVelocity<D>& u, real kick) {
-    find_rate(u, kick);
-    add(u, -ahead_);
+const MacVelocity<D>& Leapfrog<D>::at_end(const MacVelocity<D>& u, const Frame<D>& frame) const {
+    if (ahead_ == 0) return u;
+    for_each_line_of(u, [&](int a, std::size_t at, int count) {
+        const real *from = u[a].data() + at, *rate = rate_[a].data() + at;
+        real* to = at_end_[a].data() + at;
+#pragma omp simd
+        for (int i = 0; i < count; ++i) to[i] = from[i] - ahead_ * rate[i];
+    });
+    refresh_faces(at_end_, frame, 1);
+    return at_end_;
 }
 
 template <int D>

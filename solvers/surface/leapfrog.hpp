@@ -22,28 +22,29 @@ public:
     /// A step has been made, or restored.
     bool started() const { return any_; }
     /// The rate of change as a scene begins: u is what keep() saw, dt later.
-    void begin(const MacVelocity<D>& u, real dt) { find_rate(u, dt), any_ = true; }
-    /// u(t), as it is between steps, becomes u(t + dt/2).
-    void advance(MacVelocity<D>& u, real dt) const { add(u, whole_ ? ahead_ : 0.5 * dt); }
-    /// How long forces act in this step. `on_grid`: what is carried is u(t + dt/2), else it is what the last step has left on markers.
+    void begin(const MacVelocity<D>& u, real dt) { finish(u, dt), any_ = true; }
+    /// u, of the middle of a step as long as the last one, becomes that of the middle of a step of dt.
+    void advance(MacVelocity<D>& u, real dt) const;
+    /// How long forces act in this step. `on_grid`: what is carried is what moves the liquid, else it is what the last step has left on
+    /// markers.
     real kick(real dt, bool on_grid);
-    /// Markers carry u(t): it has been given to them between steps.
-    void take_present() { ahead_ = 0; }
-    /// The velocity before forces act, and on which faces the liquid has brought one.
+    /// The velocity before forces act.
+    void keep(const MacVelocity<D>& u);
+    /// The same, and on which faces the liquid has brought one.
     void keep(const MacVelocity<D>& u, const FaceMarks<D>& known);
-    /// u, which forces and pressure have brought to the middle of a next step of dt, becomes what it is at the end of this one.
-    void retreat(MacVelocity<D>& u, real kick);
+    /// The velocity after forces have acted for `kick`.
+    void finish(const MacVelocity<D>& u, real kick);
+    /// u at time(), where surface and markers are, of this rank's own planes and one beyond.
+    const MacVelocity<D>& at_end(const MacVelocity<D>& u, const Frame<D>& frame) const;
 
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
-    std::size_t bytes() const { return rate_.bytes(); }
+    std::size_t bytes() const { return rate_.bytes() + at_end_.bytes(); }
 
 private:
-    void add(MacVelocity<D>& u, real time) const;
-    void find_rate(const MacVelocity<D>& u, real dt);
-
     MacVelocity<D> rate_;  // of change, of the velocity [m/s²]; during a step the velocity before forces [m/s], none where it is infinite
-    real ahead_ = 0;       // of time(): the velocity that is carried [s]
+    mutable MacVelocity<D> at_end_;
+    real ahead_ = 0;                    // of time(): the velocity that is carried [s]
     bool any_ = false, whole_ = false;  // any_: a step has been made
 };
 

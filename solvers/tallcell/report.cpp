@@ -26,7 +26,8 @@ template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
     make_whole();
     const OwnPlanes mine = held_.own();
-    std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    std::vector<Integral> list =
+        Measure<D>(frame_, surface_, closed_).integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});
     if (hand_) geometry::sum_up(*hand_, D, list);
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});

@@ -13,7 +13,7 @@ StepReport TallCells<D>::step(real dt) {
     if (!leapfrog_.started()) find_rate(dt);
     leapfrog_.advance(state_.u, dt);  // u at the middle of the step
     const real kick = leapfrog_.kick(dt, true);
-    leapfrog_.keep(state_.u, known_);
+    leapfrog_.keep(state_.u);
     bring_faces(dt);  // over ranks, as far as anything moves
     place_solids(state_.time + dt);
     move_surface(dt);                               // Dφ/Dt = 0, and φ is a distance again
@@ -23,8 +23,8 @@ StepReport TallCells<D>::step(real dt) {
     forces(kick);                                   // u += dt f
     const poisson::Report poisson = project(kick);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
     const real divergence = pressure_.max_divergence(state_);
-    extend_velocity();                  // ∇u·∇φ = 0 beyond the liquid
-    leapfrog_.retreat(state_.u, kick);  // u at the end of the step
+    extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
+    leapfrog_.finish(state_.u, kick);
     if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "a velocity is no longer finite");
     state_.time += dt;
     ++steps_;
@@ -43,7 +43,7 @@ template <int D>
 void TallCells<D>::find_rate(real dt) {
     if (hand_) return;
     const MacVelocity<D> u = state_.u;
-    leapfrog_.keep(state_.u, known_);
+    leapfrog_.keep(state_.u);
     forces(dt);
     refresh(state_.u[D - 1], frame_.periodic(D - 1));
     pressure_.restrict_velocity(state_);

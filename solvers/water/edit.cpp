@@ -40,12 +40,10 @@ void Water<D>::take_velocity() {
         case Transfer::grid:
             return;
         case Transfer::pic:
-            leapfrog_.take_present();
             return pic_to_markers(state_.u, frame_, markers_);
         case Transfer::flip:
             return flip_to_markers(state_.u, before_, 1, frame_, markers_);
         case Transfer::apic:
-            leapfrog_.take_present();
             return apic_to_markers(state_.u, frame_, markers_);
     }
 }

@@ -47,7 +47,8 @@ std::vector<Integral> Water<D>::integrals() const {
     const auto [first, last] = markers_.own(frame_);
     const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
     const std::int64_t escaped = sum_of_ranks(escaped_), reseeded = sum_of_ranks(reseeded_);
-    std::vector<Integral> list = Measure<D>(frame_, surface_, closed_).integrals(state_.u, state_.rho, gravity_, up_, volume_target_);
+    std::vector<Integral> list =
+        Measure<D>(frame_, surface_, closed_).integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"marker_volume", list[0].unit, markers_.volume * count});
     list.push_back({"markers", "", count});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});

@@ -26,7 +26,7 @@ StepReport Water<D>::step(real dt) {
     const real divergence = pressure_.max_divergence(state_);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
-    leapfrog_.retreat(state_.u, kick);
+    leapfrog_.finish(state_.u, kick);
     state_.time += dt;
     ++steps_;
     if (!held_.cut().empty()) check_own();
@@ -40,13 +40,13 @@ StepReport Water<D>::step(real dt) {
             .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
 }
 
-/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies, or
-/// the hand's account: there the first step moves liquid with the velocity that it has.
+/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies, or the
+/// hand's account, nor of liquid that emitters set off at once: there the first step moves liquid with the velocity that it has.
 template <int D>
 void Water<D>::find_rate(real dt) {
-    if (bodies_ || hand_) return;
+    if (bodies_ || hand_ || !emitters_.empty()) return;
     for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
-    leapfrog_.keep(state_.u, known_);
+    leapfrog_.keep(state_.u);
     forces(dt);
     project(dt, dt);
     extend_velocity(dt);
