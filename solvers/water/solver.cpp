@@ -9,9 +9,7 @@ namespace weir::water {
 template <int D>
 StepReport Water<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
-    if (!leapfrog_.started()) find_rate(dt);
-    leapfrog_.advance(state_.u, dt);
-    const real kick = leapfrog_.kick(dt, options_.transfer == Transfer::grid);
+    const real kick = to_middle(dt);
     bring_faces(dt);
     move_bodies(dt);
     move_solids(state_.time + dt);
@@ -40,11 +38,20 @@ StepReport Water<D>::step(real dt) {
             .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
 }
 
-/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies, or the
-/// hand's account, nor of liquid that emitters set off at once: there the first step moves liquid with the velocity that it has.
+/// The velocity becomes that of the middle of this step. Answers how long forces act in it.
+template <int D>
+real Water<D>::to_middle(real dt) {
+    const auto works = [&](const Emitter<D>& emitter) { return emitter.works(state_.time, state_.time + dt); };
+    if (bodies_ || std::any_of(emitters_.begin(), emitters_.end(), works)) return leapfrog_.whole_kick(dt);
+    if (!leapfrog_.started() && !hand_) find_rate(dt);
+    leapfrog_.advance(state_.u, dt);
+    return leapfrog_.kick(dt, options_.transfer == Transfer::grid);
+}
+
+/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move the hand's
+/// account: there the first step moves liquid with the velocity that it has.
 template <int D>
 void Water<D>::find_rate(real dt) {
-    if (bodies_ || hand_ || !emitters_.empty()) return;
     for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
     leapfrog_.keep(state_.u);
     forces(dt);
