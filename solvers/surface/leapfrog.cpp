@@ -43,7 +43,6 @@ real Leapfrog<D>::kick(real dt, bool on_grid) {
 
 template <int D>
 real Leapfrog<D>::whole_kick(real dt) {
-    ahead_ = 0.5 * dt;
     any_ = true;
     return dt;
 }

@@ -27,7 +27,7 @@ public:
     /// markers.
     real kick(real dt, bool on_grid);
     /// The same where bodies or emitters are part of the step, and the velocity stays as forces left it: it is theirs, and light bodies do
-    /// not bear a force that acts for longer or shorter than the flow does.
+    /// not bear a force that acts for longer or shorter than the flow does. What is carried then stays as far ahead as it was.
     real whole_kick(real dt);
     /// The velocity before forces act.
     void keep(const MacVelocity<D>& u);
@@ -38,6 +38,10 @@ public:
     /// u at time(), where surface and markers are, of this rank's own planes and one beyond.
     const MacVelocity<D>& at_end(const MacVelocity<D>& u, const Frame<D>& frame) const;
 
+    /// Over ranks, what others know of the rate of change.
+    void make_whole() {
+        for (auto& rate : rate_.face) gather(rate);
+    }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
     std::size_t bytes() const { return rate_.bytes() + at_end_.bytes(); }
