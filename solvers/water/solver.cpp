@@ -168,7 +168,8 @@ void Water<D>::momentum_to_faces(real dt) {
     if (options_.transfer == Transfer::flip) {
         // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
         // falls on water would be given to the markers there. extend_velocity() has the rest.
-        if (bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
+        // A body looks at faces beside those that markers see.
+        for (int a = 0; bodies_ && a < D; ++a) before_[a] = state_.u[a];
         in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
         if (!bodies_) copy_faces_near(markers_, frame_, state_.u, before_);
