@@ -12,7 +12,7 @@ namespace weir::surface {
 constexpr real least_kick = 0.5, most_kick = 1.5;
 
 template <int D>
-Leapfrog<D>::Leapfrog(const MacVelocity<D>& u, bool whole) : rate_(u.cells, u.h, u.origin), at_end_(rate_), whole_(whole) {}
+Leapfrog<D>::Leapfrog(const MacVelocity<D>& u) : rate_(u.cells, u.h, u.origin), at_end_(rate_) {}
 
 /// f(a, first place, count) for every line of faces.
 template <int D, class F>
@@ -23,7 +23,7 @@ static void for_each_line_of(const MacVelocity<D>& u, F&& f) {
 template <int D>
 void Leapfrog<D>::advance(MacVelocity<D>& u, real dt) const {
     const real time = 0.5 * dt - ahead_;
-    if (whole_ || time == 0) return;
+    if (time == 0) return;
     for_each_line_of(u, [&](int a, std::size_t at, int count) {
         real* to = u[a].data() + at;
         const real* rate = rate_[a].data() + at;
@@ -34,11 +34,17 @@ void Leapfrog<D>::advance(MacVelocity<D>& u, real dt) const {
 
 template <int D>
 real Leapfrog<D>::kick(real dt, bool on_grid) {
-    if (whole_ || (on_grid && any_)) ahead_ = 0.5 * dt;
+    if (on_grid && any_) ahead_ = 0.5 * dt;
     const real kick = std::clamp(1.5 * dt - ahead_, least_kick * dt, most_kick * dt);
     ahead_ += kick - dt;
     any_ = true;
     return kick;
+}
+
+template <int D>
+real Leapfrog<D>::whole_kick(real dt) {
+    any_ = true;
+    return dt;
 }
 
 template <int D>

@@ -15,9 +15,7 @@ template <int D>
 class Leapfrog {
 public:
     Leapfrog() = default;
-    /// `whole`: forces act for the step that they are in, and the next one takes the velocity as they left it: light bodies do not bear a
-    /// force that acts for longer or shorter than the flow does.
-    explicit Leapfrog(const MacVelocity<D>& u, bool whole = false);
+    explicit Leapfrog(const MacVelocity<D>& u);
 
     /// A step has been made, or restored.
     bool started() const { return any_; }
@@ -28,6 +26,9 @@ public:
     /// How long forces act in this step. `on_grid`: what is carried is what moves the liquid, else it is what the last step has left on
     /// markers.
     real kick(real dt, bool on_grid);
+    /// The same where bodies or emitters are part of the step, and the velocity stays as forces left it: it is theirs, and light bodies do
+    /// not bear a force that acts for longer or shorter than the flow does. What is carried then stays as far ahead as it was.
+    real whole_kick(real dt);
     /// The velocity before forces act.
     void keep(const MacVelocity<D>& u);
     /// The same, and on which faces the liquid has brought one.
@@ -37,6 +38,10 @@ public:
     /// u at time(), where surface and markers are, of this rank's own planes and one beyond.
     const MacVelocity<D>& at_end(const MacVelocity<D>& u, const Frame<D>& frame) const;
 
+    /// Over ranks, what others know of the rate of change.
+    void make_whole() {
+        for (auto& rate : rate_.face) gather(rate);
+    }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
     std::size_t bytes() const { return rate_.bytes() + at_end_.bytes(); }
@@ -44,8 +49,8 @@ public:
 private:
     MacVelocity<D> rate_;  // of change, of the velocity [m/s²]; during a step the velocity before forces [m/s], none where it is infinite
     mutable MacVelocity<D> at_end_;
-    real ahead_ = 0;                    // of time(): the velocity that is carried [s]
-    bool any_ = false, whole_ = false;  // any_: a step has been made
+    real ahead_ = 0;    // of time(): the velocity that is carried [s]
+    bool any_ = false;  // a step has been made
 };
 
 }  // namespace weir::surface

@@ -131,9 +131,10 @@ bool LevelSet<D>::crosses_on_this_side(const Index<D>& I) const {
     return false;
 }
 
-/// How far φ may be from a distance beside the surface: to scale one cell and not its neighbour moves the surface between them, and waves
-/// that stretch and press φ once a period gain energy by it. Steep ones pass 4/3 and stay below 8/5; bodies that float need it below 2.
-constexpr real most_stretched = 1.6;
+/// |∇φ| beside the surface between which φ is left as it is: to scale one cell and not its neighbour moves the surface between them. Steep
+/// waves stretch φ beyond 3/4 and press it beyond 4/3 once a period, and gained energy each time; the front of a collapsing column, whose φ
+/// is pressed further, gains volume if that is left.
+constexpr real flattest = 5.0 / 8, steepest_left = 7.0 / 5;
 
 /// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13).
 template <int D>
@@ -151,7 +152,7 @@ void LevelSet<D>::rescale_surface() {
             steepest = std::max({steepest, std::abs(slope[0][d]) * frame_.inv_h[d], std::abs(slope[1][d]) * frame_.inv_h[d]});
         }
         const real gradient = std::max({std::sqrt(central), steepest, 1e-6});
-        value_[static_cast<std::size_t>(i)] = gradient > most_stretched || gradient < 1 / most_stretched ? phi(I) / gradient : phi(I);
+        value_[static_cast<std::size_t>(i)] = gradient > steepest_left || gradient < flattest ? phi(I) / gradient : phi(I);
     });
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }

@@ -36,6 +36,8 @@ public:
 
     const Grid<real, D>& part() const { return part_; }
     real volume() const;  // [m^D]
+    /// Gathers the planes of all ranks, where each rank stores all planes and keeps its own.
+    void make_whole() { gather(part_); }
     void save(Checkpoint& to) const;
     static bool is_saved(const Checkpoint& from) { return from.has("surface.liquid_part"); }
     void restore(const Checkpoint& from);

@@ -42,6 +42,8 @@ void TallCells<D>::save(Checkpoint& to) const {
     const OwnPlanes mine = held_.own();
     if (!held_.alone()) {  // of everybody's, as all of the state
         const_cast<LevelSet<D>&>(surface_).make_layers_whole();
+        const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
+        const_cast<LiquidVolume<D>&>(volume_).make_whole();
         gather(const_cast<MacState<D>&>(state_).cells);
     }
     state_.save(to);

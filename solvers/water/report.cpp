@@ -68,7 +68,11 @@ template <int D>
 void Water<D>::save(Checkpoint& to) const {
     make_whole();
     const OwnPlanes mine = held_.own();
-    if (!held_.alone()) const_cast<LevelSet<D>&>(surface_).make_layers_whole();
+    if (!held_.alone()) {  // of everybody's, as all of the state
+        const_cast<LevelSet<D>&>(surface_).make_layers_whole();
+        const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
+        const_cast<LiquidVolume<D>&>(volume_).make_whole();
+    }
     const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(escaped_), sum_of_ranks(reseeded_)};
     state_.save(to);
     if (bodies_) bodies_->save(to);

@@ -12,9 +12,7 @@ namespace weir::water {
 template <int D>
 StepReport Water<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
-    if (!leapfrog_.started()) find_rate(dt);
-    leapfrog_.advance(state_.u, dt);
-    const real kick = leapfrog_.kick(dt, options_.transfer == Transfer::grid);
+    const real kick = to_middle(dt);
     bring_faces(dt);
     move_bodies(dt);
     move_solids(state_.time + dt);
@@ -45,11 +43,20 @@ StepReport Water<D>::step(real dt) {
             .viscous_turns = friction_ ? friction_->turns : 0};
 }
 
-/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. Not where that would move bodies,
-/// or where emitters begin: there the first step moves liquid with the velocity that it has.
+/// The velocity becomes that of the middle of this step. Answers how long forces act in it.
+template <int D>
+real Water<D>::to_middle(real dt) {
+    const auto works = [&](const Emitter<D>& emitter) { return emitter.works(state_.time, state_.time + dt); };
+    if (bodies_ || std::any_of(emitters_.begin(), emitters_.end(), works)) return leapfrog_.whole_kick(dt);
+    if (!leapfrog_.started()) find_rate(dt);
+    leapfrog_.advance(state_.u, dt);
+    return leapfrog_.kick(dt, options_.transfer == Transfer::grid);
+}
+
+/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. The account of interactive
+/// forcing stays as it was.
 template <int D>
 void Water<D>::find_rate(real dt) {
-    if (bodies_ || !emitters_.empty()) return;
     const Hand account = hand_ ? *hand_ : Hand();
     for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
     leapfrog_.keep(state_.u);

@@ -114,6 +114,7 @@ private:
     void stick_to_bodies(const scene::Scene& scene);
 
     // The passes of a step, in order (solver.cpp, sources.cpp)
+    real to_middle(real dt);
     void find_rate(real dt);
     void move_bodies(real dt);
     void move_solids(real t);

@@ -43,7 +43,7 @@ Water<D>::Water(const scene::Scene& scene)
     sums_ = FaceSums<D>(frame_.cells);
     for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
     before_ = state_.u;
-    leapfrog_ = Leapfrog<D>(state_.u, bodies_ != nullptr);
+    leapfrog_ = Leapfrog<D>(state_.u);
     if (options_.sigma > 0) {
         curvature_ = Grid<real, D>(frame_.cells);
         effects_.declare({.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = curvature_.bytes()});
