@@ -184,14 +184,15 @@ const std::vector<int>& Pairs::particle_order() {
 
 Pairs::NeighbourCounts Pairs::neighbour_counts() const {
     const auto& counts = list_.neighbours();
-    if (counts.empty() || total_ == 0) return {};
+    if (total_ == 0 || (counts.empty() && !shares_.several())) return {};  // a rank may own none, and all add up together
     const auto& own = shares_.own();
     const auto count = [&](int k) {
         return is_image(own.begin + k) ? 0.0 : static_cast<real>(counts[static_cast<std::size_t>(own.begin + k)]);
     };
-    std::vector<real> sums{block_sum(own.count(), count)};  // of whole numbers, which no order of adding changes
+    const int counted = counts.empty() ? 0 : own.count();
+    std::vector<real> sums{block_sum(counted, count)};  // of whole numbers, which no order of adding changes
     if (shares_.several()) sums = of_ranks(sums[0]);
-    return {detail::sum_in_order(sums, static_cast<int>(sums.size())) / total_, largest(block_max(own.count(), count))};
+    return {detail::sum_in_order(sums, static_cast<int>(sums.size())) / total_, largest(block_max(counted, count))};
 }
 
 std::size_t Pairs::bytes() const {

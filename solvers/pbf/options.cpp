@@ -102,8 +102,9 @@ real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid) {
     const real speed = particles::fastest_flow(scene, fluid);
     const real longest = std::min({speed > 0 ? distance / speed : infinity, g > 0 ? std::sqrt(distance / g) : infinity,
                                    scene.root().number_or("time.max_dt", infinity)});
-    const bool meets_frames = scene.text("output.at") == "exact";
-    const real whole = std::min(meets_frames ? scene.root().number_or("output.every", infinity) : infinity, scene.number("time.end"));
+    if (longest == infinity) return scene.number("time.end");  // nothing moves
+    if (scene.text("output.at") != "exact") return longest;
+    const real whole = scene.root().number_or("output.every", longest);
     return whole / std::max<real>(1, std::ceil(whole / longest * (1 - 1e-9)));
 }
 

@@ -24,8 +24,8 @@ private:
     void check_vapour(const scene::Scene& scene) const;
 };
 
-/// As far as the fastest flow of the scene goes in `cfl` spacings, and a whole number of steps from frame to frame: what a step leaves of
-/// compression goes with dt^2, and a step that is shorter than the last would turn the difference into speed. So it never changes.
+/// The step [s]: as far as the fastest flow of the scene goes in `cfl` spacings; with output.at = "exact" a whole number of them from frame
+/// to frame. What a step leaves of compression goes with dt^2, and a shorter step would turn the difference into speed: it never changes.
 template <int D>
 real even_step(const scene::Scene& scene, particles::Fluid<D>& fluid);
 
