@@ -100,12 +100,19 @@ void SolidPlacement<D>::open(MacState<D>& s, int planes) {
 }
 
 template <int D>
-void SolidPlacement<D>::know(MacState<D>& s, int planes) {
+void SolidPlacement<D>::know(MacState<D>& s, int planes, const std::function<void()>& see) {
     if (!any() || !corner_.store().windowed() || planes <= known_) return;
+    const Grid<poisson::Cell, D> before = s.cells;
+    std::vector<char> held(static_cast<std::size_t>(s.cells.extent()[D - 1]));
+    for (std::size_t k = 0; k < held.size(); ++k) held[k] = s.cells.store().holds(static_cast<int>(k));
     open(s, planes);
     placed_ = false;
     place(s, time_);
     placed_ = false;
+    if (see) see();
+    for_each_held(s.cells, Index<D>{}, s.cells.extent(), [&](const Index<D>& I) {
+        if (held[static_cast<std::size_t>(I[D - 1])]) s.cells(I) = before(I);
+    });
 }
 
 template <int D>

@@ -56,8 +56,9 @@ static constexpr int skin_layers = 3;
 
 template <int D>
 void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::array<std::vector<Index<D>>, D>* faces) {
+    const bool alone = closed.store().windowed();
+    uncover(closed);
     closed_ = closed;
-    const bool alone = closed_.store().windowed();
     if (alone) {
         find_near();
         refresh(closed_, frame_.periodic(D - 1), wide() + 1);
@@ -65,6 +66,21 @@ void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::arr
     find_skin(planes_near(frame_.cells[D - 1], skin_layers, frame_.periodic(D - 1)));
     if (slabs().several()) share_skin(alone);
     walls_.find(frame_, closed_, skin_, faces, wide() + 1);
+}
+
+/// Cells that a thin solid has left are as far from the surface as the mean of both its sides: what was continued into it from the wet side
+/// alone makes no liquid.
+template <int D>
+void LevelSet<D>::uncover(const Grid<std::uint8_t, D>& closed) {
+    if (!walls_.any()) return;
+    const bool ring = frame_.periodic(D - 1);
+    refresh(phi, ring, ThinWalls<D>::thickest + 1);
+    std::vector<std::pair<std::size_t, real>> left;
+    for (const Index<D>& I : skin_)
+        if (is_own_plane(I[D - 1]) && closed(I) == 0)
+            if (const real both = walls_.on_both_sides(closed_, phi, I); both > phi(I)) left.emplace_back(phi.linear(I), both);
+    for (const auto& [cell, both] : left) phi[cell] = both;
+    refresh(phi, ring, wide());
 }
 
 /// A plane through a cell, by the mean and the slopes of the distances at its corners.

@@ -89,6 +89,7 @@ private:
     void find_skin(const std::vector<char>& planes);
     void continue_layer(std::size_t first, std::size_t last);
     void share_skin(bool alone);
+    void uncover(const Grid<std::uint8_t, D>& closed);
     void continue_into_solids();
     /// How wide the cell is across the surface next to it [m].
     real width_at(const Index<D>& I) const;

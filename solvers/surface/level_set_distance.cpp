@@ -136,7 +136,8 @@ bool LevelSet<D>::crosses_on_this_side(const Index<D>& I) const {
 /// is pressed further, gains volume if that is left.
 constexpr real flattest = 5.0 / 8, steepest_left = 7.0 / 5;
 
-/// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13).
+/// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13); a cell
+/// beside the surface is no further from it than its diagonal.
 template <int D>
 void LevelSet<D>::rescale_surface() {
     resize_scratch(value_, band_.size());
@@ -152,7 +153,8 @@ void LevelSet<D>::rescale_surface() {
             steepest = std::max({steepest, std::abs(slope[0][d]) * frame_.inv_h[d], std::abs(slope[1][d]) * frame_.inv_h[d]});
         }
         const real gradient = std::max({std::sqrt(central), steepest, 1e-6});
-        value_[static_cast<std::size_t>(i)] = gradient > steepest_left || gradient < flattest ? phi(I) / gradient : phi(I);
+        const bool keeps = gradient <= steepest_left && gradient >= flattest;
+        value_[static_cast<std::size_t>(i)] = keeps ? phi(I) : std::clamp(phi(I) / gradient, -diagonal_, diagonal_);
     });
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }

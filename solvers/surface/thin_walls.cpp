@@ -112,6 +112,26 @@ void ThinWalls<D>::mark_around(const Index<D>& lo, const Index<D>& hi) {
 }
 
 template <int D>
+real ThinWalls<D>::on_both_sides(const Grid<std::uint8_t, D>& closed, const Grid<real, D>& phi, const Index<D>& I) const {
+    real most = -infinity;
+    if (!is_between(I)) return most;
+    for (int axis = 0; axis < D; ++axis) {
+        std::array<real, 2> end{-infinity, -infinity};
+        int cells = 1;
+        for (const int by : {-1, 1}) {
+            Index<D> J = I;
+            for (int k = 0; k < thickest && frame_.step(J, axis, by); ++k, ++cells)
+                if (closed(J) == 0) {
+                    end[by > 0 ? 1 : 0] = phi(J);
+                    break;
+                }
+        }
+        if (cells <= thickest && std::min(end[0], end[1]) > -infinity) most = std::max(most, 0.5 * (end[0] + end[1]));
+    }
+    return most;
+}
+
+template <int D>
 bool ThinWalls<D>::passes(const Grid<std::uint8_t, D>& closed, const Index<D>& I, int axis, int by, Index<D>& J) const {
     J = I;
     if (!frame_.step(J, axis, by) || closed(J) != 0) return false;

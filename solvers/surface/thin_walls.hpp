@@ -49,6 +49,9 @@ std::array<real, 4> catmull_rom(real f);
 template <int D>
 class ThinWalls {
 public:
+    /// Closed cells in a row, with open ones at both ends, that stencils of both sides see: two cells on either side, and one that both
+    /// continue into.
+    static constexpr int thickest = 5;
     /// `skin`: the closed cells near open ones, those beside them first; `faces`: closed faces, of which those between open cells count.
     /// Where each rank holds its own planes alone, `deep` of them are known beyond its cuts.
     void find(const Frame<D>& frame, const Grid<std::uint8_t, D>& closed, const std::vector<Index<D>>& skin,
@@ -57,6 +60,10 @@ public:
     bool is_near(const Index<D>& I) const { return any_ && (marks_(I) & near_wall) != 0; }
     /// Whether closed cell I is of a wall that both its sides continue into.
     bool is_between(const Index<D>& I) const { return any_ && (marks_(I) & between) != 0; }
+    bool any() const { return any_; }
+    /// The mean φ of the open cells at both ends of the wall that closed cell I is of, along the axis where that is largest; −∞ where it is
+    /// of none.
+    real on_both_sides(const Grid<std::uint8_t, D>& closed, const Grid<real, D>& phi, const Index<D>& I) const;
     /// Whether liquid passes from open cell I to the one beside it, J. `closed`: as it was found from.
     bool passes(const Grid<std::uint8_t, D>& closed, const Index<D>& I, int axis, int by, Index<D>& J) const;
     /// φ around an open cell.
@@ -65,10 +72,7 @@ public:
 
 private:
     static constexpr std::uint8_t near_wall = 128, between = 64;  // and bit d: the lower face along d is closed, between open cells
-    /// Closed cells in a row, with open ones at both ends, that stencils of both sides see: two cells on either side, and one that both
-    /// continue into.
-    static constexpr int thickest = 5;
-    static constexpr int reach_ = 2;  // of a stencil
+    static constexpr int reach_ = 2;                              // of a stencil
     void mark_run(const Grid<std::uint8_t, D>& closed, const Index<D>& first, int axis, int by);
     void mark_around(const Index<D>& lo, const Index<D>& hi);
     void continue_into(Around<D>& to) const;

@@ -16,9 +16,9 @@ constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth wave
 
 /// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
 template <int D>
-real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const {
+real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const Grid<std::uint8_t, D>& exempt) const {
     if (!exempt.empty() && exempt[cell]) return 0;
-    const real h = frame_.h_max(), part = part_[cell], room = capacity(cell, state);
+    const real h = frame_.h_max(), part = part_[cell], room = capacity(cell);
     if (part > room + noise) return part - room;
     if (part < -noise) return part;
     if (phi < -1.5 * h && part < room - noise) return part - room;
@@ -47,8 +47,8 @@ void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& st
     for_each_near_line([&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const bool solid = state.cells[i] == poisson::Cell::solid;
-            const real rest = solid ? part_[i] : rest_of(i, phi[i], state, exempt);
-            if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > capacity(i, state) : part_[i] >= 0});
+            const real rest = solid ? part_[i] : rest_of(i, phi[i], exempt);
+            if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > capacity(i) : part_[i] >= 0});
         }
     });
 }
@@ -113,8 +113,7 @@ void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& sta
         missing_(I) = 0, near_(I) = 0, full_(I) = 0;
         const real distance = std::abs(surface.phi(I));
         if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
-        const real room = capacity(part_.linear(I), state);
-        if (moving_ && room < 1) return;  // beside a solid that moves φ is only continued
+        const real room = capacity(part_.linear(I));
         missing_(I) = part_(I) - room * surface.fraction(I);
         near_(I) = room * std::max(1 - distance / h, real(0));
     });
@@ -180,7 +179,7 @@ void LiquidVolume<D>::find_drops(const Grid<real, D>& phi, const MacState<D>& st
     const real h = frame_.h_min();
     for_each_near_line([&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
-            if (part_[i] > 0.5 * capacity(i, state) && part_[i] > 0.1 && phi[i] > 0.5 * h && state.cells[i] != poisson::Cell::solid)
+            if (part_[i] > 0.5 * capacity(i) && part_[i] > 0.1 && phi[i] > 0.5 * h && state.cells[i] != poisson::Cell::solid)
                 drops_.push_back(i);
     });
 }

@@ -24,33 +24,32 @@ LiquidVolume<D>::LiquidVolume(const Frame<D>& frame)
 }
 
 template <int D>
-void LiquidVolume<D>::start(const LevelSet<D>& surface, const MacState<D>& state, bool moving) {
+void LiquidVolume<D>::start(const LevelSet<D>& surface, const MacState<D>& state) {
     reach_ = 0.999 * surface.cap();
-    moving_ = moving;
-    if (!moving && state.solid.any()) {
-        open_ = Grid<real, D>(frame_.cells);
-        for_each_cell(frame_.cells, [&](const Index<D>& I) { open_(I) = surface.open_part(I); });
-        refresh(open_, frame_.periodic(D - 1), 2);
-    }
+    see_solids(surface, state);
     for_each_cell(frame_.cells, [&](const Index<D>& I) {
-        part_(I) = state.cells(I) == poisson::Cell::solid ? 0 : capacity(part_.linear(I), state) * surface.fraction(I);
+        part_(I) = state.cells(I) == poisson::Cell::solid ? 0 : capacity(part_.linear(I)) * surface.fraction(I);
     });
 }
 
 template <int D>
-real LiquidVolume<D>::capacity(std::size_t cell, const MacState<D>& state) const {
-    if (!moving_) return open_.empty() ? 1 : open_[cell];
-    const Index<D> I = frame_.index_of(cell);
-    real sum = 0;
-    for (std::size_t a = 0; a < D; ++a) sum += state.solid.open[a](I) + state.solid.open[a](I + e<D>(static_cast<int>(a)));
-    return sum / (2 * D);
+void LiquidVolume<D>::see_solids(const LevelSet<D>& surface, const MacState<D>& state) {
+    if (!state.solid.any()) return;
+    if (open_.empty()) open_ = Grid<real, D>(frame_.cells);
+    for_each_cell(frame_.cells, [&](const Index<D>& I) { open_(I) = surface.open_part(I); });
+    refresh(open_, frame_.periodic(D - 1), 2);
+}
+
+template <int D>
+real LiquidVolume<D>::capacity(std::size_t cell) const {
+    return open_.empty() ? 1 : open_[cell];
 }
 
 template <int D>
 void LiquidVolume<D>::follow(const LevelSet<D>& surface, const MacState<D>& state, real shift) {
     for (const Index<D>& I : surface.band())
         if (is_own_plane(I[D - 1]) && state.cells(I) != poisson::Cell::solid)
-            part_(I) += capacity(part_.linear(I), state) * (surface.fraction(I) - surface.fraction(I, -shift));
+            part_(I) += capacity(part_.linear(I)) * (surface.fraction(I) - surface.fraction(I, -shift));
 }
 
 /// Gradient of a plane in cell I, by cell: φ's, or where φ has none that is near a distance's, that of −F (Youngs 1984: central, smoothed).
@@ -85,9 +84,8 @@ Vec<D> LiquidVolume<D>::normal(const Grid<real, D>& phi, const Index<D>& I) cons
 
 /// Of the donor's liquid what leaves with |courant| of its volume, through its upper face where courant > 0.
 template <int D>
-real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const MacState<D>& state, const Index<D>& donor, int axis,
-                                     real courant) const {
-    const real room = std::max(capacity(part_.linear(donor), state), dust), F = std::min(part_(donor) / room, real(1));
+real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const {
+    const real room = std::max(capacity(part_.linear(donor)), dust), F = std::min(part_(donor) / room, real(1));
     const real width = std::min(std::abs(courant) / room, real(1));
     const Vec<D> g = normal(phi, donor);
     real steep = 0;
@@ -154,13 +152,11 @@ void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t 
         const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
         if (C == 0 || F <= dust || F >= 1 - dust) continue;
         const std::size_t donor = (C > 0 ? lower : upper) + static_cast<std::size_t>(i);
-        const real room = capacity(donor, *s.state);
+        const real room = capacity(donor);
         if (F >= room - dust)
             flux[i] = C;
-        else if (moving_ && room < 1)
-            flux[i] = C * F / room;
         else
-            flux[i] = liquid_through(*s.phi, *s.state, frame_.index_of(donor), s.axis, C);
+            flux[i] = liquid_through(*s.phi, frame_.index_of(donor), s.axis, C);
     }
 }
 
@@ -182,8 +178,7 @@ void LiquidVolume<D>::sweep(const MacState<D>& state, const Grid<real, D>& phi, 
     const auto at = static_cast<std::size_t>(axis), n = static_cast<std::size_t>(frame_.cells[0]);
     Grid<real, D>& flux = flux_[at];
     const Sweep s{
-        axis,       dt * frame_.inv_h[axis], state.u[axis].data(), state.solid.any() ? state.solid.open[at].data() : nullptr, &phi, &state,
-        flux.data()};
+        axis, dt * frame_.inv_h[axis], state.u[axis].data(), state.solid.any() ? state.solid.open[at].data() : nullptr, &phi, flux.data()};
     for_each_own_line(0, axis == D - 1 ? 1 : 0, false, [&](std::size_t line) {
         // The faces below a line's cells, and those above the last line's
         const Index<D> I = frame_.index_of(line * n);
@@ -271,7 +266,7 @@ real LiquidVolume<D>::advect(const MacState<D>& state, const Grid<real, D>& phi,
     for_each_own_line(0, 0, false, [&](std::size_t line) {
         for (int i = reach_of_[line].begin; i < reach_of_[line].end; ++i) {
             const std::size_t cell = line * n + static_cast<std::size_t>(i);
-            dilation_[cell] = 0, full_[cell] = part_[cell] > 0.5 * capacity(cell, state);
+            dilation_[cell] = 0, full_[cell] = part_[cell] > 0.5 * capacity(cell);
         }
     });
     for (int i = 0; i < D; ++i) {

@@ -18,7 +18,9 @@ public:
     explicit LiquidVolume(const Frame<D>& frame);
 
     /// F of a level set. Cells that solids cut hold what is outside them.
-    void start(const LevelSet<D>& surface, const MacState<D>& state, bool moving);
+    void start(const LevelSet<D>& surface, const MacState<D>& state);
+    /// Where they stand now.
+    void see_solids(const LevelSet<D>& surface, const MacState<D>& state);
     /// Moves F by dt in state.u, through the open parts of faces; φ is of before the step, `reversed` the order of the sweeps. Answers
     /// what has left through open sides [m^D].
     real advect(const MacState<D>& state, const Grid<real, D>& phi, real dt, bool reversed);
@@ -49,7 +51,6 @@ private:
         real scale;  // dt/h
         const real *u, *open;
         const Grid<real, D>* phi;
-        const MacState<D>* state;
         real* flux;
     };
     template <class F>
@@ -61,10 +62,10 @@ private:
     void add_fluxes(const Sweep& s, const Grid<real, D>& flux);
     real through_side(const Grid<real, D>& flux, int axis, int side) const;
     Vec<D> normal(const Grid<real, D>& phi, const Index<D>& I) const;
-    real liquid_through(const Grid<real, D>& phi, const MacState<D>& state, const Index<D>& donor, int axis, real courant) const;
-    real rest_of(std::size_t cell, real phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) const;
-    /// What a cell can hold: its part outside solids; where they move, from its faces.
-    real capacity(std::size_t cell, const MacState<D>& state) const;
+    real liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const;
+    real rest_of(std::size_t cell, real phi, const Grid<std::uint8_t, D>& exempt) const;
+    /// What a cell can hold: its part outside solids.
+    real capacity(std::size_t cell) const;
     void find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
     void hand_on(const Grid<real, D>& phi, const MacState<D>& state);
     template <class F>
@@ -75,9 +76,8 @@ private:
     void join_drop(Grid<real, D>& phi, const Index<D>& I);
 
     Frame<D> frame_;
-    real reach_ = 0;  // of the level set's band [m]
-    bool moving_ = false;
-    Grid<real, D> part_, open_;     // open_: parts outside solids that stand; none without solids
+    real reach_ = 0;                // of the level set's band [m]
+    Grid<real, D> part_, open_;     // open_: parts outside solids; none without solids
     Grid<real, D> dilation_;        // Σ c dC of the sweeps so far
     Grid<std::uint8_t, D> full_;    // c: F > ½ as the step began
     Grid<real, D> missing_, near_;  // F − φ's fraction, and how much surface a cell has

@@ -68,7 +68,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     if (volume_.is_saved(from))
         volume_.restore(from);
     else
-        volume_.start(surface_, state_, solids_.moving());  // a file from before there was one
+        volume_.start(surface_, state_);  // a file from before there was one
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
     if (hand_ && from.has("hand")) hand_->restore(from);

@@ -66,6 +66,7 @@ void TallCells<D>::place_solids(real t) {
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
     surface_.set_closed(closed_, &in_solids_.closed());
     surface_.set_open_parts(solids_);
+    if (t > 0) volume_.see_solids(surface_, state_);
 }
 
 template <int D>

@@ -87,7 +87,7 @@ void TallCells<D>::fill_with_liquid(const scene::Scene& scene) {
     const auto liquid = geometry::unite<D>(shapes);
     start_level_set<D>(*liquid, solids_.solids(), frame_, surface_);
     volume_ = LiquidVolume<D>(frame_);
-    volume_.start(surface_, state_, solids_.moving());
+    volume_.start(surface_, state_);
     volume_target_ = solids_.moving() ? volume_.volume() : surface_.volume();
     if (volume_target_ == 0) refuse_no_volume<D>(scene, *liquid, frame_);
     remesh();

@@ -25,9 +25,10 @@ void Water<D>::bring_faces(real dt) {
 template <int D>
 void Water<D>::know_solids() {
     if (!held_.alone() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
-    solids_.know(state_, reach_);
-    for (auto* bytes : {&closed_, &near_solid_}) bytes->store().open(reach_, frame_.periodic(D - 1));
-    mark_closed();
+    solids_.know(state_, reach_, [&] {
+        for (auto* bytes : {&closed_, &near_solid_}) bytes->store().open(reach_, frame_.periodic(D - 1));
+        mark_closed();
+    });
 }
 
 /// Markers beyond open sides go, and over ranks all go to those that hold them now. How many there were, and how many have gone.

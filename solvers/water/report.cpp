@@ -124,7 +124,7 @@ void Water<D>::restore(const Checkpoint& from) {
     if (volume_.is_saved(from))
         volume_.restore(from);
     else
-        volume_.start(surface_, state_, solids_.moving());  // a file from before there was one
+        volume_.start(surface_, state_);  // a file from before there was one
     restore_markers(from);
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");

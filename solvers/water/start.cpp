@@ -148,9 +148,9 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
     }
     volume_target_ = surface_.volume();
-    // With emitters beside solids the liquid parts are not yet the same bits in parallel (MPI) as in one process.
-    keeps_volume_ = !solids_.moving() && options_.sigma == 0 && !options_.volume_control && (emitters_.empty() || !solids_.any());
-    volume_.start(surface_, state_, solids_.moving());
+    // Beside a free body the surface is only as good as its continuation, and what moves it there is felt by the body.
+    keeps_volume_ = !bodies_ && options_.sigma == 0 && !options_.volume_control;
+    volume_.start(surface_, state_);
     if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
     pressure_.set_surface(surface_, closed_, state_);
 }

@@ -133,7 +133,7 @@ TEST_IN_2D_AND_3D("in a flow without divergence parts stay in [0, 1] and keep th
             state.u[a](I) = a == 0 ? change / h : -change / h;
         });
     LiquidVolume<D> volume(frame);
-    volume.start(water.surface(), state, false);
+    volume.start(water.surface(), state);
     const real before = volume.volume();
     for (int step = 0; step < 60; ++step) volume.advect(state, water.surface().phi, 0.24 * h, step % 2 == 1);
     EXPECT_NEAR(volume.volume(), before, 1e-13) << "sums of 3000 cells in 60 steps, 1e-16 of the volume each, at random";
