@@ -674,8 +674,8 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
         for rank in $(seq 0 $((ranks - 1))); do
             # A particle: 28 bytes, 48 given to those who read it and 48 as it comes; and then 24 of its velocity, 28 with images and room for
             # as many, 32 sorted, and 70 of samples and mesh, which is more. Cuts are at multiples of 8 planes, and less than 12 layers
-            # beyond them are read. The first rank has pieces of the file too.
-            at_most "$(extra $ranks $rank column)" $((190 * layer * (512 / ranks + 4 + 2 * 12) + (rank == 0 ? handed : 0))) "surface of particles, rank $rank of $ranks"
+            # beyond them are read. The first rank has pieces of the file too, and all a page at both ends of less than 128 arrays.
+            at_most "$(extra $ranks $rank column)" $((190 * layer * (512 / ranks + 4 + 2 * 12) + 128 * 2 * 4096 + (rank == 0 ? handed : 0))) "surface of particles, rank $rank of $ranks"
         done
     done
     cat >pool.toml <<-END
