@@ -138,18 +138,81 @@ bool ThinWalls<D>::passes(const Grid<std::uint8_t, D>& closed, const Index<D>& I
     return (marks_(by > 0 ? J : I) >> axis & 1) == 0;
 }
 
+namespace {
+
+/// A bit for each cell of Around, as far as two cells to either side.
+__extension__ using Cells = unsigned __int128;
+
+/// Of Around's cells those with the lowest (side 0) or the highest place along an axis.
 template <int D>
-void ThinWalls<D>::look(const Grid<std::uint8_t, D>& closed, const Grid<real, D>& phi, const Index<D>& I, int reach, Around<D>& to) const {
+Cells cells_at_end(const Around<D>& around, int axis, int side) {
+    Cells cells = 0;
+    for (std::size_t at = 0; at < around.count(); ++at)
+        if (static_cast<int>(at) / around.stride(axis) % around.width() == (side == 0 ? 0 : around.width() - 1)) cells |= Cells{1} << at;
+    return cells;
+}
+
+/// Those of both ends of each axis, by reach 1 and 2.
+template <int D>
+const std::array<std::array<Cells, 2>, D>& cells_at_ends(int reach) {
+    static const auto all = [] {
+        std::array<std::array<std::array<Cells, 2>, D>, 2> ends;
+        for (int far = 1; far <= 2; ++far)
+            for (int axis = 0; axis < D; ++axis)
+                for (int side : {0, 1}) {
+                    Around<D> around;
+                    around.reach = far;
+                    ends[static_cast<std::size_t>(far - 1)][static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] =
+                        cells_at_end(around, axis, side);
+                }
+        return ends;
+    }();
+    return all[static_cast<std::size_t>(reach - 1)];
+}
+
+}  // namespace
+
+/// What is reached from the middle through open faces; the cells around I are all inside the domain.
+template <int D>
+void ThinWalls<D>::flood_inside(const Grid<std::uint8_t, D>& closed, const Index<D>& I, Around<D>& to) const {
+    Cells open = 0, reached = Cells{1} << to.at(Index<D>{});
+    std::array<Cells, D> wall{};  // whose lower face along an axis is closed
+    const std::uint8_t *cell = &closed(I), *mark = &marks_(I);
+    const int r = to.reach, planes = D == 3 ? r : 0;
+    std::size_t at = 0;
+    for (int k = -planes; k <= planes; ++k)
+        for (int j = -r; j <= r; ++j) {
+            const std::ptrdiff_t row = j * closed.stride(1) + (D == 3 ? k * closed.stride(D - 1) : 0);
+            for (int i = -r; i <= r; ++i, ++at) {
+                open |= Cells{cell[row + i] == 0} << at;
+                const std::uint8_t m = mark[row + i];
+                if (m & 7)
+                    for (std::size_t a = 0; a < D; ++a) wall[a] |= Cells{m >> a & 1U} << at;
+            }
+        }
+    const auto& ends = cells_at_ends<D>(r);
+    for (Cells before = 0; before != reached;) {
+        before = reached;
+        for (std::size_t a = 0; a < D; ++a) {
+            const int stride = to.stride(static_cast<int>(a));
+            reached |= (reached & ~ends[a][1]) << stride & open & ~wall[a];
+            reached |= (reached & ~ends[a][0] & ~wall[a]) >> stride & open;
+        }
+    }
+    for (std::size_t i = 0; i < to.count(); ++i) to.reached[i] = (reached >> i & 1) != 0;
+}
+
+/// The same anywhere, and as far as Around goes.
+template <int D>
+void ThinWalls<D>::flood(const Grid<std::uint8_t, D>& closed, const Index<D>& I, Around<D>& to) const {
     struct Seen {
         Index<D> cell, by;
     };
     std::array<Seen, std::tuple_size_v<decltype(to.phi)>> queue;
-    to.reach = reach;
     std::fill_n(to.reached.begin(), to.count(), std::uint8_t{0});
     std::size_t count = 0;
     const auto join = [&](const Index<D>& cell, const Index<D>& by) {
         to.reached[to.at(by)] = 1;
-        to.phi[to.at(by)] = phi(cell);
         queue[count++] = {cell, by};
     };
     join(I, Index<D>{});
@@ -158,10 +221,35 @@ void ThinWalls<D>::look(const Grid<std::uint8_t, D>& closed, const Grid<real, D>
             for (const int by : {-1, 1}) {
                 Index<D> next = queue[i].by, J;
                 next[axis] += by;
-                if (std::abs(next[axis]) > reach || to.reached[to.at(next)] || !passes(closed, queue[i].cell, axis, by, J)) continue;
+                if (std::abs(next[axis]) > to.reach || to.reached[to.at(next)] || !passes(closed, queue[i].cell, axis, by, J)) continue;
                 join(J, next);
             }
-    if (count < to.count()) continue_into(to);
+}
+
+template <int D>
+void ThinWalls<D>::look(const Grid<std::uint8_t, D>& closed, const Grid<real, D>& phi, const Index<D>& I, int reach, Around<D>& to) const {
+    to.reach = reach;
+    bool inside = reach <= 2;
+    for (int d = 0; d < D; ++d) inside = inside && I[d] >= reach && I[d] + reach < frame_.cells[d];
+    if (inside)
+        flood_inside(closed, I, to);
+    else
+        flood(closed, I, to);
+    bool all = true;
+    const CellBox<D> box{Index<D>::constant(-reach), Index<D>::constant(reach + 1)};
+    std::size_t at = 0;
+    box.in_order([&](const Index<D>& by) {
+        if (to.reached[at] != 0) {
+            Index<D> J = I + by;
+            for (int d = 0; d < D; ++d)
+                if (!inside && frame_.periodic(d)) J[d] = (J[d] % frame_.cells[d] + frame_.cells[d]) % frame_.cells[d];
+            to.phi[at] = phi(J);
+        } else {
+            all = false;
+        }
+        ++at;
+    });
+    if (!all) continue_into(to);
 }
 
 /// Layer by layer the mean of the neighbours that lie further out.

@@ -75,6 +75,8 @@ private:
     static constexpr int reach_ = 2;                              // of a stencil
     void mark_run(const Grid<std::uint8_t, D>& closed, const Index<D>& first, int axis, int by);
     void mark_around(const Index<D>& lo, const Index<D>& hi);
+    void flood_inside(const Grid<std::uint8_t, D>& closed, const Index<D>& I, Around<D>& to) const;
+    void flood(const Grid<std::uint8_t, D>& closed, const Index<D>& I, Around<D>& to) const;
     void continue_into(Around<D>& to) const;
 
     Frame<D> frame_;
