@@ -7,7 +7,8 @@
 namespace weir::surface {
 
 namespace {
-constexpr real noise = 1e-6;    // part of a cell that the pressure's tolerance may leave
+constexpr real noise = 1e-4;    // part of a cell that the pressure's tolerance may leave
+constexpr real film = 1e-6;     // of a cell outside, that may stay
 constexpr int passes = 2;       // cells that a rest goes on in a step
 constexpr real furthest = 0.1;  // that the surface is moved in a step [h]
 constexpr real gain = 0.2;      // of what is missing, in a step: all of it at once feeds waves, 43% in 20 s of sloshing for 15%
@@ -22,7 +23,7 @@ real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const Grid<std::uint8_
     if (part > room + noise) return part - room;
     if (part < -noise) return part;
     if (phi < -1.5 * h && part < room - noise) return part - room;
-    if (phi > h && phi < reach_ && part > noise) return part;
+    if (phi > h && phi < reach_ && part > film) return part;
     return 0;
 }
 
@@ -41,14 +42,36 @@ void LiquidVolume<D>::for_each_near_line(F&& f) const {
     }
 }
 
+/// Whether any of so many cells may have a rest: rest_of() without what exempts.
+template <int D>
+bool LiquidVolume<D>::may_have_rests(std::size_t first, int count, const Grid<real, D>& phi, const MacState<D>& state) const {
+    const real h = frame_.h_max(), deep = -1.5 * h;
+    const real *part = part_.data() + first, *distance = phi.data() + first, *open = open_.empty() ? nullptr : open_.data() + first;
+    real most = 0;
+#pragma omp simd reduction(max : most)
+    for (int i = 0; i < count; ++i) {
+        const real F = part[i], room = open ? open[i] : 1, over = std::max(F - room, -F);
+        const real hole = distance[i] < deep ? room - F : 0, drop = distance[i] > h ? F * (noise / film) : 0;
+        most = std::max(most, std::max(over, std::max(hole, drop)));
+    }
+    if (most > noise || !state.solid.any()) return most > noise;
+    const poisson::Cell* cell = state.cells.data() + first;
+    return std::find(cell, cell + count, poisson::Cell::solid) != cell + count;
+}
+
 template <int D>
 void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+    constexpr std::size_t block = 32;
     rests_.clear();
-    for_each_near_line([&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            const bool solid = state.cells[i] == poisson::Cell::solid;
-            const real rest = solid ? part_[i] : rest_of(i, phi[i], exempt);
-            if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > capacity(i) : part_[i] >= 0});
+    for_each_near_line([&](std::size_t begin, std::size_t end) {
+        for (std::size_t first = begin; first < end; first += block) {
+            const std::size_t last = std::min(first + block, end);
+            if (!may_have_rests(first, static_cast<int>(last - first), phi, state)) continue;
+            for (std::size_t i = first; i < last; ++i) {
+                const bool solid = state.cells[i] == poisson::Cell::solid;
+                const real rest = solid ? part_[i] : rest_of(i, phi[i], exempt);
+                if (rest != 0) rests_.push_back({i, rest, rest > 0 ? solid || part_[i] > capacity(i) : part_[i] >= 0});
+            }
         }
     });
 }
@@ -94,12 +117,12 @@ template <int D>
 void LiquidVolume<D>::settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
     refresh(part_, frame_.periodic(D - 1), 2);
     for (int pass = 0; pass < passes; ++pass) {
-        find_reach();
+        find_reach(pass > 0);
         find_rests(phi, state, exempt);
         hand_on(phi, state);
         refresh(part_, frame_.periodic(D - 1), 2);
     }
-    find_reach();
+    find_reach(true);
 }
 
 /// F minus φ's fraction, and the surface that there is, in the cells near it.

@@ -6,8 +6,25 @@
 namespace weir::surface {
 
 namespace {
-/// Parts nearer to 0 or 1 than this are not cut: what they hold goes in proportion.
+/// Parts nearer to 0 or 1 than this are not cut. What is full flows whole; what is as good as empty stays where it is, or it would soon be
+/// everywhere.
 constexpr real dust = 1e-6;
+
+/// From the first to the last of a part of n that is more than dust; {n, 0} where none is.
+Extent extent_of_liquid(const real* F, Extent extent, int n) {
+    constexpr int block = 8;
+    const auto is_empty = [&](int first) {
+        real most = 0;
+        for (int i = 0; i < block; ++i) most = std::max(most, std::abs(F[first + i]));
+        return most <= dust;
+    };
+    while (extent.begin + block <= extent.end && is_empty(extent.begin)) extent.begin += block;
+    while (extent.begin < extent.end && std::abs(F[extent.begin]) <= dust) ++extent.begin;
+    if (extent.begin == extent.end) return {n, 0};
+    while (extent.end - block > extent.begin && is_empty(extent.end - block)) extent.end -= block;
+    while (std::abs(F[extent.end - 1]) <= dust) --extent.end;
+    return extent;
+}
 
 }  // namespace
 
@@ -109,16 +126,16 @@ void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) 
     });
 }
 
-/// Of each line the part that holds liquid, and the part that liquid can come to in one sweep along each axis.
+/// Of each line the part that holds liquid, and the part that liquid can come to in one sweep along each axis. `within`: it lies in what
+/// was found to be so reached before.
 template <int D>
-void LiquidVolume<D>::find_reach() {
+void LiquidVolume<D>::find_reach(bool within) {
     const int n = frame_.cells[0];
+    within = within && !over_ranks();
     const auto wet = [&](std::size_t line) {
         const real* F = part_.data() + line * static_cast<std::size_t>(n);
-        Extent extent{0, n};
-        while (extent.begin < n && F[extent.begin] == 0) ++extent.begin;
-        while (extent.end > extent.begin && F[extent.end - 1] == 0) --extent.end;
-        lines_[line] = extent.empty() ? Extent{n, 0} : extent;
+        const Extent reach = within ? reach_of_[line] : Extent{0, n};
+        lines_[line] = reach.empty() ? Extent{n, 0} : extent_of_liquid(F, reach, n);
     };
     const bool ring = frame_.periodic(D - 1);
     for_each_own_line(2, 2, ring, wet);
@@ -141,22 +158,22 @@ template <int D>
 void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t lower, std::size_t upper, int count) {
     const real *u = s.u + face, *open = s.open ? s.open + face : nullptr, *below = part_.data() + lower, *above = part_.data() + upper;
     real* flux = s.flux + face;
-    int cut = 0;
+    constexpr int block = 16;
+    for (int first = 0; first < count; first += block) {
+        const int last = std::min(first + block, count);
+        int cut = 0;
 #pragma omp simd reduction(| : cut)
-    for (int i = 0; i < count; ++i) {
-        const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
-        flux[i] = C * (F < 1 ? F : 1);
-        cut |= F > dust && F < 1 - dust;
-    }
-    for (int i = 0; cut != 0 && i < count; ++i) {
-        const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
-        if (C == 0 || F <= dust || F >= 1 - dust) continue;
-        const std::size_t donor = (C > 0 ? lower : upper) + static_cast<std::size_t>(i);
-        const real room = capacity(donor);
-        if (F >= room - dust)
-            flux[i] = C;
-        else
-            flux[i] = liquid_through(*s.phi, frame_.index_of(donor), s.axis, C);
+        for (int i = first; i < last; ++i) {
+            const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
+            flux[i] = std::abs(F) <= dust ? 0 : C * std::min(F, real(1));
+            cut |= F > dust && F < 1 - dust;
+        }
+        for (int i = first; cut != 0 && i < last; ++i) {
+            const real C = s.scale * u[i] * (open ? open[i] : 1), F = C > 0 ? below[i] : above[i];
+            if (C == 0 || F <= dust || F >= 1 - dust) continue;
+            const std::size_t donor = (C > 0 ? lower : upper) + static_cast<std::size_t>(i);
+            flux[i] = F >= capacity(donor) - dust ? C : liquid_through(*s.phi, frame_.index_of(donor), s.axis, C);
+        }
     }
 }
 

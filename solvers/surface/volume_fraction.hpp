@@ -55,7 +55,7 @@ private:
     };
     template <class F>
     void for_each_own_line(int below, int above, bool ring, F&& f) const;
-    void find_reach();
+    void find_reach(bool within = false);
     void sweep(const MacState<D>& state, const Grid<real, D>& phi, real dt, int axis, real& departed);
     void find_fluxes(const Sweep& s, std::size_t face, std::size_t lower, std::size_t upper, int count);
     void find_side_flux(const Sweep& s, const MacState<D>& state, const Index<D>& I, std::size_t face);
@@ -66,6 +66,7 @@ private:
     real rest_of(std::size_t cell, real phi, const Grid<std::uint8_t, D>& exempt) const;
     /// What a cell can hold: its part outside solids.
     real capacity(std::size_t cell) const;
+    bool may_have_rests(std::size_t first, int count, const Grid<real, D>& phi, const MacState<D>& state) const;
     void find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
     void hand_on(const Grid<real, D>& phi, const MacState<D>& state);
     template <class F>
