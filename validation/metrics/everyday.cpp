@@ -155,6 +155,35 @@ real wake_in_breadths(const RunRecord& run, const Reference&) {
     return length / breadth(run);
 }
 
+/// Largest pressure that the probe "p1" reads over the largest of the reference's P1.
+real impact_peak(const RunRecord& run, const Reference& ref) {
+    const auto largest = [](const std::vector<real>& values) { return *std::max_element(values.begin(), values.end()); };
+    return largest(run.series("probe.p1").y) / largest(ref.curve("P1").y);
+}
+
+/// The first place of a curve above 1 kPa.
+std::size_t first_felt(const Curve& curve) {
+    return static_cast<std::size_t>(std::find_if(curve.y.begin(), curve.y.end(), [](real p) { return p > 1000; }) - curve.y.begin());
+}
+
+/// When p1 first exceeds 1 kPa, less when the reference's does [s].
+real impact_time(const RunRecord& run, const Reference& ref) {
+    const auto felt = [](const Curve& curve) { return curve.x.at(first_felt(curve)); };
+    return felt(run.series("probe.p1")) - felt(ref.curve("P1"));
+}
+
+/// Pressure at p1 over the first tenth of a second after it exceeds 1 kPa, over the same of the reference.
+real impact_impulse(const RunRecord& run, const Reference& ref) {
+    const auto impulse = [](const Curve& curve) {
+        const std::size_t first = first_felt(curve);
+        real sum = 0;
+        for (std::size_t i = first + 1; i < curve.size() && curve.x[i] <= curve.x[first] + 0.1; ++i)
+            sum += 0.5 * (curve.y[i] + curve.y[i - 1]) * (curve.x[i] - curve.x[i - 1]);
+        return sum;
+    };
+    return impulse(run.series("probe.p1")) / impulse(ref.curve("P1"));
+}
+
 }  // namespace
 
 std::vector<Metric> everyday_metrics() {
@@ -166,6 +195,9 @@ std::vector<Metric> everyday_metrics() {
             {"viscous_current", "", "Reach of a viscous gravity current over Huppert's", Quantity::value, viscous_current},
             {"drag", "", "Mean force along the stream over rho U^2/2 times the breadth", Quantity::value, drag},
             {"strouhal", "", "Frequency of the force across the stream times breadth over speed", Quantity::value, strouhal},
+            {"impact.peak", "", "Largest pressure at the probe p1 over the reference's", Quantity::value, impact_peak},
+            {"impact.time", "s", "When p1 first exceeds 1 kPa, less when the reference's does", Quantity::value, impact_time},
+            {"impact.impulse", "", "Pressure at p1 over the first 0.1 s of the impact, over the reference's", Quantity::value, impact_impulse},
             {"wake_length", "", "Length of the wake that turns back, in breadths", Quantity::value, wake_in_breadths}};
 }
 

@@ -52,3 +52,10 @@ REFERENCE(dam_break_koshizuka_oka) {
     ref.numbers["time_shift"] = gate_delay;
     return ref;
 }
+
+REFERENCE(dam_break_kleefsman) {
+    Reference ref{.source = "Kleefsman et al. 2005 (SPHERIC test 2), experiment"};
+    const Table all = read_table(data / "kleefsman2005_pressure.csv");
+    for (const char* gauge : {"P1", "P2", "P3", "P4"}) ref.curves[gauge] = all.curve("t", gauge, "Kleefsman et al. 2005, experiment");
+    return ref;
+}
