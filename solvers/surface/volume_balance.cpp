@@ -4,6 +4,8 @@
 #include "surface/marker_lanes.hpp"
 #include "surface/volume_fraction.hpp"
 
+#include <numbers>
+
 namespace weir::surface {
 
 namespace {
@@ -171,8 +173,14 @@ std::array<real, 2> LiquidVolume<D>::around(const Index<D>& I) const {
 }
 
 template <int D>
-void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
+real LiquidVolume<D>::courant(real dt, real rate, real g) const {
     const real h = frame_.h_min();
+    return dt * std::max(rate + std::sqrt(g / h), std::sqrt(std::numbers::pi_v<real> * g / h));
+}
+
+template <int D>
+void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt, real courant) {
+    const real h = frame_.h_min(), part = gain * std::sqrt(std::min(courant, real(1)));
     auto& phi = surface.phi;
     refresh(phi, frame_.periodic(D - 1), 3);
     compare(surface, state, exempt);
@@ -188,7 +196,7 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
         if (std::abs(phi(I)) > 2 * h) return;
         const auto [excess, area] = around(I);
         const real shift = area > 0 ? excess / area : 0;
-        if (std::abs(shift) > unsure) dilation_(I) = std::clamp(gain * (shift - std::copysign(unsure, shift)), -furthest, furthest) * h;
+        if (std::abs(shift) > unsure) dilation_(I) = std::clamp(part * (shift - std::copysign(unsure, shift)), -furthest, furthest) * h;
     });
     find_drops(phi, state);
     for_each_in_band([&](const Index<D>& I) { phi(I) -= dilation_(I), missing_(I) = 0, near_(I) = 0; });
@@ -224,8 +232,9 @@ void LiquidVolume<D>::join_drop(Grid<real, D>& phi, const Index<D>& I) {
 }
 
 #define WEIR_INSTANTIATE(D)                                                                                        \
+    template real LiquidVolume<D>::courant(real, real, real) const;                                                \
     template void LiquidVolume<D>::settle(const Grid<real, D>&, const MacState<D>&, const Grid<std::uint8_t, D>&); \
-    template void LiquidVolume<D>::correct(LevelSet<D>&, const MacState<D>&, const Grid<std::uint8_t, D>&);
+    template void LiquidVolume<D>::correct(LevelSet<D>&, const MacState<D>&, const Grid<std::uint8_t, D>&, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
 #undef WEIR_INSTANTIATE

@@ -33,8 +33,12 @@ public:
     /// Hands on what no cell can hold (F > 1, F < 0), towards where there is room; and what stands deep in the liquid or just outside it
     /// to the surface. Nothing is lost.
     void settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
-    /// Moves the surface so that in each neighbourhood it encloses what F holds. φ is a distance only nearly.
-    void correct(LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
+    /// Moves the surface so that in each neighbourhood it encloses what F holds, by a part of the way that goes with the step's Courant
+    /// number: shorter steps do not correct it more often. φ is a distance only nearly.
+    void correct(LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt, real courant);
+    /// Of a step of dt while the fastest flow crosses `rate` cells a second: with the speed that gravity g adds in a cell, and the gravity
+    /// wave of two cells (ω dt ≤ 1).
+    real courant(real dt, real rate, real g) const;
 
     const Grid<real, D>& part() const { return part_; }
     real volume() const;  // [m^D]

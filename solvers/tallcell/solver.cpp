@@ -75,7 +75,7 @@ void TallCells<D>::move_surface(real dt) {
     volume_target_ -= volume_.advect(state_, surface_.phi, dt, steps_ % 2 == 1);
     surface_.advect(state_.u, dt, reach_);
     volume_.settle(surface_.phi, state_, closed_);
-    volume_.correct(surface_, state_, closed_);
+    volume_.correct(surface_, state_, closed_, volume_.courant(dt, rate_, norm(gravity_)));
     surface_.redistance();
     if (hand_) pour_and_drain_by_hand();
 }
