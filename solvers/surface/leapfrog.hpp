@@ -38,7 +38,7 @@ public:
     /// u at time(), where surface and markers are, of this rank's own planes and one beyond.
     const MacVelocity<D>& at_end(const MacVelocity<D>& u, const Frame<D>& frame) const;
 
-    /// Over ranks, what others know of the rate of change.
+    /// In parallel (MPI), gathers the rate of change of all ranks.
     void make_whole() {
         for (auto& rate : rate_.face) gather(rate);
     }

@@ -187,18 +187,19 @@ real impact_impulse(const RunRecord& run, const Reference& ref) {
 }  // namespace
 
 std::vector<Metric> everyday_metrics() {
-    return {{"wave_energy.most", "", "Largest energy of waves in a box over that of the start", Quantity::value, most_wave_energy},
-            {"wave_energy.last", "", "Energy of waves in a box at the end over that of the start", Quantity::value, last_wave_energy},
-            {"volume_after", "", "Largest change of volume after the last emitter has closed", Quantity::error, volume_after},
-            {"contraction", "", "Flow through a slot over its width times sqrt(2 g H)", Quantity::value, contraction},
-            {"paddle.height", "", "Height of a piston's waves over that of linear theory", Quantity::value, paddle_height},
-            {"viscous_current", "", "Reach of a viscous gravity current over Huppert's", Quantity::value, viscous_current},
-            {"drag", "", "Mean force along the stream over rho U^2/2 times the breadth", Quantity::value, drag},
-            {"strouhal", "", "Frequency of the force across the stream times breadth over speed", Quantity::value, strouhal},
-            {"impact.peak", "", "Largest pressure at the probe p1 over the reference's", Quantity::value, impact_peak},
-            {"impact.time", "s", "When p1 first exceeds 1 kPa, less when the reference's does", Quantity::value, impact_time},
-            {"impact.impulse", "", "Pressure at p1 over the first 0.1 s of the impact, over the reference's", Quantity::value, impact_impulse},
-            {"wake_length", "", "Length of the wake that turns back, in breadths", Quantity::value, wake_in_breadths}};
+    return {
+        {"wave_energy.most", "", "Largest energy of waves in a box over that of the start", Quantity::value, most_wave_energy},
+        {"wave_energy.last", "", "Energy of waves in a box at the end over that of the start", Quantity::value, last_wave_energy},
+        {"volume_after", "", "Largest change of volume after the last emitter has closed", Quantity::error, volume_after},
+        {"contraction", "", "Flow through a slot over its width times sqrt(2 g H)", Quantity::value, contraction},
+        {"paddle.height", "", "Height of a piston's waves over that of linear theory", Quantity::value, paddle_height},
+        {"viscous_current", "", "Reach of a viscous gravity current over Huppert's", Quantity::value, viscous_current},
+        {"drag", "", "Mean force along the stream over rho U^2/2 times the breadth", Quantity::value, drag},
+        {"strouhal", "", "Frequency of the force across the stream times breadth over speed", Quantity::value, strouhal},
+        {"impact.peak", "", "Largest pressure at the probe p1 over the reference's", Quantity::value, impact_peak},
+        {"impact.time", "s", "When p1 first exceeds 1 kPa, less when the reference's does", Quantity::value, impact_time},
+        {"impact.impulse", "", "Pressure at p1 over the first 0.1 s of the impact, over the reference's", Quantity::value, impact_impulse},
+        {"wake_length", "", "Length of the wake that turns back, in breadths", Quantity::value, wake_in_breadths}};
 }
 
 }  // namespace weir::validation
