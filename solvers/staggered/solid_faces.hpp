@@ -77,8 +77,8 @@ public:
     /// Open fractions, face velocities and cell flags at time t; those that the solids have not been near since they were placed last stay
     /// as they are.
     void place(MacState<D>& s, real t);
-    /// In parallel (MPI), from here on so many planes beyond the cuts are known too. `see` looks at the flags of cells while they tell of solids
-    /// alone; then those that were held before are what they were: liquid, air, and what is held to be solid.
+    /// In parallel (MPI), from here on so many planes beyond the cuts are known too. `see` looks at the flags of cells while they tell of
+    /// solids alone; then those that were held before are what they were: liquid, air, and what is held to be solid.
     void know(MacState<D>& s, int planes, const std::function<void()>& see = {});
     /// Where that was: boxes of cells that reach further from the solids than reach().
     const std::vector<CellBox<D>>& changed() const { return changed_; }
