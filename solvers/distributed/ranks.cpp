@@ -6,8 +6,10 @@
 #include "distributed/mpi_entry.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <thread>
 
 #include <fcntl.h>
 #include <sched.h>
@@ -66,6 +68,7 @@ int leave(int exit_code, const std::string& complaint) {
         std::fflush(nullptr);
         if (own_stderr >= 0) dup2(own_stderr, STDERR_FILENO);
         if (own_stderr >= 0) std::fprintf(stderr, "rank %d alone: %s\n", slabs().rank(), complaint.c_str());
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // for the launcher to read it: MPICH's drops what comes with an abort
         slabs().abort(exit_code);
     }
     set_slabs(nullptr);

@@ -692,8 +692,9 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
     for ranks in 2 4; do
         for rank in $(seq 0 $((ranks - 1))); do
             # Samples, of which two planes beyond either cut and one; and less than 120 points and 240 triangles a plane: 150 and 60 bytes each.
-            # The level set, the velocity and the markers of all would be 32 bytes a cell and 192 a cell of liquid.
-            at_most "$(extra $ranks $rank pool)" $(((4 * 34 * 34 + 120 * 150 + 240 * 60) * (256 / ranks + 5) + (rank == 0 ? handed : 0))) "surface of a level set, rank $rank of $ranks"
+            # The level set, the velocity and the markers of all would be 32 bytes a cell and 192 a cell of liquid. A page at both ends of less
+            # than 128 arrays, as above.
+            at_most "$(extra $ranks $rank pool)" $(((4 * 34 * 34 + 120 * 150 + 240 * 60) * (256 / ranks + 5) + 128 * 2 * 4096 + (rank == 0 ? handed : 0))) "surface of a level set, rank $rank of $ranks"
         done
     done
     ;;
