@@ -155,7 +155,7 @@ peaks() {
     done
 }
 # pieces of a file between two ranks, and blocks that are being compressed
-handed=$((4 * 1048576 + 2 * 8 * 32768))
+handed=$((4 * 1048576 + 2 * 8 * 32768)) huge_page=$((2 * 1048576))
 every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
@@ -674,8 +674,9 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
         for rank in $(seq 0 $((ranks - 1))); do
             # A particle: 28 bytes, 48 given to those who read it and 48 as it comes; and then 24 of its velocity, 28 with images and room for
             # as many, 32 sorted, and 70 of samples and mesh, which is more. Cuts are at multiples of 8 planes, and less than 12 layers
-            # beyond them are read. The first rank has pieces of the file too, and all a page at both ends of less than 128 arrays.
-            at_most "$(extra $ranks $rank column)" $((190 * layer * (512 / ranks + 4 + 2 * 12) + 128 * 2 * 4096 + (rank == 0 ? handed : 0))) "surface of particles, rank $rank of $ranks"
+            # beyond them are read. The first rank has pieces of the file too; the system may give
+            # pages of 2 MiB.
+            at_most "$(extra $ranks $rank column)" $((190 * layer * (512 / ranks + 4 + 2 * 12) + 2 * huge_page + (rank == 0 ? handed : 0))) "surface of particles, rank $rank of $ranks"
         done
     done
     cat >pool.toml <<-END
@@ -692,9 +693,8 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
     for ranks in 2 4; do
         for rank in $(seq 0 $((ranks - 1))); do
             # Samples, of which two planes beyond either cut and one; and less than 120 points and 240 triangles a plane: 150 and 60 bytes each.
-            # The level set, the velocity and the markers of all would be 32 bytes a cell and 192 a cell of liquid. A page at both ends of less
-            # than 128 arrays, as above.
-            at_most "$(extra $ranks $rank pool)" $(((4 * 34 * 34 + 120 * 150 + 240 * 60) * (256 / ranks + 5) + 128 * 2 * 4096 + (rank == 0 ? handed : 0))) "surface of a level set, rank $rank of $ranks"
+            # The level set, the velocity and the markers of all would be 32 bytes a cell and 192 a cell of liquid. Pages as above.
+            at_most "$(extra $ranks $rank pool)" $(((4 * 34 * 34 + 120 * 150 + 240 * 60) * (256 / ranks + 5) + 2 * huge_page + (rank == 0 ? handed : 0))) "surface of a level set, rank $rank of $ranks"
         done
     done
     ;;
