@@ -202,11 +202,13 @@ void Fluid<D>::show(FieldSet& fields) const {
     fields.fields.push_back({"density", "kg/m^3", Where::particle, "particles", {std::span<const real>(density)}});
     fields.fields.push_back({"id", "1", Where::particle, "particles", {std::span<const real>(id)}});
     fields.grid.dim = D;
+    fields.rest_density = rho0;
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         fields.grid.cells[at] = static_cast<int>(std::lround((domain.hi[a] - domain.lo[a]) / domain.spacing));
         fields.grid.origin[at] = domain.lo[a];
         fields.grid.spacing[at] = domain.spacing;
+        fields.weight[a] = rho0 * gravity[a];
     }
 }
 

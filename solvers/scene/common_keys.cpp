@@ -268,7 +268,11 @@ const std::vector<Variant>& probe_kinds() {
          "of the line lies in liquid.",
          {probe_point("at", "Any point of the line."),
           {.name = "axis", .type = Type::choice, .doc = "The line's axis.", .fallback = std::string("y"), .choices = {"x", "y", "z"}}}},
-        {"wall_pressure", "Pressure on a wall or solid, at its point nearest to `at`.", {probe_point("at", "The point.")}},
+        {"wall_pressure",
+         "Pressure on a wall or solid, at its point nearest to `at`: on grids fitted to the cells of liquid beside it; of particles their "
+         "force "
+         "per area, over two spacings around the point.",
+         {probe_point("at", "The point.")}},
         {"integral", "A field summed over the fluid.", {probed_field()}},
         {"front",
          "How far the liquid reaches along an axis.",
