@@ -51,6 +51,20 @@ TEST("a box on a slope slides where the slope is steeper than friction holds, an
     }
 }
 
+TEST("two bodies rub with the geometric mean of their frictions: a box on a fixed slab slides at the rate of the textbook") {
+    for (const bool box_is_rough : {false, true}) {  // sqrt(0.9 * 0.1) = 0.3; the arithmetic mean would be 0.5
+        Dry<2> world(
+            fmt::format("bodies = [ {{ shape = \"box\", min = [0.2, 1.0], max = [3.8, 1.2], density = 10.0, friction = {}, fixed = "
+                        "[\"x\", \"y\", \"turning\"] }}, {{ shape = \"box\", min = [0.5, 1.2], max = [0.9, 1.4], density = 10.0, "
+                        "friction = {} }} ]",
+                        box_is_rough ? 0.1 : 0.9, box_is_rough ? 0.9 : 0.1));
+        const real s = 0.6, dt = 1e-3;  // tan s = 0.68
+        world.gravity = {{9.81 * std::sin(s), -9.81 * std::cos(s)}};
+        for (int i = 0; i < 500; ++i) world.step(dt);
+        EXPECT_NEAR(world.bodies[1].velocity[0], 9.81 * (std::sin(s) - 0.3 * std::cos(s)) * 0.5, 9.81 * dt);  // one step's push
+    }
+}
+
 TEST_IN_2D_AND_3D("two bodies that collide keep their momentum, and their energy where restitution is one") {
     const std::string at = D == 2 ? "[1.0, 2.0]" : "[1.0, 2.0, 2.0]", to = D == 2 ? "[2.0, 2.1]" : "[2.0, 2.1, 2.0]";
     const std::string v = D == 2 ? "[2.0, 0.0]" : "[2.0, 0.0, 0.0]";

@@ -134,6 +134,38 @@ TEST_IN_2D_AND_3D("a slider keeps its line and its direction, and lets its body 
                     1e-9);
 }
 
+TEST_IN_2D_AND_3D("a slack line does not damp, however strong its damper: what flies outwards in it goes on exactly as it was") {
+    // k s + c v would be a pull of 1000 * 2 - 10 * 0.5 N.
+    Dry<D> world(
+        fmt::format("bodies = [ {{ shape = \"sphere\", centre = {}, radius = {}, density = 10.0, velocity = {} }} ]\njoints = [ {{ "
+                    "kind = \"mooring\", body = \"0\", at = {}, anchor = {}, length = 1.5, stiffness = 10.0, damping = 1000.0 }} ]",
+                    at(D, 2, 2), r, D == 2 ? "[2.0, 0.0]" : "[2.0, 0.0, 0.0]", at(D, 2, 2), at(D, 1, 2)),
+        0);
+    for (int i = 0; i < 20; ++i) world.step(1e-2);  // 0.4 of the 0.5 m that are slack
+    EXPECT_NEAR(world.bodies[0].velocity[0], 2.0, 1e-12);
+    EXPECT_NEAR(world.bodies[0].at[0], 2.4, 1e-12);
+    for (int i = 0; i < 40; ++i) world.step(1e-2);
+    EXPECT_LT(world.bodies[0].velocity[0], 0.1);  // taut, it damps
+}
+
+TEST("in space a slider turns a body that is out of line by an angle back by its sine: what is left is of the third order") {
+    const real angle = 0.2, dt = 1e-2;
+    Dry<3> world(
+        "bodies = [ { shape = \"box\", min = [1.8, 1.8, 1.8], max = [2.2, 2.2, 2.2], density = 10.0 } ]\njoints = [ { kind = "
+        "\"slider\", body = \"0\", at = [2.0, 2.0, 2.0], axis = [1.0, 0.0, 0.0] } ]",
+        0);
+    const Vec<3> about = (1 / std::sqrt(14.0)) * Vec<3>{{1, 2, 3}};
+    auto& turned = world.bodies[0].orientation;
+    turned[0] = std::cos(angle / 2);
+    for (int a = 0; a < 3; ++a) turned[static_cast<std::size_t>(a + 1)] = std::sin(angle / 2) * about[a];
+    world.bodies[0].velocity = {};
+    world.step(dt), world.step(dt);  // a velocity that undoes it, and the way
+    real left = 0;
+    for (std::size_t a = 1; a < 4; ++a) left += turned[a] * turned[a];
+    // A cube, so that it turns about one axis: by sin(angle) instead of angle; the second velocity is of what is left then.
+    EXPECT_NEAR(2 * std::asin(std::sqrt(left)), angle - std::sin(angle), 1e-3 * angle);
+}
+
 TEST_IN_2D_AND_3D("what hangs on a mooring stretches it by its weight over its stiffness; slack, it pulls nothing") {
     const real k = 2000;
     const auto world_of = [&](real length) {
