@@ -52,6 +52,19 @@ TEST("the worked examples of Celik 2008 come out to the printed digits") {
     }
 }
 
+TEST("on grids of unequal ratios the index of each pair is of its own ratio: f0 + C h^p has an asymptotic ratio of f1/f2") {
+    for (const auto& grids : {std::vector<real>{10, 15, 30}, std::vector<real>{12, 20, 26}}) {
+        OrderTable table(Quantity::value);
+        std::vector<real> f;
+        for (real n : grids) f.push_back(4.5 - 3 * std::pow(1 / n, 1.7)), table.add(1 / n, f.back());
+        const Extrapolation x = table.extrapolate();
+        // GCI23 = F |f2 - f3| / f2 / (r32^p - 1) = F C h2^p / f2, GCI12 = F C h1^p / f1
+        EXPECT_NEAR(x.gci_coarse, 1.25 * 3 * std::pow(1 / grids[1], 1.7) / f[1], 1e-8);
+        EXPECT_NEAR(x.gci_fine, 1.25 * 3 * std::pow(1 / grids[2], 1.7) / f[2], 1e-8);
+        EXPECT_NEAR(x.asymptotic, f[2] / f[1], 1e-7);
+    }
+}
+
 TEST("the asymptotic ratio is 1 for a clean sequence and the third Celik example is seen to oscillate") {
     OrderTable clean(Quantity::value);
     for (real n : {64.0, 128.0, 256.0}) clean.add(1 / n, 1 + std::pow(1 / n, 2));
