@@ -71,7 +71,8 @@ void Pockets::number_knots(const ColumnMatrix& A, const Knots& knots) {
     refill_scratch(begin_, at(A.n[1]), 0);
     refill_scratch(end_, at(A.n[1]), 0);
     for_each_line_near(A, 1, [&](int z) { begin_[at(z)] = knots.start[at(z * A.n[0])], end_[at(z)] = knots.start[at((z + 1) * A.n[0])]; });
-    std::vector<int> first(at(A.n[1]));
+    refill_scratch(firsts_, at(A.n[1]), 0);
+    Ints& first = firsts_;
     for (int z = own_.begin; z < own_.end; ++z) first[at(z)] = end_[at(z)] - begin_[at(z)];
     if (!A.cut.empty()) slabs().gather(A.cut, {first.data(), sizeof(int), A.n[1]});
     std::exclusive_scan(first.begin(), first.end(), first.begin(), 0);
@@ -106,7 +107,8 @@ void Pockets::number_pockets(const ColumnMatrix& A) {
         if (link.open != 0 || open.count(a) > 0 || open.count(b) > 0) open.insert(least);
         parent[std::max(a, b)] = least;
     }
-    std::vector<int> firsts;
+    Ints& firsts = firsts_;
+    firsts.clear();
     refill_scratch(pocket_, number_.size(), -1);
     for (int i = 0; i < static_cast<int>(number_.size()); ++i) {
         const int set = root(i);
@@ -164,7 +166,7 @@ void Pockets::remove_means(std::vector<real>& q) const {
 
 std::size_t Pockets::bytes() const {
     return (begin_.capacity() + end_.capacity() + number_.capacity() + parent_.capacity() + pocket_.capacity() + here_.capacity() +
-            lower_.capacity()) *
+            lower_.capacity() + firsts_.capacity()) *
                sizeof(int) +
            open_.capacity() + (mass_.capacity() + size_.capacity() + mean_.capacity() + by_line_.capacity()) * sizeof(real);
 }

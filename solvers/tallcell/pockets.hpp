@@ -45,6 +45,7 @@ private:
     Ints number_;                    // of these among all
     Ints parent_, pocket_;           // by knot: of the same set; of its pocket the number, -1 where there is air
     Ints here_, lower_;              // knots at or below the shared rows of a line, column by column, and of the line on its lower side
+    Ints firsts_;                    // of lines, and of pockets
     std::vector<char> open_;         // by root: whether any of its knots touches air
     std::vector<real> mass_, size_;  // rows by knot and by pocket
     mutable std::vector<real> mean_, by_line_;
