@@ -130,9 +130,12 @@ int TallPressure<D>::covered_from_below(int column) const {
 }
 
 template <int D>
-const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacState<D>& state, real dt) {
+const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacState<D>& state, real dt, bool pockets) {
     if (A_.rows == 0) return nothing_to_do_;
     weak_divergence(state, b_);
+    pockets_.clear();
+    if (pockets) pockets_.find(A_, knots_);
+    pockets_.make_compatible(b_);
     const real scale = dt / state.rho;
     const ColumnRange own = layout_.own();
     parallel_for(own.begin, own.end, [&](int c) {  // the last pressure is the first guess
@@ -140,6 +143,7 @@ const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacSta
         for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(knots_.row[at(i)])];
     });
     const poisson::Report& report = solver_.solve(A_, knots_, b_, q_);
+    pockets_.remove_means(q_);
     for (int h = 0; h < D - 1; ++h) project_faces(phi, state, h, own);
     project_faces(phi, state, D - 2, layout_.above());
     project_vertical(phi, state);
@@ -295,7 +299,7 @@ std::size_t TallPressure<D>::samples() const {
 template <int D>
 std::size_t TallPressure<D>::bytes() const {
     std::size_t total = knots_.bytes() + A_.bytes() + (row_index_.capacity() + rows_of_ranks_.capacity()) * sizeof(int) + solver_.bytes() +
-                        (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
+                        pockets_.bytes() + (mean_.capacity() + b_.capacity() + q_.capacity()) * sizeof(real);
     for (std::size_t h = 0; h < 2; ++h)
         total += run_start_[h].bytes() + runs_[h].capacity() * sizeof(Run) + w_[h].capacity() * sizeof(Pair);
     return total;

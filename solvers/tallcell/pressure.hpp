@@ -7,6 +7,7 @@
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
 #include "tallcell/multigrid.hpp"
+#include "tallcell/pockets.hpp"
 #include "tallcell/samples.hpp"
 
 #include <vector>
@@ -56,8 +57,9 @@ public:
     std::int64_t unknowns() const;
     /// Whether all columns have been set here; over ranks not once a step has begun.
     bool has_all() const { return A_.cut.empty(); }
-    /// Solves for the pressure and makes the unknowns free of divergence.
-    const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt);
+    /// Solves for the pressure and makes the unknowns free of divergence; but for what walls that move sweep into pockets, if `pockets`
+    /// says that there may be any.
+    const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt, bool pockets = false);
     /// Back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
     void spread(MacState<D>& state, real dt);
     /// max |u|/h over the rows of runs, as the last spread() made them [1/s]; rows below that of fastest_run_below() are all among them.
@@ -208,6 +210,7 @@ private:
     std::vector<int> rows_of_ranks_;  // what each knows of the lattice's rows
     ColumnMatrix A_;
     ColumnMultigrid solver_;
+    Pockets pockets_;
     std::array<PlaneStore<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
     std::array<std::vector<Run>, 2> runs_;
     std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]

@@ -92,7 +92,7 @@ void TallCells<D>::edited(const EditableField&) {
     const Grid<real, D> pressure = state_.p;
     state_.p.fill(0);
     pressure_.restrict_velocity(state_);
-    pressure_.project(surface_.phi, state_, 1);
+    pressure_.project(surface_.phi, state_, 1, solids_.moving());
     pressure_.spread(state_, 1);
     sync_periodic(state_.u, state_.sides);
     state_.p = pressure;

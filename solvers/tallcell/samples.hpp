@@ -23,6 +23,30 @@ struct Pair {
     real minus = 0, plus = 0;
 };
 
+/// Of the values of a linear function over rows: at the Gauss points, from their sum and their first moment about the middle row.
+template <class T>
+std::array<T, 2> gauss_values(const Run& run, const T& sum, const T& lever) {
+    const T mean = (1.0 / run.count) * sum;
+    if (run.count == 1) return {mean, mean};
+    const T slope = (1 / (run.count * run.spread())) * lever;
+    return {mean - slope, mean + slope};
+}
+
+/// add(row, mass) over the points on which a sum over the rows of a run is taken of a function that is of degree 3 at most inside it, and
+/// any at its ends: `below` rows at its lower end and `above` at its upper one each for itself, the Gauss points of those between.
+template <class Add>
+void for_each_point(const Run& run, int below, int above, Add&& add) {
+    const int end = run.row + run.count, low = std::min(run.row + below, end), high = std::max(end - above, low);
+    for (int row = run.row; row < low; ++row) add(static_cast<real>(row), 1.0);
+    const Run inner{low, high - low, run.lower, run.upper};
+    if (inner.count > 1) {
+        for (const real y : {inner.middle() - inner.spread(), inner.middle() + inner.spread()}) add(y, 0.5 * inner.count);
+    } else if (inner.count == 1) {
+        add(static_cast<real>(low), 1.0);
+    }
+    for (int row = high; row < end; ++row) add(static_cast<real>(row), 1.0);
+}
+
 /// The pair with the same sum, and the same first moment, as values(row) on rows [first, first + count).
 template <class F>
 Pair moments(int first, int count, F&& values) {

@@ -48,7 +48,7 @@ void TallCells<D>::find_rate(real dt) {
     forces(dt);
     refresh(state_.u[D - 1], frame_.periodic(D - 1));
     pressure_.restrict_velocity(state_);
-    pressure_.project(surface_.phi, state_, dt);
+    pressure_.project(surface_.phi, state_, dt, solids_.moving());
     pressure_.spread(state_, dt);
     sync_periodic(state_.u, state_.sides);
     extend_velocity();
@@ -151,7 +151,7 @@ poisson::Report TallCells<D>::project(real dt) {
     pressure_.restrict_velocity(state_);
     pressure_.change_runs(transport_.changes());
     const poisson::Report report =
-        staggered::explained_by_room(state_, solids_, [&] { return pressure_.project(surface_.phi, state_, dt); });
+        staggered::explained_by_room(state_, solids_, [&] { return pressure_.project(surface_.phi, state_, dt, solids_.moving()); });
     pressure_.spread(state_, dt);
     sync_periodic(state_.u, state_.sides);
     return report;

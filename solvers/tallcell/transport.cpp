@@ -25,6 +25,7 @@ void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& 
                               MacVelocity<D>& u, int beside) {
     up_ = mesh.layout().up, open_above_ = sides.open(up_, 1);
     source_ = &u;
+    ends_ = static_cast<int>(std::clamp(std::ceil(fastest * dt), 1.0, 1e6));
     move_runs(mesh, dt);
     // A point travels no farther than this, by a midpoint that may be faster than where it starts, and then looks at two samples.
     kept_from_ = std::max(0, mesh.floor_of_singles() - static_cast<int>(std::min(1e6, 1.5 * fastest * dt)) - 3);
@@ -215,18 +216,23 @@ void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
     }
 }
 
-/// Euler's trace from both Gauss points: deep below the surface paths are straight for as long as a step takes.
+/// Moments over the rows of a run of what they change by, by Euler's trace: deep below the surface paths are straight for as long as a step
+/// takes. Rows that a path may reach from beyond the run's ends count each for itself: by them alone does what is beyond come in. From the
+/// two Gauss points of the whole run, which see only its own linear function, a mean would drift along its slope without end.
 template <int D>
 Pair Transport<D>::move_run(int a, Index<D> I, const Run& run, real dt) const {
     I[up_] = run.row;
     Vec<D> s = face_place(a, I);
     const real bottom = s[up_];
-    const auto change = [&](real row) {
+    real sum = 0, lever = 0;
+    for_each_point(run, run.row == 0 ? 0 : ends_, ends_, [&](real row, real mass) {
         s[up_] = bottom + (row - run.row);
         const Vec<D> k = speed(s);
-        return at_point((*source_)[a], a, s - dt * k) - k[a] * frame_.h[a];
-    };
-    return {change(run.middle() - run.spread()), change(run.middle() + run.spread())};
+        const real change = at_point((*source_)[a], a, s - dt * k) - k[a] * frame_.h[a];
+        sum += mass * change, lever += mass * (row - run.middle()) * change;
+    });
+    const auto pair = gauss_values(run, sum, lever);
+    return {pair[0], pair[1]};
 }
 
 /// The same of eight columns beside one another along x that have the same run. False, and nothing done, where a point comes too near to a
@@ -235,25 +241,37 @@ template <int D>
 bool Transport<D>::move_run_of_eight(int a, Index<D> I, const Run& run, real dt, std::array<Eight, 2>& change) const {
     for (int d = 1; d < D; ++d)
         if (d != up_ && !inner(I, d)) return false;
+    bool near = true;
+    Eight sum{}, lever{};
+    for_each_point(run, run.row == 0 ? 0 : ends_, ends_, [&](real row, real mass) {
+        Eight by;
+        near = near && change_of_eight(a, I, row, dt, by);
+        if (!near) return;
+        sum += mass * by, lever += mass * (row - run.middle()) * by;
+    });
+    if (near) change = gauss_values(run, sum, lever);
+    return near;
+}
+
+/// What eight points at a row between faces, or on one, change by.
+template <int D>
+bool Transport<D>::change_of_eight(int a, Index<D> I, real row, real dt, Eight& change) const {
     const auto at = [](int i) { return static_cast<std::size_t>(i); };
-    for (const int point : {0, 1}) {
-        const real y = run.middle() + (point == 0 ? -run.spread() : run.spread());
-        I[up_] = static_cast<int>(std::lround(y));
-        if (!inner(I, up_)) return false;
-        Moved<D> d{};
-        d[at(up_)] += y - I[up_];
-        Moved<D> from = d;
-        Eight here{};
-        for (int b = 0; b < D; ++b) {
-            const auto& u = (*source_)[b];
-            const Eight k = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), d, a, b);
-            if (b == a) here = k;
-            from[at(b)] -= dt * frame_.inv_h[b] * k;
-            if (!all_of_eight(magnitude(from[at(b)]) <= 1)) return false;
-        }
-        const auto& u = (*source_)[a];
-        change[at(point)] = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), from, a, a) - here;
+    I[up_] = static_cast<int>(std::lround(row));
+    if (!inner(I, up_)) return false;
+    Moved<D> d{};
+    d[at(up_)] += row - I[up_];
+    Moved<D> from = d;
+    Eight here{};
+    for (int b = 0; b < D; ++b) {
+        const auto& u = (*source_)[b];
+        const Eight k = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), d, a, b);
+        if (b == a) here = k;
+        from[at(b)] -= dt * frame_.inv_h[b] * k;
+        if (!all_of_eight(magnitude(from[at(b)]) <= 1)) return false;
     }
+    const auto& u = (*source_)[a];
+    change = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), from, a, a) - here;
     return true;
 }
 

@@ -1,6 +1,6 @@
 // Du/Dt = 0 on tall cells, by semi-Lagrangian advection (Stam 1999) or MacCormack's correction of it (Selle, Fedkiw, Kim, Liu & Rossignac
-// 2008) on the lattice's velocity. Regular faces move as on the uniform grid. Rows inside tall cells change as the two Gauss points of
-// their run do, linearly between: those points' changes are all that is told of them.
+// 2008) on the lattice's velocity. Regular faces move as on the uniform grid. Of rows inside tall cells the moments change, over each run,
+// by those of what its rows change by: its end rows, into which the runs beyond are carried, and Gauss points between them stand for all.
 #pragma once
 #include "surface/marker_motion.hpp"
 #include "tallcell/near_rows.hpp"
@@ -26,6 +26,7 @@ private:
     void move_runs(const TallPressure<D>& mesh, real dt);
     Pair move_run(int a, Index<D> I, const Run& run, real dt) const;
     bool move_run_of_eight(int a, Index<D> I, const Run& run, real dt, std::array<Eight, 2>& change) const;
+    bool change_of_eight(int a, Index<D> I, real row, real dt, Eight& change) const;
     void keep(const MacVelocity<D>& u, int beside);
     template <bool Correct>
     void pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
@@ -45,6 +46,7 @@ private:
     bool maccormack_ = true, open_above_ = false;
     int up_ = 1;
     int reach_ = 1;                           // cells that a point may travel in one step
+    int ends_ = 1;                            // rows at either end of a run that what is beyond it may reach in one step
     int kept_from_ = 0;                       // below this row all faces are in runs, and so are those that any other may come from
     MacVelocity<D> before_, predicted_;       // from that row upwards
     const MacVelocity<D>* source_ = nullptr;  // what is carried

@@ -348,6 +348,8 @@ tallcell)
     compare levels "2 1,4 2" "$tall_deep" $clear --set grid.cells=[64,32,64] --set grid.size=[1.28,0.64,1.28] --set scheme.columns=uniform --set time.end=0.03
     compare odd "3 1" "$tall_deep" $tall_ring $clear --set grid.cells=[27,48,25] --set grid.size=[0.54,0.96,0.5]
     compare flat_cells "3 1" "$tall_deep" --set grid.cells=[28,60,26]
+    compare pocket "2 1,3 2,4 1" "$scenes/ranks_tall_pocket.toml" # sets of knots that are one across the cuts
+    holds_own pocket-4-1
     for scene in "$tall" "$tall_deep"; do
         in_two_parts 0.03 0.06 "$scene"
     done
