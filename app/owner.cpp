@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/slabs.hpp"
+#include "output/atomic_file.hpp"
 #include "sim/loop.hpp"
 #include "sim/run_id.hpp"
 
@@ -31,18 +32,30 @@ void move_away(const std::filesystem::path& checkpoint, bool quiet) {
 
 }  // namespace
 
+std::unique_ptr<output::FolderLock> lock_folder(const std::filesystem::path& folder) {
+    std::unique_ptr<output::FolderLock> lock;
+    by_first_rank([&] {
+        output::require_writable(folder);
+        lock = std::make_unique<output::FolderLock>(folder);
+        if (!lock->unlocked().empty())
+            std::fprintf(stderr, "%s: the file system has no locks (%s): nothing keeps a second run out of this folder\n", folder.c_str(),
+                         lock->unlocked().c_str());
+    });
+    return lock;
+}
+
 std::filesystem::path earlier(const std::filesystem::path& checkpoint) {
     return checkpoint.parent_path() / ("earlier_" + checkpoint.filename().string());
 }
 
-std::string own(const std::filesystem::path& folder, const scene::Scene& scene, bool quiet) {
+std::string own_as_new(const std::filesystem::path& folder, const scene::Scene& scene, bool quiet) {
     by_first_rank([&] {
         for (const auto& checkpoint : {sim::checkpoint_file(folder), sim::last_good_file(folder)}) move_away(checkpoint, quiet);
     });
     return sim::run_id(scene);
 }
 
-std::string own(const std::filesystem::path& folder, const scene::Scene& scene, const std::string& continued) {
+std::string own_as_continued(const std::filesystem::path& folder, const scene::Scene& scene, const std::string& continued) {
     bool holds_run = false;
     by_first_rank([&] {
         const std::string there = run_in(folder);

@@ -12,7 +12,6 @@
 #include "core/slabs.hpp"
 #include "distributed/ranks.hpp"
 #include "output/atomic_file.hpp"
-#include "output/folder_lock.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
 #include "reconstruction/reconstruction.hpp"
@@ -301,19 +300,6 @@ int tell_finished(const Simulation& simulation) {
     return exit_success;
 }
 
-/// Of the first rank, which writes.
-std::unique_ptr<output::FolderLock> lock_folder(const std::filesystem::path& folder) {
-    std::unique_ptr<output::FolderLock> lock;
-    by_first_rank([&] {
-        output::require_writable(folder);
-        lock = std::make_unique<output::FolderLock>(folder);
-        if (!lock->unlocked().empty())
-            std::fprintf(stderr, "%s: the file system has no locks (%s): nothing keeps a second run out of this folder\n", folder.c_str(),
-                         lock->unlocked().c_str());
-    });
-    return lock;
-}
-
 int simulate(const RunArguments& arguments) {
     if (arguments.threads > 0) set_threads(arguments.threads);
     std::vector<scene::Override> overrides;
@@ -364,7 +350,8 @@ int simulate(const RunArguments& arguments) {
     if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
-    const std::string run = restarted > 0 ? own(folder, simulation.scene(), continued) : own(folder, simulation.scene(), arguments.quiet);
+    const std::string run =
+        restarted > 0 ? own_as_continued(folder, simulation.scene(), continued) : own_as_new(folder, simulation.scene(), arguments.quiet);
     Recorder recorder(simulation, folder, run, restarted, arguments.quiet);
     if (measured) recorder.measure(*measured);
     catch_interrupts(slabs().several());

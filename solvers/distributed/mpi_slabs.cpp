@@ -278,8 +278,6 @@ const MpiSlabs* joined = nullptr;
 
 extern "C" weir::Slabs* weir_mpi_slabs() {
     int given = 0, rank = 0, ranks = 1;
-    // with more ranks than processors Open MPI yields the processor at every poll, to whatever else is busy; our waits sleep themselves
-    setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);

@@ -29,9 +29,9 @@ public:
     }
 
     static constexpr std::chrono::microseconds nap{20};
-    /// A poll lost the processor to another process where so much of its time was not its own [s]: processes take turns of some
-    /// milliseconds; interrupts take some ten microseconds.
-    static constexpr double lost = 0.5e-3;
+    /// A poll lost the processor to another process where so much of its time was not its own: processes take turns of some milliseconds;
+    /// interrupts take some ten microseconds. Waits that poll for less than that waste little, and go on as they are.
+    static constexpr std::chrono::microseconds lost{500};
     static constexpr std::chrono::seconds busy{1};
 
 private:
@@ -49,8 +49,8 @@ private:
         auto now = start;
         for (; !is_done && now - start < longest_; now = clock::now())
             if (!(is_done = done())) std::this_thread::yield();  // to the rank that is waited for, where there are more than processors
-        const double wall = std::chrono::duration<double>(now - start).count();
-        if (wall - (processor_seconds() - before) > lost) busy_until_ = now + busy, busy_ += busy;
+        const std::chrono::duration<double> own(processor_seconds() - before);
+        if (longest_ > lost && now - start - own > lost) busy_until_ = now + busy, busy_ += busy;
         return is_done;
     }
 

@@ -43,6 +43,9 @@ TEST("a poll that loses the processor is the last for a second: waits sleep at o
     EXPECT_LE(calls_until(wait, milliseconds(4), microseconds(0)), 202);  // naps of 20 us or more
     EXPECT_GT(wait.busy_seconds(), 0.004);
     EXPECT_LT(wait.busy_seconds(), 1);
+    PollingWait short_polls(microseconds(100));
+    calls_until(short_polls, milliseconds(3), milliseconds(1));
+    EXPECT_EQ(short_polls.busy_seconds(), 0);  // it sleeps soon enough
     std::this_thread::sleep_for(milliseconds(1000));
     EXPECT_EQ(wait.busy_seconds(), 1);
     int most = 0;  // it polls again
