@@ -123,7 +123,7 @@ std::string busy_warning(const std::vector<output::RunLog::RankState>& ranks, co
         text, sizeof text,
         "warning: for %.3g of %.3g s other processes were busy on the processors of the ranks, which slept while they waited for one "
         "another: fewer ranks, or one process, may be faster (ranks.busy_seconds in run.json)",
-        seconds, spent.stepping);
+        std::min(seconds, spent.stepping), spent.stepping);
     return text;
 }
 
