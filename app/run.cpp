@@ -4,11 +4,13 @@
 #include "app/explain.hpp"
 #include "app/interrupt.hpp"
 #include "app/measured.hpp"
+#include "app/owner.hpp"
 #include "app/progress.hpp"
 #include "app/run_folder.hpp"
 #include "app/space.hpp"
 #include "core/parallel.hpp"
 #include "core/slabs.hpp"
+#include "distributed/ranks.hpp"
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
@@ -18,6 +20,7 @@
 #include "sim/loop.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
+#include "sim/run_id.hpp"
 #include "sim/shares.hpp"
 #include "sim/solid_cells.hpp"
 #include "validation/cost/over_ranks.hpp"
@@ -105,9 +108,23 @@ std::size_t memory_told(const std::string& wanted) {
     return 0;
 }
 
-/// What stands in memory and in no file, and the most that has stood in memory.
-output::RunLog::RankMemory memory_of(const Simulation& simulation, std::size_t checkpoint) {
-    return {simulation.solver().bytes(), memory_told("RssAnon:"), memory_told("VmHWM:"), checkpoint};
+/// What stands in memory and in no file, the most that has stood in memory, and how long other processes were busy.
+output::RunLog::RankState state_of(const Simulation& simulation, std::size_t checkpoint) {
+    return {simulation.solver().bytes(), memory_told("RssAnon:"), memory_told("VmHWM:"), checkpoint, distributed::busy_seconds()};
+}
+
+/// Where ranks have slept for a tenth of the run or more, because other processes were busy; else empty.
+std::string busy_warning(const std::vector<output::RunLog::RankState>& ranks, const TimeSpent& spent) {
+    double seconds = 0;
+    for (const auto& rank : ranks) seconds = std::max(seconds, rank.busy_seconds);
+    if (!slabs().several() || seconds < 0.1 * spent.stepping) return {};
+    char text[300];
+    std::snprintf(
+        text, sizeof text,
+        "warning: for %.3g of %.3g s other processes were busy on the processors of the ranks, which slept while they waited for one "
+        "another: fewer ranks, or one process, may be faster (ranks.busy_seconds in run.json)",
+        std::min(seconds, spent.stepping), spent.stepping);
+    return text;
 }
 
 /// Of this machine's memory, which ranks share for all that is known here: so much may one process need that holds all. Ranks that hold
@@ -125,20 +142,22 @@ double memory_for_all(const scene::Scene& scene) {
 class Recorder final : public sim::Watcher {
 public:
     /// checkpoint: what was read of the one that is continued [bytes]; 0: none.
-    Recorder(const Simulation& simulation, const std::filesystem::path& folder, std::size_t checkpoint, bool quiet)
+    Recorder(const Simulation& simulation, const std::filesystem::path& folder, const std::string& run, std::size_t checkpoint, bool quiet)
         : checkpoint_(checkpoint),
           balance_(simulation),
           quiet_(quiet),
           probes_(folder / "probes"),
-          log_(folder / "run.json", simulation.scene()),
+          log_(folder / "run.json", simulation.scene(), run),
           progress_(simulation.time(), simulation.end_time(), quiet) {
         frames_ = open_frames(simulation, folder, checkpoint > 0);
         tell_ranks(simulation, {}, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
         told_ = simulation.warnings().size();
-        if (checkpoint > 0) log_.resume(simulation.steps());
-        by_first_rank([&] { write_log("running"); });  // where the disk fills later, there is a file that can still say so
+        by_first_rank([&] {
+            checkpoint > 0 ? log_.steps().resume(simulation.steps()) : log_.steps().begin();
+            write_log("running");  // where the disk fills later, there is a file that can still say so
+        });
     }
     /// What is to be measured of the run: told in run.json at its end.
     void measure(Measured& measured) { measured_ = &measured; }
@@ -158,7 +177,7 @@ public:
         }
         by_first_rank([&] {
             probes_.update(simulation.probes());  // those of the start too
-            // the log of a long run is long: not more than a few per cent of the time goes into replacing it
+            // not more than a few per cent of the time goes into replacing it
             const auto now = clock::now();
             if (now - written_ > 20 * write_time_) write_log("running");
         });
@@ -168,7 +187,8 @@ public:
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
         const auto sent = of_ranks(slabs().traffic());  // before what this takes
-        tell_ranks(simulation, sent, of_ranks(memory_of(simulation, checkpoint_)));
+        const auto states = of_ranks(state_of(simulation, checkpoint_));
+        tell_ranks(simulation, sent, states);
         if (measured_) log_.set_measured(measured_->values());
         const sim::BalanceOfRun balance = balance_.of_run(simulation);
         log_.set_balance(balance_json(balance, spent_));
@@ -178,6 +198,7 @@ public:
             log_.set_warnings(simulation.warnings());
             write_log(status);
             if (!quiet_) std::fputs(balance_text(balance, spent_).c_str(), stdout);
+            if (const std::string warning = busy_warning(states, spent_); !warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
             for (const std::string& warning : balance.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
         });
     }
@@ -196,17 +217,17 @@ public:
 private:
     using clock = std::chrono::steady_clock;
     static double seconds_since(clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); }
-    void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankMemory>& memory) {
+    void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankState>& states) {
         if (!slabs().several()) return;
         const sim::Shares& shares = simulation.shares();
         using Holds = output::RunLog::Holds;
         const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
                             : simulation.solver().holds_own_planes()     ? Holds::own_planes
                                                                          : Holds::whole_grids;
-        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.by_all, sent, memory);
+        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.by_all, sent, states);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
-        log_.add_step(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
+        log_.steps().add(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
         probes_.update(simulation.probes());  // as they come: a run that is killed leaves all that it measured
         progress_.show(simulation.time(), simulation.steps());
         for (; told_ < simulation.warnings().size(); ++told_) {
@@ -242,9 +263,11 @@ std::filesystem::path find_checkpoint(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return path;
     for (const auto& file : {sim::checkpoint_file(path), sim::last_good_file(path)})
         if (std::filesystem::exists(file)) return file;
+    const bool has_earlier = std::filesystem::exists(earlier(sim::checkpoint_file(path)));
     throw BadInput(path.string() +
                    " has no checkpoint to continue from: one is written when a run is interrupted or fails, and with "
-                   "--checkpoint-every N; a finished run without one has nothing left to do");
+                   "--checkpoint-every N; a finished run without one has nothing left to do" +
+                   (has_earlier ? "; " + earlier("checkpoint.weir").string() + " there is of an earlier run" : ""));
 }
 
 /// Where --out says; else beside the checkpoint that is continued; else out/<name of the scene>.
@@ -315,22 +338,26 @@ int simulate(const RunArguments& arguments) {
     }
     const std::size_t restarted = checkpoint ? checkpoint->bytes_read() : 0;
     if (restarted > 0 && simulation.finished()) return tell_finished(simulation);
+    const std::string continued = checkpoint ? sim::run_id_of(*checkpoint) : "";
     checkpoint.reset();  // the next one takes its place, and it its room on the disk
     {
         const auto parts = simulation.solver().show_in_parts();
         output::check(frame_options(simulation.scene()), simulation.fields());
     }
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
-    by_first_rank([&] { output::require_writable(folder); });
+    const std::unique_ptr<output::FolderLock> lock = lock_folder(folder);
     const std::string space = check_space(simulation, folder, arguments.any_size);
     if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
-    Recorder recorder(simulation, folder, restarted, arguments.quiet);
+    const std::string run =
+        restarted > 0 ? own_as_continued(folder, simulation.scene(), continued) : own_as_new(folder, simulation.scene(), arguments.quiet);
+    Recorder recorder(simulation, folder, run, restarted, arguments.quiet);
     if (measured) recorder.measure(*measured);
     catch_interrupts(slabs().several());
     sim::LoopOptions options;
     options.folder = folder;
+    options.run = run;
     options.checkpoint_every = arguments.checkpoint_every;
     options.restarted = restarted > 0;
     options.stop_requests = [] { return slabs().largest(interruptions()); };

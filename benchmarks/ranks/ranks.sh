@@ -12,7 +12,7 @@ cd "$work"
 export GOMP_SPINCOUNT=2000
 
 # the mean step of a run, without the first, which allocates [ms]
-mean_step() { grep -o '"milliseconds":[0-9.]*' run/run.json | cut -d: -f2 | tail -n +2 | awk '{ sum += $1 } END { printf "%.3f", sum / NR }'; }
+mean_step() { cut -d, -f2 run/timings.csv | tail -n +3 | awk '{ sum += $1 } END { printf "%.3f", sum / NR }'; }
 scene() { # THREADS|ranks SCENE [--set ...]
     local how=$1
     shift

@@ -2,6 +2,7 @@
 // none that says how much. Only the thread that joined may call.
 #include "core/slabs.hpp"
 #include "distributed/mpi_entry.hpp"
+#include "distributed/polling_wait.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -42,7 +43,7 @@ public:
         int ranks_here = 1;
         MPI_Comm_size(here, &ranks_here);
         MPI_Comm_free(&here);
-        crowded_ = ranks_here > static_cast<int>(std::thread::hardware_concurrency());
+        if (ranks_here > static_cast<int>(std::thread::hardware_concurrency())) wait_ = PollingWait(std::chrono::microseconds(100));
         prctl(PR_SET_TIMERSLACK, 1000UL);  // [ns] a sleep of 20 us would be one of 70
     }
     ~MpiSlabs() override { MPI_Finalize(); }
@@ -142,6 +143,7 @@ public:
     }
 
     bool poisons() const override { return poisons_; }
+    double busy_seconds() const { return wait_.busy_seconds(); }
 
     int largest(int value) override {
         requests_.assign(1, MPI_REQUEST_NULL);
@@ -214,16 +216,13 @@ private:
         wait_for_requests();
     }
 
-    /// MPI's own waits never sleep: on a machine that others use too, whoever is waited for then does not get to run. Ours spin for longer
-    /// than a message takes, and for longer than slabs differ in a pass where every rank of this machine has a processor; then they sleep.
+    /// MPI's own waits never sleep: on a machine that others use too, whoever is waited for then does not get to run.
     void wait_for_requests() {
-        using clock = std::chrono::steady_clock;
-        const auto until = clock::now() + (crowded_ ? std::chrono::microseconds(100) : std::chrono::microseconds(2000));
-        for (int done = 0;;) {
+        wait_.until([&] {
+            int done = 0;
             MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &done, MPI_STATUSES_IGNORE);
-            if (done) return;
-            if (clock::now() > until) std::this_thread::sleep_for(std::chrono::microseconds(20));
-        }
+            return done != 0;
+        });
     }
 
     static unsigned char* plane_at(const Planes& planes, int plane) {
@@ -262,13 +261,16 @@ private:
     }
 
     bool poisons_;
-    bool crowded_ = false;  // fewer processors here than ranks
+    /// Longer than a message takes, and than slabs differ in a pass where every rank of this machine has a processor.
+    PollingWait wait_{std::chrono::microseconds(2000)};
     MPI_Comm farewell_{};
     std::vector<Plan> plans_;
     std::vector<MPI_Request> requests_;
     std::vector<int> counts_, begins_, lengths_;
     std::vector<MPI_Aint> places_;
 };
+
+const MpiSlabs* joined = nullptr;
 
 }  // namespace
 
@@ -279,5 +281,9 @@ extern "C" weir::Slabs* weir_mpi_slabs() {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    return new weir::distributed::MpiSlabs(rank, ranks);
+    auto* const slabs = new weir::distributed::MpiSlabs(rank, ranks);
+    weir::distributed::joined = slabs;
+    return slabs;
 }
+
+extern "C" double weir_mpi_busy_seconds() { return weir::distributed::joined->busy_seconds(); }

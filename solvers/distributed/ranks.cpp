@@ -31,6 +31,8 @@ int number_of(std::initializer_list<const char*> names, int fallback) {
     return fallback;
 }
 
+void* mpi_function(const char* name) { return entry_of_library("libweir_mpi.so", WEIR_MPI_LIBRARY, name); }
+
 void print_nothing() {
     own_stderr = dup(STDERR_FILENO);
     const int nowhere = open("/dev/null", O_WRONLY);
@@ -52,9 +54,15 @@ int threads_of_rank() {
     return std::max(1, processors / here);
 }
 
+double busy_seconds() {
+    if (!slabs().several()) return 0;
+    const auto entry = reinterpret_cast<MpiBusyEntry>(mpi_function(mpi_busy_entry));
+    return entry ? entry() : 0;
+}
+
 void join() {
     if (started_ranks() <= 1) return;
-    const auto entry = reinterpret_cast<MpiEntry>(entry_of_library("libweir_mpi.so", WEIR_MPI_LIBRARY, mpi_entry));
+    const auto entry = reinterpret_cast<MpiEntry>(mpi_function(mpi_entry));
     if (!entry)
         throw BadInput("weir was started as " + std::to_string(started_ranks()) +
                        " ranks and has no MPI: install libopenmpi-dev, configure with WEIR_MPI=ON and build again, or start it once");

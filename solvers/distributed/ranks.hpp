@@ -17,6 +17,9 @@ int threads_of_rank();
 /// for one process.
 void join();
 
+/// The time so far in which other processes were busy on this rank's processor, so that it slept while it waited for other ranks [s].
+double busy_seconds();
+
 /// The end of the program, for all ranks: where all come here they end one after the other, and the answer is `exit_code`. Where one has
 /// failed alone, the others wait for it in vain: it says `complaint`, which rank 0 has said where all failed alike, and ends them all.
 int leave(int exit_code, const std::string& complaint);

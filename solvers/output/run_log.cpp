@@ -40,48 +40,22 @@ void put(json& to, const char* key, real value) {
     if (std::isfinite(value)) to[key] = value;
 }
 
-json step_json(std::int64_t step, real t, const StepReport& report, double seconds) {
-    json j = {{"step", step}, {"time", t}, {"dt", report.dt}};
-    put(j, "cfl", report.cfl);
-    put(j, "max_divergence", report.max_divergence);
-    put(j, "density_error", report.density_error);
-    put(j, "max_density_error", report.max_density_error);
-    j["iterations"] = report.iterations;
-    if (report.viscous_iterations > 0) j["viscous_iterations"] = report.viscous_iterations;
-    if (report.viscous_turns > 0) j["viscous_turns"] = report.viscous_turns;
-    put(j, "residual_before", report.residual_before);
-    put(j, "residual_after", report.residual_after);
-    put(j, "residual_max", report.residual_max);
-    j["milliseconds"] = 1e3 * seconds;
-    return j;
-}
-
 }  // namespace
 
-RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene) : file_(std::move(file)) {
+RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene, const std::string& run)
+    : file_(std::move(file)), steps_(file_.parent_path()) {
     const Machine machine = this_machine();
-    json head = {{"weir", machine.version}, {"commit", machine.commit}, {"machine", machine_json(machine)}, {"scene", scene_json(scene)}};
+    json head = {{"run", run},
+                 {"weir", machine.version},
+                 {"commit", machine.commit},
+                 {"machine", machine_json(machine)},
+                 {"scene", scene_json(scene)}};
     head_ = head.dump(1);
     head_.erase(head_.rfind('\n'));  // open at its end: more keys follow
 }
 
-void RunLog::add_step(std::int64_t step, real t, const StepReport& report, const Passes& passes, double seconds) {
-    json milliseconds = json::object();
-    const auto& list = passes.list();
-    seconds_before_.resize(list.size(), 0);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        const double spent =
-            list[i].seconds >= seconds_before_[i] ? list[i].seconds - seconds_before_[i] : list[i].seconds;  // or: were reset
-        if (spent > 0) milliseconds[list[i].name] = 1e3 * spent;
-        seconds_before_[i] = list[i].seconds;
-    }
-    json j = step_json(step, t, report, seconds);
-    j["passes"] = milliseconds;
-    steps_.push_back(j.dump());
-}
-
 void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string& by_all, const std::vector<Traffic>& sent,
-                       const std::vector<RankMemory>& memory) {
+                       const std::vector<RankState>& states) {
     json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
     if (holds == Holds::own_planes) ranks["storage"] = "every rank holds its own planes and those near its cuts";
     if (holds == Holds::own_particles)
@@ -91,21 +65,14 @@ void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string
         ranks["messages"].push_back(rank.messages);
         ranks["bytes"].push_back(rank.bytes);
     }
-    for (const RankMemory& rank : memory) {
+    for (const RankState& rank : states) {
         ranks["solver_bytes"].push_back(rank.solver);
         ranks["resident_bytes"].push_back(rank.resident);
         ranks["peak_bytes"].push_back(rank.peak);
+        ranks["busy_seconds"].push_back(rank.busy_seconds);
         if (rank.checkpoint > 0) ranks["checkpoint_bytes"].push_back(rank.checkpoint);
     }
     ranks_ = ranks.dump();
-}
-
-void RunLog::resume(std::int64_t last) {
-    std::ifstream old(file_);
-    const json j = json::parse(old, nullptr, false);
-    if (!j.is_object() || !j.contains("steps") || !j["steps"].is_array()) return;
-    for (const auto& step : j["steps"])
-        if (step.is_object() && step.value("step", std::int64_t{0}) <= last) steps_.push_back(step.dump());
 }
 
 bool RunLog::overwrite_status(const std::string& status) const {
@@ -128,9 +95,7 @@ void RunLog::write() const {
     if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();
     if (!balance_.empty()) text += ",\n \"balance\": " + balance_;
     if (!ranks_.empty()) text += ",\n \"ranks\": " + ranks_;
-    text += ",\n \"steps\": [";
-    for (std::size_t i = 0; i < steps_.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + steps_[i];
-    write_file(file_, text + "\n ]\n}\n");
+    write_file(file_, text + ",\n \"steps\": " + steps_.summary() + "\n}\n");
 }
 
 }  // namespace weir::output

@@ -2,6 +2,7 @@
 
 #include "core/slabs.hpp"
 #include "sim/foretold.hpp"
+#include "sim/run_id.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -20,14 +21,22 @@ std::string brief(real value) {
     return text;
 }
 
+Checkpoint state_of(const Simulation& simulation, const std::string& run) {
+    Checkpoint state;
+    simulation.save(state);
+    if (!run.empty()) put_run_id(state, run);
+    return state;
+}
+
 /// The last state known to be good, kept in memory: a failed step leaves whatever it reached.
 struct GoodState {
     Checkpoint state;
     std::int64_t step = 0;
     real time = 0;
+    std::string run;
     void keep(const Simulation& simulation) {
-        state = {};
-        simulation.save(state);
+        state = {};  // frees its memory before the next one takes as much
+        state = state_of(simulation, run);
         step = simulation.steps();
         time = simulation.time();
     }
@@ -59,11 +68,10 @@ bool all_can_read(const std::filesystem::path& file) {
 }
 
 /// And over ranks cuts anew what goes on, where the state asks for it.
-void save(Simulation& simulation, const std::filesystem::path& folder, bool goes_on) {
+void save(Simulation& simulation, const std::filesystem::path& folder, const std::string& run, bool goes_on) {
     bool cut_anew = false;
     {
-        Checkpoint checkpoint;
-        simulation.save(checkpoint);
+        const Checkpoint checkpoint = state_of(simulation, run);
         checkpoint.write(checkpoint_file(folder));
         cut_anew = goes_on && simulation.asks_for_other_cut(checkpoint);
     }
@@ -79,6 +87,7 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
     using clock = std::chrono::steady_clock;
     if (!options.restarted) watcher.on_frame(simulation);
     GoodState good;
+    good.run = options.run;
     good.keep(simulation);
     bool before_end = false;  // the good state is the one before the steps that are shortened for the end
     while (!simulation.finished()) {
@@ -101,7 +110,7 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
             put_ended(good.state, simulation.end_time());
             good.state.write(checkpoint_file(options.folder));
         } else if (asked || stop) {
-            save(simulation, options.folder, !stop && !finished);
+            save(simulation, options.folder, options.run, !stop && !finished);
         }
         if (stop) return Ending::interrupted;
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 namespace weir::sim {
 
@@ -20,6 +21,7 @@ enum class Ending { finished, interrupted };
 
 struct LoopOptions {
     std::filesystem::path folder;  // of checkpoints
+    std::string run;               // that they are of (sim/run_id.hpp); empty: they do not say
     /// Steps; 0: only when the run ends early. No step is changed for it. That of the end is of the state before the steps that are
     /// shortened for the end: continued to a later one, the run is bit for bit the one that had it from the start.
     std::int64_t checkpoint_every = 0;

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,6 +20,24 @@ namespace weir::test {
 inline std::string text_of(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// The rows of a CSV file by the names of its columns, without empty cells.
+inline std::vector<std::map<std::string, double>> rows_of(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    std::string line, cell;
+    std::vector<std::string> names;
+    std::vector<std::map<std::string, double>> rows;
+    while (std::getline(file, line)) {
+        std::istringstream cells(line);
+        if (!names.empty()) rows.emplace_back();
+        for (std::size_t i = 0; std::getline(cells, cell, ','); ++i)
+            if (rows.empty())
+                names.push_back(cell);
+            else if (!cell.empty())
+                rows.back()[names.at(i)] = std::stod(cell);
+    }
+    return rows;
 }
 
 /// build/<preset>/weir with arguments, its output in a file. Runs until wait() or the destructor, which kills it.
@@ -74,13 +94,15 @@ private:
     long most_kilobytes_ = 0;
 };
 
-/// Every file below `a` but run.json (it holds milliseconds) and checkpoints has a twin below `b` with the same bytes, and none is missing.
-/// Returns the first that differs; empty where all agree.
+/// Every file below `a` but run.json and timings.csv (they hold milliseconds) and checkpoints has a twin below `b` with the same bytes, and
+/// none is missing. Returns the first that differs; empty where all agree.
 inline std::string first_difference(const std::filesystem::path& a, const std::filesystem::path& b) {
     for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}})
         for (const auto& entry : std::filesystem::recursive_directory_iterator(from)) {
             const auto name = std::filesystem::relative(entry.path(), from);
-            if (!entry.is_regular_file() || name == "run.json" || name.extension() == ".weir" || name.extension() == ".log") continue;
+            if (!entry.is_regular_file() || name == "run.json" || name == "timings.csv" || name.extension() == ".weir" ||
+                name.extension() == ".log")
+                continue;
             if (!std::filesystem::exists(to / name)) return (to / name).string() + " is missing";
             if (text_of(entry.path()) != text_of(to / name)) return name.string() + " differs";
         }

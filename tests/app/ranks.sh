@@ -31,10 +31,12 @@ ends() {
     [ "$code" -eq "$wanted" ] || fail "ended with $code, not $wanted: $*"
 }
 says() { grep -q -- "$1" "$work/log" || fail "did not say: $1"; }
-# alike ONE OTHER: the same files with the same bytes, but for run.json, which holds milliseconds
+# files_differ ONE OTHER [EXCEPT]: those that do, but for run.json and timings.csv, which hold milliseconds
+files_differ() { diff -rq --exclude run.json --exclude timings.csv ${3:+--exclude "$3"} "$1" "$2"; }
+# alike ONE OTHER: the same files with the same bytes
 alike() {
     local difference
-    difference=$(diff -rq --exclude run.json "$1" "$2") && [ -e "$2/run.json" ] || fail "$2 is not as $1: $difference"
+    difference=$(files_differ "$1" "$2") && [ -e "$2/run.json" ] || fail "$2 is not as $1: $difference"
 }
 # compare NAME "RANKS THREADS, ..." SCENE [--set ...]: each against one process with one thread
 compare() {
@@ -55,7 +57,7 @@ in_two_parts() {
     ends 0 over 3 "$weir" run "$@" --checkpoint-every 1000 --quiet --out parts --set time.end="$middle"
     ends 0 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out whole --set time.end="$end"
     ends 0 over 2 "$weir" run --restart parts --checkpoint-every 1000 --quiet --set time.end="$end"
-    diff -rq --exclude run.json --exclude checkpoint.weir whole parts >log || fail "a run in two parts is another"
+    files_differ whole parts checkpoint.weir >log || fail "a run in two parts is another"
 }
 
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
@@ -91,7 +93,7 @@ holds_whole() { grep -q '"storage":"every rank holds whole grids"' "$1/run.json"
 # ends_steady RUN: the last run, and as many steps of this one, which were some
 ends_steady() {
     says "steady at t = "
-    [ "$(grep -c '"step":' "$1/run.json")" -gt 2 ] || fail "$1 was steady from the start"
+    [ "$(wc -l <"$1/steps.csv")" -gt 3 ] || fail "$1 was steady from the start"
 }
 # what was measured of a run, without times
 measured() { grep -o '"measured": {[^}]*}' "$1/run.json" | tr '{,}' '\n\n\n' | grep -v '"ms_per_step"\|"seconds'; }
@@ -207,7 +209,7 @@ water_3d)
     holds_own flip-4-2
     compare viscous "2 1,2 2,3 1,3 2,4 1,4 2" "$water_deep" $viscous "${probes_deep[@]}"
     holds_own viscous-4-2
-    grep -q '"viscous_iterations"' viscous/run.json || fail "friction took no iterations"
+    grep -q '"viscous_iterations":{' viscous/run.json || fail "friction took no iterations"
     ;;
 water_schemes)
     compare grid "3 1" "$water" "${frictionless[@]}" --set scheme.transfer=grid --set scheme.trace=rk3
@@ -734,7 +736,7 @@ petsc) # shares its rows: within the tolerance what multigrid finds in one proce
             END { printf "%d rows, differ by %g of %g\n", rows, worst, largest; exit !(rows > 2 && !other && largest > 0 && worst <= 1e-6 * largest) }' >log ||
             fail "$2 is not near $1"
     }
-    first_iterations() { grep -o '"iterations":[0-9]*' "$1"/run.json | head -n 1 | cut -d: -f2; }
+    first_iterations() { sed -n 2p "$1"/steps.csv | cut -d, -f8; }
     each() { # NAME SCENE [--set ...]
         local name=$1 method ranks
         shift
@@ -845,7 +847,7 @@ signals)
     says "interrupted at step"
     ends 0 over 2 "$weir" run --restart asked --quiet --set time.end=0.3
     ends 0 "$weir" run "$flat" "${long[@]}" --quiet --threads 1 --set time.end=0.3 --out straight
-    diff -rq --exclude run.json --exclude checkpoint.weir straight asked >log || fail "an interrupted run is another"
+    files_differ straight asked checkpoint.weir >log || fail "an interrupted run is another"
     # one is killed: all are gone, and what was written stays whole
     begin killed
     kill -9 "$(ranks_of killed | tail -n 1)"
@@ -858,6 +860,32 @@ signals)
         cmp "straight/${frame#killed/}" "$frame" >log || fail "a finished frame is another"
     done
     ends 0 "$weir" run --restart killed --threads 1 --quiet --set time.end=0.3
-    diff -rq --exclude run.json --exclude checkpoint.weir straight killed >log || fail "the last checkpoint of a killed run continues otherwise"
+    files_differ straight killed checkpoint.weir >log || fail "the last checkpoint of a killed run continues otherwise"
+    # a folder has one run at a time, of one process or of several
+    begin taken
+    ends 2 over 2 "$weir" run "$flat" --quiet --out taken
+    says "taken: another run writes into this folder (process "
+    ends 2 "$weir" run "$flat" --quiet --out taken
+    kill -USR1 "$(ranks_of taken | tail -n 1)"
+    wait "$started"
+    ends 0 over 2 "$weir" run "$flat" --quiet --threads 1 --set time.end=0.01 --out taken
+    ;;
+busy)
+    busy=()
+    # beside busy processes ranks that wait for one another sleep: they work for about as long as one process, which polls for none
+    for _ in 1 2; do (while :; do :; done) & busy+=($!); done
+    trap 'kill "${busy[@]}"; rm -rf "$work"' EXIT
+    seconds_of() { # COMMAND...: of the processor's time, of all its processes
+        local TIMEFORMAT=%U
+        { time ends 0 "$@" 2>&3; } 3>&2 2>seconds
+        cat seconds
+    }
+    one=$(seconds_of "$weir" run "$flat" --set time.end=0.3 --quiet --threads 1 --out one)
+    two=$(seconds_of over 2 "$weir" run "$flat" --set time.end=0.3 --quiet --threads 1 --out two)
+    echo "$one s of one process, $two s of two ranks"
+    alike one two
+    grep -q '"busy_seconds":\[' two/run.json || fail "run.json does not tell how long others were busy"
+    # each rank starts, and does what all do: 1 s. Polls of 2 ms each time they wait took 20 times as long as the work.
+    awk "BEGIN { exit !($two < 5 * $one + 1) }" || fail "two ranks worked for $two s, and one process for $one s"
     ;;
 esac

@@ -25,6 +25,12 @@ int run(const std::vector<std::string>& arguments, const fs::path& log) {
     return code;
 }
 
+/// Removes what a killed run was writing when it died.
+void remove_parts(const fs::path& out) {
+    for (const auto& entry : fs::recursive_directory_iterator(out))
+        if (entry.path().extension() == ".part") fs::remove(entry.path());
+}
+
 /// The uninterrupted run on one thread, made once and shared.
 const fs::path& whole_run(const std::string& name) {
     static TemporaryFolder folder;
@@ -43,8 +49,12 @@ TEST("a run ends with exit 0, complete series that VTK reads, probes, and a run.
         EXPECT_GE(weir::test::read_whole_series(out / "grid.pvd"), 7) << name;
         const auto j = nlohmann::json::parse(text_of(out / "run.json"));
         EXPECT_EQ(j["status"], "finished");
-        EXPECT_GT(j["steps"].size(), 10u);
-        EXPECT_FALSE(j["steps"][3]["passes"].empty());
+        EXPECT_GT(j["steps"]["count"], 10);
+        EXPECT_FALSE(j["steps"]["milliseconds"].empty());
+        const auto rows = weir::test::rows_of(out / "steps.csv");
+        EXPECT_EQ(j["steps"]["count"], rows.size());
+        EXPECT_EQ(j["steps"]["columns"]["t [s]"]["max"], rows.back().at("t [s]"));
+        EXPECT_EQ(weir::test::rows_of(out / "timings.csv").size(), rows.size());
     }
     EXPECT_EQ(weir::test::read_whole_series(whole_run("water") / "markers.pvd"), 9);
     EXPECT_TRUE(fs::exists(whole_run("water") / "probes/gauge.csv"));
@@ -170,8 +180,9 @@ TEST("Ctrl-C ends a run with its frame, exit 130 and a checkpoint; --restart the
         EXPECT_EQ(nlohmann::json::parse(text_of(out / "run.json"))["status"].get<std::string>().substr(0, 11), "interrupted");
         run({"run", "--restart", out, "--threads", "1"}, folder.path() / "log2");
         EXPECT_EQ(weir::test::first_difference(whole_run(name), out), "") << name;
-        EXPECT_EQ(nlohmann::json::parse(text_of(out / "run.json"))["steps"].size(),
-                  nlohmann::json::parse(text_of(whole_run(name) / "run.json"))["steps"].size());
+        const auto summary = [](const fs::path& run) { return nlohmann::json::parse(text_of(run / "run.json"))["steps"]["columns"]; };
+        EXPECT_EQ(summary(out), summary(whole_run(name)));
+        EXPECT_EQ(weir::test::rows_of(out / "timings.csv").size(), weir::test::rows_of(out / "steps.csv").size());
     }
 }
 
@@ -194,10 +205,126 @@ TEST("a run killed at any moment (kill -9) leaves a readable series; its last ch
         ASSERT_EQ(first.wait(), 128 + SIGKILL);
         EXPECT_GE(weir::test::read_whole_series(out / "grid.pvd"), 3);
         run({"run", "--restart", out, "--threads", "1"}, folder.path() / "log2");
-        for (const auto& entry : fs::recursive_directory_iterator(out))  // what was being written when it died
-            if (entry.path().extension() == ".part") fs::remove(entry.path());
+        remove_parts(out);
         EXPECT_EQ(weir::test::first_difference(whole_run(name), out), "") << name;
     }
+}
+
+/// A run of the water that goes on for a while, with another gravity where `more` says so.
+std::vector<std::string> long_run(const fs::path& out, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"run", scene("water"), "--out", out, "--threads", "1", "--set", "time.end=100.0"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+TEST("a checkpoint continues no other run: a new run in its folder gives it another name, killed before its own first one or not") {
+    TemporaryFolder folder;
+    const auto out = folder.path() / "out";
+    run({"run", scene("water"), "--out", out, "--threads", "1", "--checkpoint-every", "5"}, folder.path() / "log");
+    const std::string old = text_of(out / "checkpoint.weir");
+    fs::remove(out / "frames/markers_000001.vtp");  // the second run writes it again
+    Process second(long_run(out, {"--set", "effects.gravity.g=[0.0,-1.0]"}), folder.path() / "log");
+    second.wait_for(out / "frames/markers_000001.vtp");
+    second.signal(SIGKILL);
+    ASSERT_EQ(second.wait(), 128 + SIGKILL);
+    EXPECT_NE(second.said().find("earlier_checkpoint.weir"), std::string::npos) << second.said();
+
+    const std::string frame = text_of(out / "frames/markers_000001.vtp"), series = text_of(out / "grid.pvd");
+    Process none({"run", "--restart", out, "--threads", "1"}, folder.path() / "log2");
+    EXPECT_EQ(none.wait(), 2) << none.said();
+    EXPECT_NE(none.said().find("has no checkpoint to continue from"), std::string::npos) << none.said();
+    EXPECT_TRUE(text_of(out / "earlier_checkpoint.weir") == old);  // and nothing is lost
+
+    const auto id = nlohmann::json::parse(text_of(out / "run.json"))["run"].get<std::string>(),
+               old_id = nlohmann::json::parse(text_of(whole_run("water") / "run.json"))["run"].get<std::string>();
+    EXPECT_NE(id, old_id);
+    Process other({"run", "--restart", out / "earlier_checkpoint.weir", "--threads", "1", "--set", "time.end=0.5"}, folder.path() / "log3");
+    EXPECT_EQ(other.wait(), 2) << other.said();
+    for (const auto& name : {id, old_id, out.string()}) EXPECT_NE(other.said().find(name), std::string::npos) << other.said();
+    EXPECT_TRUE(text_of(out / "frames/markers_000001.vtp") == frame && text_of(out / "grid.pvd") == series);
+
+    // back under its name it is refused too, and continues in a folder of its own
+    fs::rename(out / "earlier_checkpoint.weir", out / "checkpoint.weir");
+    Process renamed({"run", "--restart", out, "--threads", "1", "--set", "time.end=0.5"}, folder.path() / "log4");
+    EXPECT_EQ(renamed.wait(), 2) << renamed.said();
+    run({"run", "--restart", out / "checkpoint.weir", "--out", folder.path() / "new", "--threads", "1", "--set", "time.end=0.5"},
+        folder.path() / "log5");
+}
+
+TEST("a run ended at any moment of its start, in a folder of another, leaves either run to continue, and never a mixture") {
+    TemporaryFolder folder;
+    const auto first = folder.path() / "first", out = folder.path() / "out";
+    run({"run", scene("water"), "--out", first, "--threads", "1", "--checkpoint-every", "5"}, folder.path() / "log");
+    const auto whole = folder.path() / "whole";
+    run({"run", scene("water"), "--out", whole, "--threads", "1", "--set", "time.end=0.5"}, folder.path() / "log");
+    int of_first = 0, of_none = 0;
+    for (int microseconds = 0; of_none < 4 && microseconds < 2000000; microseconds += 12000) {
+        fs::remove_all(out);
+        fs::copy(first, out, fs::copy_options::recursive);
+        Process second(long_run(out, {"--set", "effects.gravity.g=[0.0,-1.0]"}), folder.path() / "log");
+        usleep(static_cast<useconds_t>(microseconds));
+        second.signal(SIGKILL);
+        second.wait();
+        Process again({"run", "--restart", out, "--threads", "1", "--set", "time.end=0.5"}, folder.path() / "log2");
+        const int code = again.wait();
+        EXPECT_TRUE(code == 0 || code == 2) << again.said();
+        remove_parts(out);
+        EXPECT_EQ(code == 0 ? weir::test::first_difference(whole, out) : "", "") << microseconds;
+        ++(code == 0 ? of_first : of_none);
+    }
+    EXPECT_GT(of_first, 0);  // at 0 it had not begun
+    EXPECT_EQ(of_none, 4);
+    std::printf("%d continued the first run, %d had nothing to continue\n", of_first, of_none);
+}
+
+TEST(
+    "two runs do not share a folder: the second ends with exit 2, names folder and process, and changes nothing; the folder is free "
+    "after") {
+    TemporaryFolder folder;
+    const auto out = folder.path() / "out";
+    Process first(long_run(out), folder.path() / "log");
+    first.wait_for(out / "probes/gauge.csv");
+    const std::string log = text_of(out / "run.json");
+    for (const bool restarts : {false, true}) {
+        auto words = long_run(out, {"--set", "effects.gravity.g=[0.0,-1.0]"});
+        if (restarts) {
+            run({"run", scene("water"), "--out", folder.path() / "other", "--threads", "1", "--checkpoint-every", "5"},
+                folder.path() / "log");
+            words.insert(words.end(), {"--restart", folder.path() / "other/checkpoint.weir"});
+        }
+        Process second(words, folder.path() / "log2");
+        EXPECT_EQ(second.wait(), 2) << second.said();
+        EXPECT_NE(second.said().find(out.string() + ": another run writes into this folder (process "), std::string::npos) << second.said();
+        EXPECT_EQ(nlohmann::json::parse(log)["run"], nlohmann::json::parse(text_of(out / "run.json"))["run"]);
+    }
+    first.signal(SIGKILL);  // the kernel releases the lock
+    first.wait();
+    fs::remove_all(out / "frames");  // it may have died before its series named the last one
+    run({"run", scene("water"), "--out", out, "--threads", "1"}, folder.path() / "log3");
+    EXPECT_FALSE(fs::exists(out / ".weir_lock"));
+    EXPECT_EQ(weir::test::first_difference(whole_run("water"), out), "");
+}
+
+TEST("neither memory nor run.json grows with the number of steps") {
+    TemporaryFolder folder;
+    std::ofstream(folder.path() / "tiny.toml")
+        << "solver = \"mac\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 1.0, dt = 0.001 }\n"
+           "initial.velocity = { name = \"random\", speed = 0.1 }\noutput = { every = 100.0 }\n";
+    const auto taken = [&](const std::string& end, std::size_t steps) {
+        const auto out = folder.path() / end;
+        Process process({"run", folder.path() / "tiny.toml", "--out", out, "--threads", "1", "--quiet", "--set", "time.end=" + end},
+                        folder.path() / "log");
+        EXPECT_EQ(process.wait(), 0) << process.said();
+        const auto j = nlohmann::json::parse(text_of(out / "run.json"));
+        EXPECT_EQ(j["steps"]["count"], steps);
+        EXPECT_EQ(weir::test::rows_of(out / "steps.csv").size(), steps);
+        return std::pair{process.most_memory(), static_cast<double>(fs::file_size(out / "run.json"))};
+    };
+    const auto few = taken("1.0", 1000), many = taken("10.0", 10000);
+    std::printf("1,000 steps: %.1f MB, run.json %.0f bytes; 10,000 steps: %.1f MB, run.json %.0f bytes\n", few.first / 1e6, few.second,
+                many.first / 1e6, many.second);
+    EXPECT_LT(many.first - few.first, 2e6);      // pages of the allocator; rows in memory were 1.6 kB per step, 15 MB
+    EXPECT_LT(many.second - few.second, 200.0);  // digits of the summary; 392 bytes per step, 3.5 MB
 }
 
 TEST("a disk that fills is a clear error with exit 2, and the earlier frames stay readable") {
@@ -267,7 +394,7 @@ TEST("frames, checkpoints and probes change no step: the last frame and the step
         if (saves) words.insert(words.end(), {"--checkpoint-every", "2"});
         run(words, folder.path() / "log");
         std::vector<double> dt;
-        for (const auto& step : nlohmann::json::parse(text_of(out / "run.json"))["steps"]) dt.push_back(step["dt"]);
+        for (const auto& step : weir::test::rows_of(out / "steps.csv")) dt.push_back(step.at("dt [s]"));
         const std::string pvd = text_of(out / "grid.pvd");
         const auto file = pvd.rfind("file=\"") + 6;
         return std::pair{dt, text_of(out / pvd.substr(file, pvd.find('"', file) - file))};

@@ -28,9 +28,11 @@ std::string no_ranks() {
 
 struct Run {
     json log;
+    std::vector<std::map<std::string, double>> rows;  // of steps.csv, without empty cells
     std::int64_t sent(const char* what, int rank) const { return log["ranks"][what][static_cast<std::size_t>(rank)].get<std::int64_t>(); }
-    std::size_t steps() const { return log["steps"].size(); }
-    int iterations(std::size_t step, const char* of = "iterations") const { return log["steps"][step].value(of, 0); }
+    std::size_t steps() const { return rows.size(); }
+    double value(std::size_t step, const std::string& of) const { return rows[step].contains(of) ? rows[step].at(of) : 0; }
+    int iterations(std::size_t step, const char* of = "iterations") const { return static_cast<int>(value(step, of)); }
 };
 
 class Runs {
@@ -48,7 +50,7 @@ public:
             WEIR_SOURCE_DIR, ranks, WEIR_EXECUTABLE, (folder_.path() / "scene.toml").string(), out.string(), end,
             (folder_.path() / "log").string());
         EXPECT_EQ(std::system(command.c_str()), 0) << test::text_of(folder_.path() / "log");
-        return {json::parse(test::text_of(out / "run.json"), nullptr, false)};
+        return {json::parse(test::text_of(out / "run.json"), nullptr, false), test::rows_of(out / "steps.csv")};
     }
 
 private:
@@ -62,7 +64,7 @@ Traffic told(const scene::Scene& scene, int ranks, int rank, const Run& run, std
     const RankOf of{.cut = sim::shares_of(scene, ranks).cut, .rank = rank, .ranks = ranks};
     Traffic sum;
     for (std::size_t step = first; step < run.steps(); ++step) {
-        const double cfl = run.log["steps"][step].value("cfl", 0.0);
+        const double cfl = run.value(step, "cfl");
         const StepTraffic sent = kind.sends(scene, of,
                                             {.iterations = run.iterations(step),
                                              .cells_crossed = cfl > 0 ? 1 : 0,

@@ -1,6 +1,7 @@
 #include "sim/loop.hpp"
 
 #include "sim/probe_files.hpp"
+#include "sim/run_id.hpp"
 #include "support/fake_solver.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
@@ -35,6 +36,23 @@ TEST("a run tells of each step, and of frames at the start, at each output time 
     EXPECT_EQ(weir::sim::run(simulation, counter, {}), weir::sim::Ending::finished);
     EXPECT_EQ(counter.steps, simulation.steps());
     EXPECT_EQ(counter.frames, (std::vector<real>{0, 0.25, 0.5, 0.75, 1.0}));
+}
+
+TEST("checkpoints of a run have its id, which is that of the scene as understood: a comment is no other scene, another end is") {
+    auto simulation = fake_simulation(scene), same = fake_simulation(scene + "# a comment\n");
+    EXPECT_EQ(weir::sim::run_id(simulation.scene()), weir::sim::run_id(same.scene()));
+    EXPECT_NE(weir::sim::run_id(simulation.scene()), weir::sim::run_id(fake_simulation("time = { end = 2.0 }").scene()));
+    Counter counter;
+    for (const int every : {3, 1000}) {  // the second at the end: the state before the steps that were shortened for it
+        TemporaryFolder folder;
+        auto run = fake_simulation(scene);
+        weir::sim::LoopOptions options;
+        options.folder = folder;
+        options.checkpoint_every = every;
+        options.run = "0123";
+        weir::sim::run(run, counter, options);
+        EXPECT_EQ(weir::sim::run_id_of(weir::Checkpoint::read(weir::sim::checkpoint_file(folder))), "0123");
+    }
 }
 
 TEST("asked once to stop, a run ends with its next frame; asked twice, with the step; both save where they continue bit for bit") {

@@ -1,0 +1,70 @@
+#include "app/owner.hpp"
+
+#include "core/error.hpp"
+#include "core/slabs.hpp"
+#include "output/atomic_file.hpp"
+#include "sim/loop.hpp"
+#include "sim/run_id.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+namespace weir::app {
+
+namespace {
+
+/// The id in run.json; empty where there is none, as in folders of weir before it had ids.
+std::string run_in(const std::filesystem::path& folder) {
+    std::ifstream file(folder / "run.json");
+    const auto j = nlohmann::json::parse(file, nullptr, false);
+    return j.is_object() && j.contains("run") && j["run"].is_string() ? j["run"].get<std::string>() : "";
+}
+
+void move_away(const std::filesystem::path& checkpoint, bool quiet) {
+    if (!std::filesystem::exists(checkpoint)) return;
+    std::error_code failed;
+    std::filesystem::rename(checkpoint, earlier(checkpoint), failed);
+    if (failed) throw OutputError("cannot rename " + checkpoint.string() + ": " + failed.message());
+    if (!quiet) std::fprintf(stderr, "%s is of an earlier run: it is %s now\n", checkpoint.c_str(), earlier(checkpoint).filename().c_str());
+}
+
+}  // namespace
+
+std::unique_ptr<output::FolderLock> lock_folder(const std::filesystem::path& folder) {
+    std::unique_ptr<output::FolderLock> lock;
+    by_first_rank([&] {
+        output::require_writable(folder);
+        lock = std::make_unique<output::FolderLock>(folder);
+        if (!lock->unlocked().empty())
+            std::fprintf(stderr, "%s: the file system has no locks (%s): nothing keeps a second run out of this folder\n", folder.c_str(),
+                         lock->unlocked().c_str());
+    });
+    return lock;
+}
+
+std::filesystem::path earlier(const std::filesystem::path& checkpoint) {
+    return checkpoint.parent_path() / ("earlier_" + checkpoint.filename().string());
+}
+
+std::string own_as_new(const std::filesystem::path& folder, const scene::Scene& scene, bool quiet) {
+    by_first_rank([&] {
+        for (const auto& checkpoint : {sim::checkpoint_file(folder), sim::last_good_file(folder)}) move_away(checkpoint, quiet);
+    });
+    return sim::run_id(scene);
+}
+
+std::string own_as_continued(const std::filesystem::path& folder, const scene::Scene& scene, const std::string& continued) {
+    bool holds_run = false;
+    by_first_rank([&] {
+        const std::string there = run_in(folder);
+        holds_run = std::filesystem::exists(folder / "run.json");
+        if (!there.empty() && there != continued)
+            throw BadInput(folder.string() + ": the files there are of run " + there + ", and the checkpoint is of run " + continued +
+                           ": continue in the folder of its own run, or in a new one (--out)");
+    });
+    return slabs().largest(holds_run ? 1 : 0) != 0 ? continued : sim::run_id(scene);
+}
+
+}  // namespace weir::app

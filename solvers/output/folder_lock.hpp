@@ -1,0 +1,32 @@
+// One run at a time in a folder: a lock on a file in it, which the kernel releases when the process ends, however it ends.
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace weir::output {
+
+class FolderLock {
+public:
+    static constexpr const char* file_name = ".weir_lock";
+
+    /// Takes the lock. Throws BadInput, with the process that has it, where another one has it. Where the file system has no locks the
+    /// folder is used without one, and unlocked() says why.
+    explicit FolderLock(const std::filesystem::path& folder);
+    /// Removes the file and releases the lock.
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+    /// Why there is no lock; empty where there is one.
+    const std::string& unlocked() const { return unlocked_; }
+
+private:
+    bool try_once();
+    [[noreturn]] void refuse() const;
+
+    std::filesystem::path folder_, path_;
+    int descriptor_ = -1;
+    std::string unlocked_;
+};
+
+}  // namespace weir::output

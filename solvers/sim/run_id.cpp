@@ -1,0 +1,37 @@
+#include "sim/run_id.hpp"
+
+#include "sim/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace weir::sim {
+
+namespace {
+
+constexpr const char* block = "sim.run";
+
+/// FNV-1a over 64 bits.
+std::uint64_t digest(std::string_view text) {
+    std::uint64_t hash = 0xcbf29ce484222325ull;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+    return hash;
+}
+
+}  // namespace
+
+std::string run_id(const scene::Scene& scene) { return fmt::format("{:016x}", digest(scene::to_json(scene.root()))); }
+
+void put_run_id(Checkpoint& to, const std::string& run) { to.put(block, std::span<const char>(run)); }
+
+std::string run_id_of(const Checkpoint& checkpoint) {
+    if (!checkpoint.has(block)) return run_id(scene_of(checkpoint));
+    std::vector<char> text;
+    checkpoint.get(block, text);
+    return {text.begin(), text.end()};
+}
+
+}  // namespace weir::sim
