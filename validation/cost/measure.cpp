@@ -70,16 +70,6 @@ private:
     int before_ = 0;
 };
 
-/// Medians, so that one disturbed run says nothing.
-void take_times(CostPoint& point, std::vector<Timing> runs) {
-    std::sort(runs.begin(), runs.end(), [](const Timing& a, const Timing& b) { return a.computing < b.computing; });
-    const Timing& median = runs[(runs.size() - 1) / 2];
-    point.repeats = static_cast<int>(runs.size());
-    point.seconds_per_second = median.seconds_per_second();
-    point.ms_per_step = median.ms_per_step();
-    if (median.computing > 0) point.spread = (runs.back().computing - runs.front().computing) / median.computing;
-}
-
 bool wants_more(const MeasureOptions& options, int done, double spent) {
     if (done == 0) return true;
     if (done < options.repeats) return spent < options.enough_seconds;
@@ -125,6 +115,15 @@ CostPoint measure_point(const Study& study, const Variant& method, std::size_t i
 }
 
 }  // namespace
+
+void take_times(CostPoint& point, std::vector<Timing> runs) {
+    std::sort(runs.begin(), runs.end(), [](const Timing& a, const Timing& b) { return a.computing < b.computing; });
+    const Timing& median = runs[(runs.size() - 1) / 2];
+    point.repeats = static_cast<int>(runs.size());
+    point.seconds_per_second = median.seconds_per_second();
+    point.ms_per_step = median.ms_per_step();
+    if (median.computing > 0) point.spread = (runs.back().computing - runs.front().computing) / median.computing;
+}
 
 Timing timing_of(const RunRecord& record) {
     Timing t;

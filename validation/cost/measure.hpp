@@ -48,6 +48,8 @@ struct Timing {
     double seconds_per_second() const { return simulated > 0 ? computing / simulated : 0; }
 };
 Timing timing_of(const RunRecord& record);
+/// Prices of a setting's repeats: medians, so that one disturbed run says nothing; of an even number the faster of the middle two.
+void take_times(CostPoint& point, std::vector<Timing> runs);
 
 struct StudyResult {
     Study study;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <utility>
 
 namespace weir::test {
 namespace {
@@ -70,6 +71,22 @@ TEST_IN_2D_AND_3D("water at rest on tall cells stays at rest") {
         // g dt times the solver's tolerance times the square root of the number of unknowns, for the 2-norm against the largest
         EXPECT_LT(std::sqrt(2 * integral(water, "kinetic_energy") / (1000 * volume)), 20 * 9.81 * 0.01 * 1e-13 * 100) << columns;
         EXPECT_NEAR(integral(water, "volume"), volume, 1e-10 * volume) << columns;
+    }
+}
+
+TEST_IN_2D_AND_3D("below an open lid that water reaches the pressure is that of its depth below the lid") {
+    for (const auto& columns : divisions) {
+        TallCells<D> water(
+            scene_of(tank<D>("{ shape = \"box\", min = " + list({"0", "0", "0"}, D) + ", max = " + list({"0.5", "1.5", "0.3125"}, D) + " }",
+                             "sides.y_max = \"outflow\"\nscheme = { " + columns + ", poisson = { tolerance = 1e-13 } }")));
+        water.step(0.01);
+        const auto p = std::as_const(water).fields().find("", "pressure")->data[0];
+        const GridView grid = std::as_const(water).fields().grid;
+        for (std::size_t i = 0; i < p.size(); ++i) {
+            const auto row = static_cast<real>(i / 16 % 48);  // 16 cells along x, 48 along y
+            // the tolerance of a solve of the square of a tank of 48 cells, of the largest pressure
+            ASSERT_NEAR(p[i], 9810 * (1.5 - (row + 0.5) * grid.spacing[1]), 1e-13 * 48 * 48 * 9810 * 1.5) << columns << ' ' << i;
+        }
     }
 }
 

@@ -60,6 +60,22 @@ std::string refusal(const std::string& text) {
 
 }  // namespace
 
+TEST("the price of a setting is the median of its repeats, not the fastest nor the mean") {
+    CostPoint point;
+    take_times(point, {{.computing = 9, .simulated = 2, .steps = 100},
+                       {.computing = 1, .simulated = 2, .steps = 100},
+                       {.computing = 2, .simulated = 2, .steps = 100}});
+    EXPECT_EQ(point.repeats, 3);
+    EXPECT_EQ(point.seconds_per_second, 1);
+    EXPECT_EQ(point.ms_per_step, 20);
+    EXPECT_EQ(point.spread, 4);
+    take_times(point, {{.computing = 9, .simulated = 2, .steps = 100},
+                       {.computing = 3, .simulated = 2, .steps = 100},
+                       {.computing = 1, .simulated = 2, .steps = 100},
+                       {.computing = 5, .simulated = 2, .steps = 100}});
+    EXPECT_EQ(point.seconds_per_second, 1.5);
+}
+
 TEST("a study is read at the asked size; what is wrong in it is named") {
     const Study full = parse_study(head + methods, "cost.toml", "cases/sample", Size::full);
     const Study ci = parse_study(head + methods, "cost.toml", "cases/sample", Size::ci);

@@ -66,6 +66,24 @@ TEST_IN_2D_AND_3D("a still pool conducts as the exact slab, and lets nothing thr
                 1e-9 * std::abs(integral(water, "heat")));  // the level set's volume is a round number to its own rounding
 }
 
+TEST_IN_2D_AND_3D("a shallow pool follows surroundings that grow warmer, as a lump with a surface does") {
+    // rho c d dT/dt = h (T_a(t) - T), T_a = 320 + 40 t / 2 tau: T = 320 + 20/tau (t - tau (1 - exp(-t/tau))).
+    set_threads(1);
+    const real tau = 1000 * 4000 * 0.01 / 0.5, end = 2 * tau;
+    water::Water<D> water(water_scene(
+        box(D, {"4", "8", "4"}, {"0.01", "0.02", "0.01"}) +
+        fmt::format("liquid = [ {{ shape = \"box\", min = {}, max = {} }} ]\n", list({"0.0", "0.0", "0.0"}, D),
+                    list({"0.01", "0.01", "0.01"}, D)) +
+        wax(fmt::format(
+            "initial = {{ temperature = {{ name = \"constant\", value = 320.0 }} }}\nheat = {{ surface_exchange = 0.5, ambient = {{ "
+            "keyframes = [ {{ t = 0.0, temperature = 320.0 }}, {{ t = {}, temperature = 360.0 }} ] }} }}\n",
+            end))));
+    for (int i = 0; i < 400; ++i) water.step(end / 400);
+    // The surface is warmer than the mean by the Biot number over three, 0.3%, and a step of tau/200 is of first order: 0.3%.
+    const real expected = 20 * (1 + std::exp(-2.0));
+    EXPECT_NEAR(field_of(water, "temperature")[0] - 320, expected, 0.006 * expected);
+}
+
 TEST("ice grows from a cold wall as Stefan says, and holds") {
     set_threads(1);
     const real cold = 280, rho = 1000, L = 3.34e5, k = 2.0, c = 2000;
