@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <system_error>
 
@@ -94,6 +95,9 @@ int guarded_run(int argc, char** argv) {
         return complain(error.what(), weir::exit_bad_input);
     } catch (const weir::OutputError& error) {
         return complain(error.what(), weir::exit_bad_input);
+    } catch (const std::filesystem::filesystem_error& error) {  // a looped link, a folder that may not be read
+        const std::string name = error.path1().empty() ? "" : error.path1().string() + ": ";
+        return complain((name + error.code().message()).c_str(), weir::exit_bad_input);
     } catch (const std::system_error& error) {  // standard output is full or gone
         return complain((std::string("cannot write: ") + error.what()).c_str(), weir::exit_bad_input);
     } catch (const std::bad_alloc&) {
