@@ -4,6 +4,10 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
+#include <algorithm>
+
+#include <sys/stat.h>
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,6 +133,123 @@ TEST("a film removes nothing of the user's, and takes its name whatever it begin
     EXPECT_NE(blocked.text.find("poster.png: this is a folder"), std::string::npos) << blocked.text;
     EXPECT_EQ(names_here(), (std::vector<std::string>{"-f.mp4", "-f.png", "100%d 'q'", "a 'run' 50% %d \"x\"", "poster.png", "user.mp4",
                                                       "user.mp4.frames", "user.png"}));
+}
+
+TEST("a damaged frame is named with exit 2, by pictures and films alike, and no file is left of them") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    fs::copy(tiny_run(), "run", fs::copy_options::recursive);
+    const std::string frame = "run/frames/grid_000002.vti", whole = text_of(frame);
+    const std::size_t data = whole.find("<AppendedData");
+    std::vector<std::string> damaged{"", "<VTKFile", whole.substr(0, data), whole.substr(0, whole.size() - 60)};
+    for (const std::size_t at :
+         {std::size_t{40}, whole.find("Extent") + 10, whole.find("NumberOfComponents=") + 20, data + 60, data + 90, data + 120}) {
+        damaged.push_back(whole);
+        damaged.back()[at] ^= 0x55;
+    }
+    for (const std::string& bytes : damaged) {
+        write(frame, bytes);
+        for (const std::vector<std::string>& words : {std::vector<std::string>{"picture", "run", "--size", "32", "--out", "a.png"},
+                                                      {"movie", "run", "--size", "32", "--out", "a.mp4"}}) {
+            if (words[0] == "movie" && std::system("ffmpeg -version > /dev/null 2>&1") != 0) continue;
+            const Answer answer = weir_says(words);
+            EXPECT_EQ(answer.code, 2) << answer.text;
+            EXPECT_NE(answer.text.find(frame), std::string::npos) << answer.text;
+        }
+    }
+    EXPECT_EQ(names_here(), std::vector<std::string>{"run"});
+}
+
+TEST("a run.json of any shape is refused with exit 2 by pictures, and says what it lacks") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    fs::copy(tiny_run(), "run", fs::copy_options::recursive);
+    for (const std::string text :
+         {"", "null", "[]", "{}", "7", "\"scene\"", "{\"scene\": null}", "{\"scene\": 3}", "{\"scene\": []}", "{\"scene\": {}}",
+          "{\"scene\": {\"source\": 1, \"file\": \"a\"}}", "{\"scene\": {\"source\": \"\", \"file\": \"a\", \"overrides\": {\"a\": 1}}}",
+          "{\"scene\": {\"source\": \"\", \"file\": \"a\", \"overrides\": [1]}}", "{\"scene\": {\"source\": \"\", \"file\": null}}",
+          "{\"scene\": {\"source\": \"x = 1\", \"file\": \"a.toml\"}}",
+          "{\"scene\": {\"source\": \"\", \"file\": \"a\", \"overrides\": [\"=\"]}}"}) {
+        write("run/run.json", text);
+        const Answer answer = weir_says({"picture", "run", "--out", "a.png"});
+        EXPECT_EQ(answer.code, 2) << text << ": " << answer.text;
+        EXPECT_FALSE(answer.text.empty()) << text;
+    }
+    EXPECT_EQ(names_here(), std::vector<std::string>{"run"});
+}
+
+TEST("a run goes on in its own domain: --restart with other cells, size or origin is refused, and no frame is touched") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    for (const std::string solver : {"smoke", "dam"}) {
+        const std::string scene = std::string(WEIR_SOURCE_DIR) + "/tests/app/scenes/" + solver + ".toml";
+        fs::remove_all("run");
+        ASSERT_EQ(weir_says({"run", scene, "--out", "run", "--threads", "1", "--checkpoint-every", "1", "--set", "time.end=0.02"}).code, 0);
+        const std::string before = text_of("run/grid.pvd") + text_of("run/particles.pvd");
+        for (const std::string change : {"grid.size=[3, 3]", "grid.origin=[0.5, 0]"}) {
+            const Answer answer = weir_says({"run", "--restart", "run", "--threads", "1", "--set", "time.end=0.04", "--set", change});
+            EXPECT_EQ(answer.code, 2) << change << ": " << answer.text;
+            EXPECT_NE(answer.text.find("a run goes on in its own domain"), std::string::npos) << answer.text;
+        }
+        EXPECT_EQ(text_of("run/grid.pvd") + text_of("run/particles.pvd"), before);
+        EXPECT_EQ(weir_says({"run", "--restart", "run", "--threads", "1", "--set", "time.end=0.04"}).code, 0);
+    }
+}
+
+TEST("OMP_NUM_THREADS of more threads than a thousand is refused with what is allowed") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    write("a.toml", tiny_scene);
+    const std::string before = getenv("OMP_NUM_THREADS") ? getenv("OMP_NUM_THREADS") : "1";
+    setenv("OMP_NUM_THREADS", "99999", 1);
+    const Answer answer = weir_says({"run", "a.toml", "--out", "out"});
+    setenv("OMP_NUM_THREADS", before.c_str(), 1);
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.text.find("OMP_NUM_THREADS=99999: a number of threads is 1 to 1024"), std::string::npos) << answer.text;
+    EXPECT_FALSE(fs::exists("out"));
+}
+
+TEST("a scene whose name is dots writes below out/, as one beside the folder that we are in does") {
+    TemporaryFolder folder;
+    fs::create_directory(folder.path() / "inner");
+    const Inside here(folder.path() / "inner");
+    write("...toml", tiny_scene), write("..toml", tiny_scene), write("../scene.toml", tiny_scene);
+    for (const std::string scene : {"...toml", "..toml", "../scene.toml"})
+        EXPECT_EQ(weir_says({"run", scene, "--threads", "1", "--quiet"}).code, 0) << scene;
+    EXPECT_EQ(names_here(), (std::vector<std::string>{"...toml", "..toml", "out"}));
+    EXPECT_TRUE(fs::exists("out/...toml/run.json"));
+    EXPECT_TRUE(fs::exists("out/..toml/run.json"));
+    EXPECT_TRUE(fs::exists("out/" + folder.path().filename().string() + "/run.json"));
+}
+
+TEST("meshes and terrain that are nothing, a looped link, a pipe or without end are refused at once with their place") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    fs::create_symlink("loop.stl", "loop.stl");
+    fs::create_symlink("/dev/zero", "endless.stl");
+    ASSERT_EQ(mkfifo("pipe.stl", 0600), 0);
+    for (const std::string file : {"", "loop.stl", "endless.stl", "pipe.stl", "."}) {
+        write("mesh.toml",
+              "solver = \"mac\"\ndim = 3\ngrid = { cells = [8, 8, 8], size = [1, 1, 1] }\ntime = { end = 0.02, dt = 0.01 }\n"
+              "initial.temperature = { name = \"constant\", value = 300.0 }\nsolids = [ { shape = \"mesh\", file = \"" +
+                  file + "\" } ]\n");
+        const Answer mesh = weir_says({"run", "mesh.toml", "--out", "out"});
+        EXPECT_EQ(mesh.code, 2) << file;
+        EXPECT_NE(mesh.text.find("mesh.toml:6:"), std::string::npos) << mesh.text;
+        write("terrain.toml", text_of(std::string(WEIR_SOURCE_DIR) + "/tests/input/bad/heightfield_grid_nowhere.toml"));
+        std::string scene = text_of("terrain.toml");
+        scene.replace(scene.find("terrain/nowhere.asc"), 19, file);
+        write("terrain.toml", scene);
+        const Answer terrain = weir_says({"run", "terrain.toml", "--out", "out"});
+        EXPECT_EQ(terrain.code, 2) << file;
+        EXPECT_NE(terrain.text.find("terrain.toml:6:"), std::string::npos) << terrain.text;
+    }
+    EXPECT_FALSE(fs::exists("out"));
+    fs::create_symlink("loop.toml", "loop.toml");
+    const Answer loop = weir_says({"run", "loop.toml"});
+    EXPECT_EQ(loop.code, 2);
+    EXPECT_NE(loop.text.find("loop.toml: "), std::string::npos) << loop.text;
+    EXPECT_EQ(loop.text.find("cannot write"), std::string::npos) << loop.text;
 }
 
 }  // namespace
