@@ -109,7 +109,7 @@ TEST_IN_2D_AND_3D("an object across a periodic seam makes the waves that it make
         auto solver = test::height_solver(columns(
             D,
             fmt::format("grid.periodic = [\"x\"{}]\ninitial.surface = \"0\"\nterrain = {{ kind = \"formula\", height = \"-0.6\" }}\n"
-                        "time.dt = 0.005\nfloats = [ {{ at = [{}, -0.12{}], size = [0.21, 0.2{}], density = 0.4 }} ]\n",
+                        "floats = [ {{ at = [{}, -0.12{}], size = [0.21, 0.2{}], density = 0.4 }} ]\n",
                         D == 3 ? ", \"z\"" : "", 0.3 + shift_x, D == 3 ? fmt::format(", {}", 1.5 - 20 * 1.5 / m + shift_z) : "",
                         D == 3 ? ", 0.19" : ""),
             n));
