@@ -115,6 +115,13 @@ TEST("formulas: precedence, functions, and where they are wrong") {
     EXPECT_EQ(f("x <= 2 ? 1 : 0", 2), 1);
 }
 
+TEST("a formula takes one value for each variable, looks at no more, and does with no fewer") {
+    const scene::Formula f("2*x", {"x"});
+    const real two[] = {3, 1e300}, none[] = {0};
+    EXPECT_EQ(f(two), 6);  // under the address sanitizer: nothing is written beyond the one variable
+    EXPECT_THROW(f(std::span<const real>(none, 0)), std::logic_error);
+}
+
 TEST("a formula that threads ask at once answers each of them") {
     const scene::Formula f("x^2 + sin(z)", {"x", "z"});
     constexpr int count = 200000;
