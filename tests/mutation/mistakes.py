@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import tomllib
 
@@ -265,15 +266,37 @@ def run_test(test, listed, number, limit):
     return "passes" if passes else "fails", time.monotonic() - begin, text
 
 
-def first_line_of(text):
+class Baseline:
+    """Each test without a mistake, once, when it is first asked for: its time, or None where it fails."""
+
+    def __init__(self, listed):
+        self.listed, self.times, self.locks, self.own = listed, {}, {}, threading.Lock()
+
+    def __call__(self, test):
+        with self.own:
+            lock = self.locks.setdefault(test, threading.Lock())
+        with lock:
+            if test not in self.times:
+                end, seconds, text = run_test(test, self.listed, 0, 900)
+                if end != "passes":
+                    print(f"{end} without any mistake: {test} {first_failure(text)}", flush=True)
+                self.times[test] = seconds if end == "passes" else None
+            return self.times[test]
+
+
+def first_failure(text):
     failed = re.findall(r"\[  FAILED  \] ([^\n(]+)", text)
     return failed[0].strip(" ,") if failed else ""
 
 
-def judge(m, listed, times, all_tests):
+def judge(m, baseline, all_tests):
+    """Quick tests first: cases only where no test has seen the mistake."""
     saw = []
-    for test in sorted(m.tests, key=lambda t: times[t]):
-        end, _, _ = run_test(test, listed, m.number, max(30, 10 * times[test]))
+    for test in sorted(m.tests, key=lambda t: (t.startswith("validate"), baseline.times.get(t) or 0)):
+        seconds = baseline(test)
+        if seconds is None:
+            continue
+        end, _, _ = run_test(test, baseline.listed, m.number, max(30, 10 * seconds))
         if end != "passes":
             saw.append(test + (" (hangs)" if end == "hangs" else ""))
             if not all_tests:
@@ -311,23 +334,14 @@ def main():
     write_tree(mistakes)
     broken = build(mistakes, given.jobs)
     chosen = [m for m in chosen if m not in broken]
-    listed, times, bad = commands(), {}, []
+    baseline = Baseline(commands())
+    results, not_run = [], []
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        names = sorted({t for m in chosen for t in m.tests})
-        for test, (end, seconds, text) in zip(names, pool.map(lambda t: run_test(t, listed, 0, 900), names)):
-            times[test] = seconds
-            if end != "passes":
-                print(f"fails without any mistake: {test} {first_line_of(text)}", flush=True)
-                bad.append(test)
-        print(f"{len(names)} tests, {len(bad)} of which fail without any mistake", flush=True)
-        for m in chosen:
-            m.tests = [t for t in m.tests if t not in bad]
-        results, not_run = [], []
 
         def one(m):
             if time.monotonic() - begin > 60 * given.minutes:
                 return m, None
-            return judge(m, listed, times, given.all_tests)
+            return judge(m, baseline, given.all_tests)
 
         for m, saw in pool.map(one, chosen):
             if saw is None:
@@ -343,6 +357,7 @@ def main():
     if given.table:
         given.table.write_text(f"# Mistakes and the tests that see them\n\nWritten by `tests/mutation/mistakes.py`: {summary}.\n\n{text}")
     print(summary)
+    bad = [t for t, seconds in baseline.times.items() if seconds is None]
     wrong = [m.name for m, saw in results if not saw and not m.known]
     found = [m.name for m, saw in results if saw and m.known]
     if wrong:
