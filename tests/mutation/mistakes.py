@@ -4,6 +4,7 @@ import argparse
 import concurrent.futures
 import dataclasses
 import fnmatch
+import hashlib
 import json
 import os
 import pathlib
@@ -289,10 +290,10 @@ def first_failure(text):
     return failed[0].strip(" ,") if failed else ""
 
 
-def judge(m, baseline, all_tests):
+def judge(m, tests, baseline, all_tests):
     """Quick tests first: cases only where no test has seen the mistake."""
     saw = []
-    for test in sorted(m.tests, key=lambda t: (t.startswith("validate"), baseline.times.get(t) or 0)):
+    for test in sorted(tests, key=lambda t: (t.startswith("validate"), baseline.times.get(t) or 0)):
         seconds = baseline(test)
         if seconds is None:
             continue
@@ -301,70 +302,97 @@ def judge(m, baseline, all_tests):
             saw.append(test + (" (hangs)" if end == "hangs" else ""))
             if not all_tests:
                 break
-    return m, saw
+    return saw
 
 
-def table(results, broken, not_run):
-    lines = ["| mistake | what is wrong | seen by |", "|---|---|---|"]
-    for m, saw in sorted(results, key=lambda r: r[0].name):
-        lines.append(f"| {m.name} | {m.wrong} | {', '.join(saw) if saw else '**survives**' + (': ' + m.known if m.known else '')} |")
-    for m in broken:
-        lines.append(f"| {m.name} | {m.wrong} | does not compile |")
-    for m in not_run:
-        lines.append(f"| {m.name} | {m.wrong} | not run |")
-    return "\n".join(lines) + "\n"
+def key_of(m):
+    return hashlib.sha256(json.dumps([m.file, m.within, m.before, m.after, m.kind, m.tests]).encode()).hexdigest()[:16]
+
+
+class Results:
+    """What was found, kept from call to call until an entry changes: by name, who saw it; nothing stands there of what was not run to its end."""
+
+    def __init__(self, fresh):
+        self.file = BUILD / "results.json"
+        self.kept = json.loads(self.file.read_text()) if self.file.is_file() and not fresh else {}
+
+    def keep(self, m, saw):
+        self.kept[m.name] = {"key": key_of(m), "saw": saw}
+        self.file.write_text(json.dumps(self.kept, indent=1))
+
+    def of(self, m):
+        found = self.kept.get(m.name)
+        return found["saw"] if found and found["key"] == key_of(m) else None
+
+
+def table(mistakes, results):
+    found = [(m, results.of(m)) for m in mistakes]
+    caught, run = sum(1 for _, saw in found if saw), sum(1 for _, saw in found if saw is not None)
+    broken = sum(1 for _, saw in found if saw == ["does not compile"])
+    summary = f"{len(found)} mistakes: {run} run, {caught - broken} caught, {run - caught} survive, {broken} do not compile"
+    lines = ["# Mistakes and the tests that see them", "", f"Written by `tests/mutation/mistakes.py`. {summary}.", "",
+             "| mistake | what is wrong | seen by |", "|---|---|---|"]
+    for m, saw in sorted(found, key=lambda entry: entry[0].name):
+        text = "not run" if saw is None else ", ".join(saw) if saw else "**survives**" + (": " + m.known if m.known else "")
+        lines.append(f"| {m.name} | {m.wrong} | {text} |")
+    return summary, "\n".join(lines) + "\n"
 
 
 def main():
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--only", metavar="PATTERN", default="*", help="names that match, as flow.* or *seam*")
+    options.add_argument("--only", metavar="PATTERN", action="append", help="names that match, as flow.* or *seam*; may be repeated")
+    options.add_argument("--tests", metavar="PATTERN", default="*", help="of the named tests those that match: a mistake that they do not see counts as not run")
     options.add_argument("--list", action="store_true", help="check and print the list; nothing is built")
     options.add_argument("--jobs", type=int, default=os.cpu_count(), help="of the build, and mistakes beside each other")
     options.add_argument("--all-tests", action="store_true", help="run every named test, also after one has seen the mistake")
+    options.add_argument("--missing", action="store_true", help="run those alone that were not caught yet")
+    options.add_argument("--fresh", action="store_true", help="forget what former calls found")
     options.add_argument("--minutes", type=float, default=1e9, help="begin no mistake after so long")
     options.add_argument("--table", type=pathlib.Path, help="write the table there, too")
     given = options.parse_args()
     mistakes = read_list()
-    chosen = [m for m in mistakes if fnmatch.fnmatch(m.name, given.only)]
+    results = Results(given.fresh)
+    chosen = [m for m in mistakes if any(fnmatch.fnmatch(m.name, p) for p in given.only or ["*"])]
+    if given.missing:
+        chosen = [m for m in chosen if not results.of(m)]
     if given.list:
         for m in chosen:
             print(f"{m.number:4} {m.name:40} {m.wrong}" + (f" [known: {m.known}]" if m.known else ""))
         return print(f"{len(chosen)} mistakes in {len({m.file for m in chosen})} files")
     begin = time.monotonic()
     write_tree(mistakes)
-    broken = build(mistakes, given.jobs)
-    chosen = [m for m in chosen if m not in broken]
+    for m in build(mistakes, given.jobs):
+        results.keep(m, ["does not compile"])
+    chosen = [m for m in chosen if results.of(m) != ["does not compile"]]
     baseline = Baseline(commands())
-    results, not_run = [], []
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
 
         def one(m):
-            if time.monotonic() - begin > 60 * given.minutes:
-                return m, None
-            return judge(m, baseline, given.all_tests)
+            if time.monotonic() - begin < 60 * given.minutes:
+                tests = fnmatch.filter(m.tests, given.tests)
+                return m, judge(m, tests, baseline, given.all_tests), len(tests) == len(m.tests)
+            return m, None, False
 
-        for m, saw in pool.map(one, chosen):
-            if saw is None:
-                not_run.append(m)
-                continue
-            results.append((m, saw))
-            print(f"{'caught' if saw else 'SURVIVES':9} {m.name:40} {', '.join(saw)}", flush=True)
-            (BUILD / "results.md").write_text(table(results, broken, []))
-    text = table(results, broken, not_run)
+        for done in concurrent.futures.as_completed([pool.submit(one, m) for m in chosen]):
+            m, saw, whole = done.result()
+            if saw is not None and (saw or whole):
+                results.keep(m, saw)
+            if saw is not None:
+                print(f"{'caught' if saw else 'SURVIVES' if whole else 'not seen':9} {m.name:40} {', '.join(saw)}", flush=True)
+    summary, text = table(mistakes, results)
     (BUILD / "results.md").write_text(text)
-    caught = sum(1 for _, saw in results if saw)
-    summary = f"{len(results)} run, {caught} caught, {len(results) - caught} survive, {len(broken)} do not compile, {len(not_run)} not run"
     if given.table:
-        given.table.write_text(f"# Mistakes and the tests that see them\n\nWritten by `tests/mutation/mistakes.py`: {summary}.\n\n{text}")
+        given.table.write_text(text)
     print(summary)
     bad = [t for t, seconds in baseline.times.items() if seconds is None]
-    wrong = [m.name for m, saw in results if not saw and not m.known]
-    found = [m.name for m, saw in results if saw and m.known]
-    if wrong:
-        print("survive, and the list gives no reason: " + ", ".join(wrong))
-    if found:
-        print("listed as known, and caught: take the reason out: " + ", ".join(found))
-    sys.exit(1 if wrong or found or bad or broken else 0)
+    wrong = [m.name for m in chosen if results.of(m) == [] and not m.known]
+    found = [m.name for m in chosen if results.of(m) and m.known]
+    broken = [m.name for m in mistakes if results.of(m) == ["does not compile"]]
+    for what, names in (("fail without a mistake", bad), ("do not compile", broken), ("survive, and the list gives no reason", wrong),
+                        ("are caught, and listed as known: take the reason out", found)):
+        if names:
+            print(f"{what}: {', '.join(names)}")
+    sys.exit(1 if bad or broken or wrong or found else 0)
 
 
 if __name__ == "__main__":
