@@ -26,6 +26,13 @@ TEST("a damped cosine gives back frequency and decay") {
     EXPECT_EQ(zero_crossings(c).size(), 10u);  // at (n + 1/2) pi / 3 < 10
 }
 
+TEST("the tops of a swing lie between its samples, on the parabola through three of them") {
+    const Curve tops = extrema(sampled([](real t) { return std::cos(3 * t); }, 10, 100));
+    ASSERT_GE(tops.size(), 8u);
+    // What the parabola leaves of cos is (w dt)^4/24 at most, 3.4e-4; the largest of the samples is up to (w dt)^2/8 below the top, 1e-2.
+    for (const real y : tops.y) EXPECT_NEAR(y, 1, 3.4e-4);
+}
+
 TEST("what has no oscillation has no frequency and no decay") {
     const Curve c = sampled([](real t) { return 1 + t; }, 1, 10);
     EXPECT_TRUE(std::isnan(frequency(c)));

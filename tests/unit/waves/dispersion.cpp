@@ -38,6 +38,7 @@ TEST("variances of the spectra: closed for Pierson and Moskowitz, quadrature of 
     const Spectrum pm = pierson_moskowitz(by, infinity, 15);
     EXPECT_NEAR(4 * std::sqrt(pm.variance()), 4.799, 5e-4);  // 2 U^2/g sqrt(0.0081/0.74)
     EXPECT_NEAR(pm.peak, 0.8772 * 9.81 / 15, 1e-4);
+    EXPECT_NEAR(jonswap(by, infinity, 15, 1e5, 3.3).peak, 0.8807, 1e-4);  // 22 (g^2/(U F))^(1/3), Hasselmann et al. 1973
     // m0 wp^4/(alpha g^2) = 0.304990 and 0.445034 for gamma 3.3 and 7
     for (const auto& [gamma, known] : {std::pair{3.3, 0.304990}, {7.0, 0.445034}, {1.0, 0.2}}) {
         const Spectrum s = jonswap(by, infinity, 15, 1e5, gamma);
