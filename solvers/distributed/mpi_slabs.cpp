@@ -216,7 +216,7 @@ private:
         wait_for_requests();
     }
 
-    /// MPI's own waits never sleep: on a machine that others use too, whoever is waited for then does not get to run.
+    /// MPI's own waits never sleep: on a machine that others use too, the rank that is waited for then does not get to run.
     void wait_for_requests() {
         wait_.until([&] {
             int done = 0;
