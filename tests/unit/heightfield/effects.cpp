@@ -87,7 +87,9 @@ TEST("energies are the sums over columns of their water's: of motion q^2/2h, of 
             potential += mass * state.g * (moves ? h * (state.bed[c] + 0.5 * h) : 0.5 * up * up);
         }
         EXPECT_NEAR(value(*solver, "potential_energy"), potential, 1e-12 * potential) << model;
-        if (moves) EXPECT_NEAR(value(*solver, "kinetic_energy"), kinetic, 1e-12 * kinetic);
+        if (moves) {
+            EXPECT_NEAR(value(*solver, "kinetic_energy"), kinetic, 1e-12 * kinetic);
+        }
     }
 }
 
