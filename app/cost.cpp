@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "app/study_arguments.hpp"
 #include "core/error.hpp"
+#include "core/programs.hpp"
 #include "sim/registry.hpp"
 #include "validation/cost/command.hpp"
 #include "validation/cost/effect_cost.hpp"
@@ -59,15 +60,13 @@ int forecast(const CostArguments& arguments) {
 double frames_in_window(const std::filesystem::path& scene, const std::vector<scene::Override>& set) {
     const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "weir-live";
     if (!std::filesystem::exists(program)) return NAN;
-    std::string command = "'" + program.string() + "' '" + scene.string() + "' --bench " + window_seconds + " --fast --json";
-    for (const auto& change : set) command += " --set '" + change.key + "=" + change.value + "'";
-    if (!std::getenv("DISPLAY")) command = "xvfb-run -a -s '-screen 0 1280x1024x24' " + command;
-    FILE* pipe = popen((command + " 2>/dev/null").c_str(), "r");
-    if (!pipe) return NAN;
-    std::string said;
-    for (int c = 0; (c = std::fgetc(pipe)) != EOF;) said += static_cast<char>(c);
-    if (pclose(pipe) != 0) return NAN;
-    const auto measured = nlohmann::json::parse(said, nullptr, false);
+    std::vector<std::string> words;
+    if (!std::getenv("DISPLAY")) words = {"xvfb-run", "-a", "-s", "-screen 0 1280x1024x24"};
+    words.insert(words.end(), {program.string(), file_argument(scene), "--bench", window_seconds, "--fast", "--json"});
+    for (const auto& change : set) words.insert(words.end(), {"--set", change.key + "=" + change.value});
+    const auto said = output_of_program(words);
+    if (!said) return NAN;
+    const auto measured = nlohmann::json::parse(*said, nullptr, false);
     return measured.is_object() ? measured.value("frames_a_second", NAN) : NAN;
 }
 

@@ -31,6 +31,12 @@ void catch_interrupts(bool over_ranks) {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
+void release_interrupts() {
+    if (hurries) return;  // in parallel (MPI) the ranks still leave together
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+}
+
 int interruptions() { return count; }
 
 int exit_interrupted() { return 128 + first; }

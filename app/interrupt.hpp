@@ -10,5 +10,7 @@ int exit_interrupted();
 /// count twice, since mpirun gives its processes little time after it was interrupted itself; SIGUSR1 counts once.
 void catch_interrupts(bool over_ranks = false);
 int interruptions();
+/// What was to be written is written: from here on they end the program.
+void release_interrupts();
 
 }  // namespace weir::app

@@ -1,7 +1,10 @@
 // weir: simulates fluids and proves each number. Exit codes: 0 success, 1 a claim failed, 2 bad input, 3 numerical failure, 130
 // interrupted, 143 terminated.
 #include "app/commands.hpp"
+#include "app/interrupt.hpp"
 #include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "core/thread_count.hpp"
 #include "distributed/ranks.hpp"
 #include "output/machine.hpp"
 
@@ -10,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <system_error>
 
@@ -73,19 +77,30 @@ int flushed(int exit_code) {
 
 /// Threads that wait spin for a while, which is quicker than sleeping and starves whoever they wait for where the machine is busy: at most
 /// so long as a pass between two waits takes. Ranks of one machine share its processors. libgomp reads its environment before main; what a
-/// user has set stays.
+/// user has set stays. OpenBLAS, which libraries bring, starts threads of its own before main; weir uses none of them, and where memory is
+/// scarce they wait for it for ever.
 void bound_spinning(char** argv) {
     const int threads = std::getenv("OMP_NUM_THREADS") ? 0 : weir::distributed::threads_of_rank();
-    const bool bounded = std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT");
-    if (bounded && threads == 0) return;
+    const bool bounded = std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT"), quiet = std::getenv("OPENBLAS_NUM_THREADS");
+    if (bounded && quiet && threads == 0) return;
     if (!bounded) setenv("GOMP_SPINCOUNT", "1000", 1);
+    if (!quiet) setenv("OPENBLAS_NUM_THREADS", "1", 1);
     if (threads > 0) setenv("OMP_NUM_THREADS", std::to_string(threads).c_str(), 1);
     execv("/proc/self/exe", argv);  // where that fails the run goes on as it is
+}
+
+/// A count of threads that libgomp would die of.
+void require_threads() {
+    const char* given = std::getenv("OMP_NUM_THREADS");
+    if (given && omp_get_max_threads() > weir::most_threads)
+        throw weir::BadInput(std::string("OMP_NUM_THREADS=") + given + ": a number of threads is 1 to " +
+                             std::to_string(weir::most_threads));
 }
 
 /// Runs, and tells what went wrong.
 int guarded_run(int argc, char** argv) {
     try {
+        require_threads();
         join_ranks(argc, argv);
         return flushed(run(argc, argv));
     } catch (const weir::NumericalFailure& failure) {
@@ -94,6 +109,9 @@ int guarded_run(int argc, char** argv) {
         return complain(error.what(), weir::exit_bad_input);
     } catch (const weir::OutputError& error) {
         return complain(error.what(), weir::exit_bad_input);
+    } catch (const std::filesystem::filesystem_error& error) {  // a looped link, a folder that may not be read
+        const std::string name = error.path1().empty() ? "" : error.path1().string() + ": ";
+        return complain((name + error.code().message()).c_str(), weir::exit_bad_input);
     } catch (const std::system_error& error) {  // standard output is full or gone
         return complain((std::string("cannot write: ") + error.what()).c_str(), weir::exit_bad_input);
     } catch (const std::bad_alloc&) {
@@ -108,5 +126,6 @@ int guarded_run(int argc, char** argv) {
 int main(int argc, char** argv) {
     bound_spinning(argv);
     const int exit_code = guarded_run(argc, argv);
+    weir::app::release_interrupts();
     return weir::distributed::leave(exit_code, complaint);
 }

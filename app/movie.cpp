@@ -1,20 +1,23 @@
 // weir movie RESULT: every frame of a run as a picture, and the pictures as a film by ffmpeg, with a poster beside it. Of a scene the run
 // is made first.
 #include "app/commands.hpp"
+#include "app/interrupt.hpp"
 #include "app/picture/draw.hpp"
 #include "app/run_folder.hpp"
 #include "core/error.hpp"
+#include "core/programs.hpp"
 #include "output/atomic_file.hpp"
 #include "output/read_frame.hpp"
 #include "sim/registry.hpp"
 #include "validation/report/command.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
-#include <cstdlib>
+#include <cstring>
 #include <memory>
 
-#include <sys/wait.h>
+#include <stdlib.h>  // mkdtemp
 #include <unistd.h>
 
 namespace weir::app {
@@ -29,32 +32,16 @@ struct MovieArguments {
     bool quiet = false;
 };
 
-/// Whether a program of this name stands on the PATH.
-bool has_program(const char* name) {
-    const char* path = std::getenv("PATH");
-    std::string list = path ? path : "";
-    for (std::size_t from = 0; from <= list.size();) {
-        const std::size_t end = std::min(list.find(':', from), list.size());
-        if (access((list.substr(from, end - from) + "/" + name).c_str(), X_OK) == 0) return true;
-        from = end + 1;
-    }
-    return false;
+/// Runs it; throws with its exit code where it fails.
+void run_or_refuse(const std::vector<std::string>& words) {
+    if (const int code = run_program(words); code != 0) throw OutputError(words[0] + " failed with exit code " + std::to_string(code));
 }
 
-/// Runs it with what it says hidden; throws with its exit code where it fails.
-void run_program(const std::vector<std::string>& words) {
-    std::vector<char*> argv;
-    for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-        execvp(argv[0], argv.data());
-        _exit(127);
-    }
-    int status = 0;
-    if (child < 0 || waitpid(child, &status, 0) != child) throw OutputError("cannot start " + words[0]);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw OutputError(words[0] + " failed" + (WIFEXITED(status) ? " with exit code " + std::to_string(WEXITSTATUS(status)) : ""));
+/// A name within a pattern of names, where % begins a number.
+std::string in_pattern(const std::string& name) {
+    std::string all;
+    for (const char c : name) all += c == '%' ? "%%" : std::string(1, c);
+    return all;
 }
 
 /// VP9 for .webm, H.264 for everything else; both as every browser plays them, in even sizes.
@@ -66,8 +53,10 @@ std::vector<std::string> encoder(const std::filesystem::path& pictures, int rate
                                    "-y",
                                    "-framerate",
                                    std::to_string(rate),
+                                   "-pattern_type",
+                                   "sequence",
                                    "-i",
-                                   (pictures / "%06d.png").string(),
+                                   "file:" + in_pattern(pictures.string()) + "/%06d.png",  // whatever it begins with, it is a file
                                    "-vf",
                                    "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
                                    "-pix_fmt",
@@ -84,7 +73,7 @@ std::vector<std::string> encoder(const std::filesystem::path& pictures, int rate
     const std::vector<std::string> h264{"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"};
     const auto& codec = film.extension() == ".webm" ? vp9 : h264;
     words.insert(words.end(), codec.begin(), codec.end());
-    words.push_back(film.string());
+    words.push_back("file:" + film.string());
     return words;
 }
 
@@ -94,20 +83,47 @@ int usual_rate(const std::vector<real>& times) {
     return interval > 0 ? static_cast<int>(std::clamp(1 / interval, 10.0, 30.0)) : 10;
 }
 
-/// The pictures of a film in the making, gone when it is made or has failed.
-struct Pictures {
-    std::filesystem::path folder;
-    explicit Pictures(std::filesystem::path path) : folder(std::move(path)) { std::filesystem::create_directories(folder); }
-    std::filesystem::path file(std::size_t frame) const {
+/// The pictures of a film in the making and the film, in a new folder beside it: gone when it is made or has failed.
+class Workshop {
+public:
+    explicit Workshop(const std::filesystem::path& film) : ending_(film.extension()) {
+        std::string pattern = film.string() + ".XXXXXX";
+        if (!mkdtemp(pattern.data())) throw OutputError("cannot make a folder beside " + film.string() + ": " + std::strerror(errno));
+        folder_ = pattern;
+    }
+    ~Workshop() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    Workshop(const Workshop&) = delete;
+    Workshop& operator=(const Workshop&) = delete;
+    const std::filesystem::path& folder() const { return folder_; }
+    std::filesystem::path film() const { return folder_ / ("film" + ending_.string()); }
+    std::filesystem::path picture(std::size_t frame) const {
         char name[32];
         std::snprintf(name, sizeof name, "%06zu.png", frame);
-        return folder / name;
+        return folder_ / name;
     }
-    ~Pictures() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder, ignored);
-    }
+
+private:
+    std::filesystem::path folder_, ending_;
 };
+
+/// It takes its name when it is whole.
+void move_to(const std::filesystem::path& made, const std::filesystem::path& name) {
+    std::error_code failed;
+    const auto target = std::filesystem::is_symlink(name, failed) ? std::filesystem::weakly_canonical(name, failed) : name;
+    std::filesystem::rename(made, target, failed);
+    if (failed == std::errc::cross_device_link) {  // the link leads there
+        failed.clear();
+        std::filesystem::copy_file(made, target, std::filesystem::copy_options::overwrite_existing, failed);
+    }
+    if (failed) throw OutputError("cannot write " + name.string() + ": " + failed.message());
+}
+
+void refuse_folder(const std::filesystem::path& file) {
+    if (std::filesystem::is_directory(file)) throw BadInput(file.string() + ": this is a folder, and a file is to be written there");
+}
 
 void show(std::size_t done, std::size_t all, bool quiet) {
     if (quiet || !isatty(STDERR_FILENO)) return;
@@ -128,11 +144,11 @@ std::filesystem::path run_of(const MovieArguments& arguments) {
     }
     const auto scene = validation::scene_named(arguments.result);
     const auto folder = std::filesystem::path("out") / scene_name(scene::read(scene, sim::schemas(), {}));
-    std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string(), "run", scene.string(), "--out",
-                                   folder.string()};
-    for (const auto& change : arguments.set) words.insert(words.end(), {"--set", change});
+    std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string(), "run", file_argument(scene),
+                                   "--out=" + folder.string()};
+    for (const auto& change : arguments.set) words.push_back("--set=" + change);
     if (arguments.quiet) words.push_back("--quiet");
-    run_program(words);
+    run_or_refuse(words);
     return folder;
 }
 
@@ -146,18 +162,21 @@ int film(const MovieArguments& arguments) {
     const scene::Scene scene = scene_of_run(folder);
     const std::vector<real> times = output::frame_times(folder);
     const std::filesystem::path out = arguments.out.empty() ? folder / "movie.mp4" : std::filesystem::path(arguments.out);
-    output::require_writable(out.has_parent_path() ? out.parent_path() : ".");
-    const Pictures pictures(out.string() + ".frames");
-    for (std::size_t frame = 0; frame < times.size(); ++frame) {
-        show(frame, times.size(), arguments.quiet);
-        picture::draw_frame(folder, scene, frame, arguments.wish).write(pictures.file(frame));
-    }
-    show(times.size(), times.size(), arguments.quiet);
-    run_program(encoder(pictures.folder, arguments.rate > 0 ? arguments.rate : usual_rate(times), out));
-    // the poster: two thirds through, when most is going on
     std::filesystem::path poster = out;
     poster.replace_extension(".png");
-    std::filesystem::copy_file(pictures.file(2 * (times.size() - 1) / 3), poster, std::filesystem::copy_options::overwrite_existing);
+    refuse_folder(out), refuse_folder(poster);
+    output::require_writable(out.has_parent_path() ? out.parent_path() : ".");
+    catch_interrupts();
+    const Workshop workshop(out);
+    for (std::size_t frame = 0; frame < times.size(); ++frame) {
+        if (interruptions() > 0) return exit_interrupted();
+        show(frame, times.size(), arguments.quiet);
+        picture::draw_frame(folder, scene, frame, arguments.wish).write(workshop.picture(frame));
+    }
+    show(times.size(), times.size(), arguments.quiet);
+    run_or_refuse(encoder(workshop.folder(), arguments.rate > 0 ? arguments.rate : usual_rate(times), workshop.film()));
+    move_to(workshop.film(), out);
+    move_to(workshop.picture(2 * (times.size() - 1) / 3), poster);  // two thirds through, when most is going on
     std::printf("%s\n%s\n", out.c_str(), poster.c_str());
     return exit_success;
 }

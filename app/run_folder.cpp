@@ -1,29 +1,58 @@
 #include "app/run_folder.hpp"
 
 #include "core/error.hpp"
+#include "core/words.hpp"
 #include "sim/registry.hpp"
-
-#include <fstream>
 
 #include <nlohmann/json.hpp>
 
 namespace weir::app {
 
+namespace {
+
+/// Of what may have any shape: others write files of this name too.
+std::string text_in(const std::filesystem::path& file, const nlohmann::json& scene, const char* key) {
+    const auto found = scene.find(key);
+    if (found == scene.end() || !found->is_string()) throw BadInput(file.string() + ": \"scene\" has no text \"" + key + '"');
+    return found->get<std::string>();
+}
+
+nlohmann::json parsed(const std::filesystem::path& file) {
+    try {
+        return nlohmann::json::parse(bytes_of(file), nullptr, false);
+    } catch (const BadInput&) {
+        return nullptr;
+    }
+}
+
+}  // namespace
+
 scene::Scene scene_of_run(const std::filesystem::path& folder) {
-    std::ifstream file(folder / "run.json");
-    const auto j = nlohmann::json::parse(file, nullptr, false);
+    const auto file = folder / "run.json";
+    const auto j = parsed(file);
     if (!j.is_object() || !j.contains("scene"))
         throw BadInput(folder.string() + " is not the folder of a run: it has no readable run.json");
+    const auto& kept = j["scene"];
+    if (!kept.is_object()) throw BadInput(file.string() + ": \"scene\" is no object");
     std::vector<scene::Override> overrides;
-    for (const auto& text : j["scene"]["overrides"]) overrides.push_back(scene::to_override(text.get<std::string>()));
-    return scene::parse(j["scene"]["source"].get<std::string>(), j["scene"]["file"].get<std::string>(), sim::schemas(), overrides);
+    if (const auto list = kept.find("overrides"); list != kept.end()) {
+        if (!list->is_array()) throw BadInput(file.string() + ": \"overrides\" is no list");
+        for (const auto& text : *list) {
+            if (!text.is_string()) throw BadInput(file.string() + ": \"overrides\" holds what is no text");
+            overrides.push_back(scene::to_override(text.get<std::string>()));
+        }
+    }
+    return scene::parse(text_in(file, kept, "source"), text_in(file, kept, "file"), sim::schemas(), overrides);
 }
 
 std::string scene_name(const scene::Scene& scene) {
+    const auto is_name = [](const std::string& text) { return !text.empty() && text != "." && text != ".."; };  // of a folder of its own
     const std::filesystem::path path = std::filesystem::path(scene.file()).lexically_normal();
-    const std::string stem = path.stem().string();
-    const std::string folder = path.parent_path().filename().string();
-    return stem == "scene" && !folder.empty() ? folder : stem;
+    const std::string stem = is_name(path.stem().string()) ? path.stem().string() : path.filename().string();
+    std::string folder = path.parent_path().filename().string();
+    if (folder == "..") folder = std::filesystem::absolute(path).lexically_normal().parent_path().filename().string();
+    if (stem == "scene" && is_name(folder)) return folder;
+    return is_name(stem) ? stem : "scene";
 }
 
 std::size_t frame_at(const std::vector<real>& times, real time) {

@@ -3,16 +3,20 @@
 #include "core/error.hpp"
 #include "output/read_frame.hpp"
 #include "output/series_file.hpp"
+#include "output/vtk_read.hpp"
 
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellDataToPointData.h>
 #include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkProbeFilter.h>
-#include <vtkXMLImageDataReader.h>
-#include <vtkXMLPolyDataReader.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,13 +25,60 @@ namespace weir::view {
 
 namespace {
 
-template <class Reader>
-auto opened(const std::filesystem::path& file) {
-    vtkNew<Reader> reader;
-    if (!reader->CanReadFile(file.c_str())) throw BadInput(file.string() + ": cannot read this frame");
-    reader->SetFileName(file.c_str());
-    reader->Update();
-    return vtkSmartPointer(reader->GetOutput());
+void add_arrays(const std::vector<output::ReadArray>& from, vtkDataSetAttributes* to) {
+    for (const output::ReadArray& array : from) {
+        vtkSmartPointer<vtkDataArray> copy;
+        if (array.bytes)
+            copy = vtkSmartPointer<vtkUnsignedCharArray>::New();
+        else
+            copy = vtkSmartPointer<vtkDoubleArray>::New();
+        copy->SetName(array.name.c_str());
+        copy->SetNumberOfComponents(static_cast<int>(array.components));
+        copy->SetNumberOfTuples(static_cast<vtkIdType>(array.tuples()));
+        for (std::size_t i = 0; i < array.values.size(); ++i)
+            copy->SetComponent(static_cast<vtkIdType>(i / array.components), static_cast<int>(i % array.components), array.values[i]);
+        to->AddArray(copy);
+    }
+}
+
+vtkSmartPointer<vtkImageData> image_of(const output::ReadFile& file) {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(file.points[0], file.points[1], file.points[2]);
+    image->SetOrigin(file.origin.data());
+    image->SetSpacing(file.spacing.data());
+    add_arrays(file.cell_data, image->GetCellData());
+    add_arrays(file.point_data, image->GetPointData());
+    return image;
+}
+
+vtkSmartPointer<vtkCellArray> cells_of(const output::ReadCells& cells) {
+    vtkNew<vtkTypeInt64Array> offsets, corners;
+    offsets->InsertNextValue(0);
+    for (const std::int64_t end : cells.ends) offsets->InsertNextValue(end);
+    for (const std::int64_t corner : cells.corners) corners->InsertNextValue(corner);
+    auto list = vtkSmartPointer<vtkCellArray>::New();
+    list->SetData(offsets, corners);
+    return list;
+}
+
+vtkSmartPointer<vtkPolyData> points_of(const output::ReadFile& file) {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (std::size_t i = 0; i + 2 < file.position.size(); i += 3) points->InsertNextPoint(&file.position[i]);
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetVerts(cells_of(file.vertices));
+    data->SetLines(cells_of(file.lines));
+    data->SetPolys(cells_of(file.polygons));
+    add_arrays(file.point_data, data->GetPointData());
+    return data;
+}
+
+/// Of this kind, as its name says.
+output::ReadFile opened(const std::filesystem::path& file, bool image) {
+    output::ReadFile read = output::read_vtk(file);
+    if (read.image != image) throw BadInput(file.string() + ": this frame holds no " + (image ? "grid" : "points"));
+    return read;
 }
 
 std::string array_of(const std::string& field) { return field == "speed" ? "velocity" : field; }
@@ -75,8 +126,8 @@ Frame Series::read(std::size_t number) const {
         if (number >= entries.size()) throw BadInput((folder_ / name).string() + " has only " + std::to_string(entries.size()) + " frames");
         const auto file = folder_ / entries[number].file;
         frame.time = entries[number].time;
-        if (file.extension() == ".vtp") frame.particles[name.stem().string()] = opened<vtkXMLPolyDataReader>(file);
-        if (name.stem() == "grid") frame.grid = opened<vtkXMLImageDataReader>(file);
+        if (file.extension() == ".vtp") frame.particles[name.stem().string()] = points_of(opened(file, false));
+        if (name.stem() == "grid") frame.grid = image_of(opened(file, true));
     }
     return frame;
 }

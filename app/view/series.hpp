@@ -1,4 +1,4 @@
-// The frames of a run as VTK's own data, read by VTK's own readers, and the names by which they can be coloured.
+// The frames of a run as VTK's own data, and the names by which they can be coloured.
 #pragma once
 #include "core/types.hpp"
 

@@ -1,5 +1,6 @@
 #include "pfmg.hpp"
 
+#include "core/programs.hpp"
 #include "poisson/faces.hpp"
 #include "problems.hpp"
 
@@ -12,6 +13,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 
 namespace weir::bench {
 
@@ -166,21 +168,19 @@ int pfmg_process(const std::string& name, int dim, int n, int repeat) {
 }
 
 PfmgResult run_pfmg(const std::string& program, const std::string& name, int dim, int n, int ranks, int repeat) {
-    const std::string launcher =
-        ranks == 1 ? ""
-                   : "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n " + std::to_string(ranks) + " ";
-    const std::string command = launcher + "'" + program + "' --pfmg-process --case " + name + " --dim " + std::to_string(dim) + " --n " +
-                                std::to_string(n) + " --repeat " + std::to_string(repeat) + " 2>&1";
+    std::vector<std::string> words;
+    if (ranks > 1)
+        words = {"env", "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "mpirun", "--oversubscribe",
+                 "-n",  std::to_string(ranks)};
+    words.insert(words.end(), {program, "--pfmg-process", "--case", name, "--dim", std::to_string(dim), "--n", std::to_string(n),
+                               "--repeat", std::to_string(repeat)});
     PfmgResult result;
     result.failure = "no answer from its process";
-    FILE* pipe = popen(command.c_str(), "r");
-    if (pipe == nullptr) return result;
-    std::array<char, 512> line;
-    while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr)
-        if (std::sscanf(line.data(), "PFMG %lf %lf %d %lf %lf", &result.setup_ms, &result.solve_ms, &result.iterations, &result.residual,
+    std::istringstream lines(output_of_program(words).value_or(""));
+    for (std::string line; std::getline(lines, line);)
+        if (std::sscanf(line.c_str(), "PFMG %lf %lf %d %lf %lf", &result.setup_ms, &result.solve_ms, &result.iterations, &result.residual,
                         &result.bytes) == 5)
             result.failure.clear();
-    pclose(pipe);
     return result;
 }
 

@@ -1,5 +1,6 @@
 """A simulation: scene in, steps, fields and probes out."""
 import collections.abc
+import math
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -106,6 +107,8 @@ class Simulation:
         every step, on_frame(sim) at frames: True ends the run there. Returns the reports as a structured array (step, time, dt, cfl,
         iterations, ...)."""
         core, rows = self._core, []
+        if not math.isfinite(t):
+            raise _weir.BadInput(f"run_until({t}): a run goes on until a finite time [s]")
         while not core.reached(t):
             report = core.step_until(t)
             if self._observers:

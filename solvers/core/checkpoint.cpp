@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -151,6 +152,17 @@ const Checkpoint::Block& Checkpoint::find(const std::string& name) const {
 }
 
 void Checkpoint::refuse_size(const std::string& name) { throw std::runtime_error("checkpoint block \"" + name + "\" has another size"); }
+
+void Checkpoint::require_finite(const std::string& name, std::span<const double> values) {
+    for (const double value : values)
+        if (!std::isfinite(value)) throw std::runtime_error("checkpoint block \"" + name + "\" holds a value that is not finite");
+}
+
+void Checkpoint::require_within(const std::string& name, std::int64_t value, std::int64_t least, std::int64_t most) {
+    if (value < least || value > most)
+        throw std::runtime_error("checkpoint block \"" + name + "\" holds " + std::to_string(value) + "; from " + std::to_string(least) +
+                                 " to " + std::to_string(most) + " can be");
+}
 
 void Checkpoint::copy(const std::string& name, std::size_t begin, void* to, std::size_t count) const {
     const Block& block = find(name);

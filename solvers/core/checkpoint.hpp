@@ -59,6 +59,11 @@ public:
         return {block.begin / sizeof(T), (block.begin + block.size()) / sizeof(T), block.all / sizeof(T), block.part};
     }
 
+    /// Of what a file held, before it is used as a place or a time. Throws std::runtime_error naming the block.
+    static void require_finite(const std::string& name, std::span<const double> values);
+    /// The same of a count or an index.
+    static void require_within(const std::string& name, std::int64_t value, std::int64_t least, std::int64_t most);
+
     bool has(const std::string& name) const { return blocks_.count(name) != 0; }
     /// Copies the block into `to`, which must have its exact size; throws std::runtime_error naming the block otherwise.
     template <class T>

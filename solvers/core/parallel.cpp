@@ -13,12 +13,12 @@ thread_local int worth_of_work = 0;  // 0: unknown
 }  // namespace
 
 int threads() {
-    static const int available = std::max(1, omp_get_max_threads());
+    static const int available = std::clamp(omp_get_max_threads(), 1, most_threads);
     if (chosen_threads > 0) return chosen_threads;
     return worth_of_work > 0 ? std::min(worth_of_work, available) : available;
 }
 
-int set_threads(int count) { return std::exchange(chosen_threads, std::max(0, count)); }
+int set_threads(int count) { return std::exchange(chosen_threads, std::clamp(count, 0, most_threads)); }
 
 ThreadsWorth::ThreadsWorth(long cells) : before_(worth_of_work) {
     worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_a_thread, 1, 1 << 20));

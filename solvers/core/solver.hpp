@@ -82,9 +82,9 @@ struct FieldSet {
     GridView grid;
     std::vector<FieldView> fields;
     std::vector<SheetView> sheets{};
-    /// Of particle solvers: the pressure's gradient in liquid at rest, rho0 g [Pa/m], as it goes on behind their walls, and the density
-    /// that a particle has where it takes up a cell.
+    /// Of particle solvers: the pressure's gradient in liquid at rest, rho0 g [Pa/m], as it goes on behind their walls.
     Vec<3> weight{};
+    /// The density at which a particle takes up a cell [kg/m^3].
     real rest_density = 0;
     /// Over ranks that hold their own planes alone: where they are cut. Each rank may then read its own planes and those beside them.
     const Cut* cut = nullptr;

@@ -3,6 +3,9 @@
 
 namespace weir {
 
+/// More than any machine has; libgomp keeps them on its stack, and of a hundred thousand the stack overflows.
+inline constexpr int most_threads = 1024;
+
 /// True after set_threads(count > 0): that number is used as it is.
 bool thread_count_is_set();
 

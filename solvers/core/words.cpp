@@ -2,11 +2,18 @@
 
 #include "core/error.hpp"
 
+#include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <cstdint>
+#include <cstring>
+#include <new>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace weir {
 
@@ -14,15 +21,64 @@ namespace {
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 }  // namespace
 
+namespace {
+
+/// An open file.
+class Descriptor {
+public:
+    /// Does not wait for the other end of a pipe.
+    explicit Descriptor(const std::filesystem::path& path) : number_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
+    ~Descriptor() {
+        if (number_ >= 0) close(number_);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    int number() const { return number_; }
+
+private:
+    int number_;
+};
+
+[[noreturn]] void refuse_long(const std::string& name, std::uintmax_t size, std::size_t most) {
+    throw BadInput(name + ": holds " + (size > most ? std::to_string(size) : "more than " + std::to_string(most)) + " bytes; at most " +
+                   std::to_string(most) + " are read");
+}
+
+/// All that is there, in pieces, because a file may grow, and some have no size.
+std::string read_all(int file, const std::string& name, std::size_t size, std::size_t most) {
+    std::string all;
+    constexpr std::size_t piece = std::size_t{1} << 16;
+    for (std::size_t wanted = size + 1;; wanted = std::max(all.size() + piece, 2 * all.size())) {  // one more, to see the end
+        const std::size_t had = all.size();
+        all.resize(std::min(wanted, most + 1));
+        for (std::size_t at = had; at < all.size();) {
+            const ssize_t got = read(file, all.data() + at, all.size() - at);
+            if (got < 0 && errno == EINTR) continue;
+            if (got < 0) throw BadInput(name + ": cannot be read to its end: " + std::strerror(errno));
+            if (got == 0) return all.resize(at), all;
+            at += static_cast<std::size_t>(got);
+        }
+        if (all.size() > most) refuse_long(name, 0, most);
+    }
+}
+
+}  // namespace
+
 std::string bytes_of(const std::filesystem::path& path, std::size_t most) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) throw BadInput(path.string() + ": cannot be read");
-    std::error_code unknown;
-    if (const auto size = std::filesystem::file_size(path, unknown); !unknown && size > most)
-        throw BadInput(path.string() + ": holds " + std::to_string(size) + " bytes; at most " + std::to_string(most) + " are read");
-    std::ostringstream all;
-    all << file.rdbuf();
-    return all.str();
+    const std::string name = path.string();
+    if (name.empty()) throw BadInput("an empty text names no file");
+    const Descriptor file(path);
+    struct stat status {};
+    if (file.number() < 0 || fstat(file.number(), &status) != 0) throw BadInput(name + ": cannot be read: " + std::strerror(errno));
+    if (S_ISDIR(status.st_mode)) throw BadInput(name + ": this is a folder, not a file");
+    if (!S_ISREG(status.st_mode)) throw BadInput(name + ": this is a device or a pipe; only regular files are read, which have an end");
+    const auto size = static_cast<std::uintmax_t>(status.st_size);
+    if (size > most) refuse_long(name, size, most);
+    try {
+        return read_all(file.number(), name, static_cast<std::size_t>(size), most);
+    } catch (const std::bad_alloc&) {
+        throw BadInput(name + ": holds " + std::to_string(size) + " bytes, for which there is not enough memory");
+    }
 }
 
 void Words::skip(bool lines) {

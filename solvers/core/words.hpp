@@ -8,8 +8,9 @@
 
 namespace weir {
 
-/// The whole content of a file. Throws BadInput where it cannot be read or holds more than `most` bytes.
-std::string bytes_of(const std::filesystem::path& file, std::size_t most = std::size_t{1} << 33);
+/// The whole content of a regular file. Throws BadInput where it cannot be read, has no end (a device, a pipe) or holds more than `most`
+/// bytes; a million triangles take a fifth of the gibibyte as text.
+std::string bytes_of(const std::filesystem::path& file, std::size_t most = std::size_t{1} << 30);
 
 class Words {
 public:

@@ -7,24 +7,40 @@
 
 namespace weir::distributed {
 
-class PollingWait {
+/// The clocks and pauses of a thread.
+struct ThreadTimes {
+    using duration = std::chrono::steady_clock::duration;
+    static duration now() { return std::chrono::steady_clock::now().time_since_epoch(); }
+    /// Processor time of this thread.
+    static duration own() {
+        timespec t{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+        return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec);
+    }
+    static void nap(std::chrono::microseconds time) { std::this_thread::sleep_for(time); }
+    static void yield() { std::this_thread::yield(); }
+};
+
+/// Times: as ThreadTimes.
+template <class Times>
+class PollingWaitBy {
 public:
     /// longest: how long a wait polls before it sleeps, on a processor of its own.
-    explicit PollingWait(std::chrono::microseconds longest) : longest_(longest) {}
+    explicit PollingWaitBy(std::chrono::microseconds longest) : longest_(longest) {}
 
     /// Returns when done() is true: polls, then sleeps between polls. After a wait in which other processes had the processor, waits sleep
     /// at once, for a second.
     template <class Done>
     void until(Done&& done) {
         if (done()) return;
-        const auto start = clock::now();
+        const auto start = Times::now();
         if (start >= busy_until_ && poll(start, done)) return;
-        while (!done()) std::this_thread::sleep_for(nap);
+        while (!done()) Times::nap(nap);
     }
     /// The time so far in which waits slept at once, because other processes were busy [s].
     double busy_seconds() const {
-        const auto now = clock::now();
-        const auto to_come = busy_until_ > now ? busy_until_ - now : clock::duration::zero();
+        const auto now = Times::now();
+        const auto to_come = busy_until_ > now ? busy_until_ - now : duration::zero();
         return std::chrono::duration<double>(busy_ - to_come).count();
     }
 
@@ -35,28 +51,25 @@ public:
     static constexpr std::chrono::seconds busy{1};
 
 private:
-    using clock = std::chrono::steady_clock;
-    static double processor_seconds() {
-        timespec t{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-    }
+    using duration = typename Times::duration;
     /// Whether it was done before the polls were over.
     template <class Done>
-    bool poll(clock::time_point start, Done& done) {
-        const double before = processor_seconds();
+    bool poll(duration start, Done& done) {
+        const duration before = Times::own();
         bool is_done = false;
         auto now = start;
-        for (; !is_done && now - start < longest_; now = clock::now())
-            if (!(is_done = done())) std::this_thread::yield();  // to the rank that is waited for, where there are more than processors
-        const std::chrono::duration<double> own(processor_seconds() - before);
+        for (; !is_done && now - start < longest_; now = Times::now())
+            if (!(is_done = done())) Times::yield();  // to the rank that is waited for, where there are more than processors
+        const duration own = Times::own() - before;
         if (longest_ > lost && now - start - own > lost) busy_until_ = now + busy, busy_ += busy;
         return is_done;
     }
 
     std::chrono::microseconds longest_;
-    clock::time_point busy_until_{};
-    clock::duration busy_{};
+    duration busy_until_{};
+    duration busy_{};
 };
+
+using PollingWait = PollingWaitBy<ThreadTimes>;
 
 }  // namespace weir::distributed

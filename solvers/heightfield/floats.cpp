@@ -522,7 +522,16 @@ void Floats::restore(const Checkpoint& from, real t, const Field& surface, const
     std::vector<char> clings;
     from.get("covered_clings", clings);
     from.get("pushed", std::span<Pushed>(pushed_));
-    for (std::size_t i = 0; i < columns.size(); ++i) add(columns[i], water[i], surface, rate), covered_.back().clings = clings[i] != 0;
+    if (water.size() != columns.size() || clings.size() != columns.size())
+        throw std::runtime_error("checkpoint blocks \"covered_columns\", \"covered_water\" and \"covered_clings\" are not of one length");
+    Checkpoint::require_finite("covered_water", water);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        if (columns[i] >= place_of_.size() || place_of_[columns[i]] >= 0)
+            throw std::runtime_error("checkpoint block \"covered_columns\" names column " + std::to_string(columns[i]) + " of " +
+                                     std::to_string(place_of_.size()) + ", or one twice");
+        add(columns[i], water[i], surface, rate);
+        covered_.back().clings = clings[i] != 0;
+    }
     for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b]->restore(from, fmt::format("float{}_", b));
     locate(t, surface, rate);
 }

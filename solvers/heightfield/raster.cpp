@@ -17,6 +17,13 @@ namespace weir::heightfield {
 namespace {
 
 constexpr long most_cells = 1L << 28;
+constexpr std::size_t most_bytes = std::size_t{16} * most_cells;  // fifteen characters and a space a cell
+
+/// Before they are allocated: each takes a character at least, and a space before the next.
+void require_text_of(std::size_t cells, std::size_t bytes, const Words& words) {
+    if (bytes < 2 * cells - 1)
+        words.fail(fmt::format("{} cells are announced; the file has {} bytes, which is too few for them", cells, bytes));
+}
 
 std::string lower(std::string_view word) {
     std::string text(word);
@@ -30,7 +37,7 @@ struct AscHeader {
     bool x_of_centre = false, z_of_centre = false;
 };
 
-AscHeader read_header(Words& words) {
+AscHeader read_header(Words& words, std::size_t bytes) {
     AscHeader h;
     while (!words.peek().empty() && std::isalpha(static_cast<unsigned char>(words.peek()[0]))) {
         const std::string key = lower(words.next());
@@ -62,6 +69,7 @@ AscHeader read_header(Words& words) {
     for (const auto& [given, key] : needed)
         if (!given) words.fail(fmt::format("the header ends here and lacks {}", key));
     if (static_cast<long>(*h.columns) * *h.rows > most_cells) words.fail("the grid has more cells than are read (2^28)");
+    require_text_of(static_cast<std::size_t>(*h.columns) * static_cast<std::size_t>(*h.rows), bytes, words);
     return h;
 }
 
@@ -80,9 +88,9 @@ real Raster::operator()(real x, real z) const {
 }
 
 Raster read_asc(const std::filesystem::path& path, std::optional<real> nodata) {
-    const std::string text = bytes_of(path);
+    const std::string text = bytes_of(path, most_bytes);
     Words words(path, text, false), start = words;
-    const AscHeader h = read_header(start);
+    const AscHeader h = read_header(start, text.size());
     for (std::string_view word = words.peek(); !word.empty() && std::isalpha(static_cast<unsigned char>(word[0])); word = words.peek())
         (void)words.next(), (void)words.next();
     Raster r{.nx = *h.columns, .nz = *h.rows, .dx = *h.cell, .dz = *h.cell};
@@ -103,7 +111,7 @@ Raster read_asc(const std::filesystem::path& path, std::optional<real> nodata) {
 }
 
 Raster read_pgm(const std::filesystem::path& path) {
-    const std::string text = bytes_of(path);
+    const std::string text = bytes_of(path, most_bytes);
     Words words(path, text, true);
     const std::string_view magic = words.next();
     if (magic != "P2" && magic != "P5")
@@ -113,8 +121,10 @@ Raster read_pgm(const std::filesystem::path& path) {
     r.nx = words.count("the width", static_cast<real>(most_cells)), r.nz = words.count("the height", static_cast<real>(most_cells));
     if (static_cast<long>(r.nx) * r.nz > most_cells) words.fail("the picture has more cells than are read (2^28)");
     const int most = words.count("the value of white", 65535);
-    r.value.resize(static_cast<std::size_t>(r.nx) * static_cast<std::size_t>(r.nz));
+    const std::size_t cells = static_cast<std::size_t>(r.nx) * static_cast<std::size_t>(r.nz);
     if (!binary) {
+        require_text_of(cells, text.size(), words);
+        r.value.resize(cells);
         for (real& v : r.value) {
             v = words.number("a shade of grey");
             if (v < 0 || v > most || v != std::floor(v)) words.fail(fmt::format("{} is no shade from 0 to {}", v, most));
@@ -123,9 +133,10 @@ Raster read_pgm(const std::filesystem::path& path) {
         return r;
     }
     const std::size_t bytes = most > 255 ? 2 : 1, first = words.position() + 1;
-    if (text.size() < first + bytes * r.value.size())
+    if (text.size() < first + bytes * cells)
         throw BadInput(fmt::format("{}: the picture ends after {} of {} bytes", path.string(), text.size() - std::min(text.size(), first),
-                                   bytes * r.value.size()));
+                                   bytes * cells));
+    r.value.resize(cells);
     for (std::size_t i = 0; i < r.value.size(); ++i) {
         const auto byte = [&](std::size_t b) { return static_cast<std::uint8_t>(text[first + bytes * i + b]); };
         const int shade = bytes == 2 ? 256 * byte(0) + byte(1) : byte(0);

@@ -37,7 +37,7 @@ NewFile::~NewFile() {
 void NewFile::refuse(int reason) const { throw OutputError("cannot write " + path_.string() + ": " + std::strerror(reason)); }
 
 void NewFile::write(std::string_view bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) refuse(errno);
+    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) refuse(errno);
 }
 
 void NewFile::write_over_start(std::string_view bytes) {

@@ -4,14 +4,7 @@
 #include "output/series_file.hpp"
 
 #ifdef WEIR_HAS_VTK
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPolyData.h>
-#include <vtkXMLImageDataReader.h>
-#include <vtkXMLPolyDataReader.h>
+#include "output/vtk_read.hpp"
 #endif
 
 namespace weir::output {
@@ -42,48 +35,34 @@ FrameData frame_of(const FieldSet& fields, real t) {
 
 namespace {
 
-Components components_of(vtkDataArray& array) {
-    Components list(static_cast<std::size_t>(array.GetNumberOfComponents()));
-    for (std::size_t c = 0; c < list.size(); ++c)
-        for (vtkIdType i = 0; i < array.GetNumberOfTuples(); ++i) list[c].push_back(array.GetComponent(i, static_cast<int>(c)));
+constexpr const char* hidden_cells = "vtkGhostType";
+
+Components components_of(const std::vector<real>& values, std::size_t components) {
+    Components list(components);
+    for (std::size_t c = 0; c < components; ++c)
+        for (std::size_t i = c; i < values.size(); i += components) list[c].push_back(values[i]);
     return list;
 }
 
-template <class Reader>
-void open(Reader& reader, const std::filesystem::path& file) {
-    if (!reader.CanReadFile(file.c_str())) throw BadInput(file.string() + ": cannot read this frame");
-    reader.SetFileName(file.c_str());
-    reader.Update();
-}
-
 void read_image(const std::filesystem::path& file, int dim, FrameData& frame) {
-    vtkNew<vtkXMLImageDataReader> reader;
-    open(*reader, file);
-    vtkImageData* image = reader->GetOutput();
+    const ReadFile image = read_vtk(file);
     frame.grid.dim = dim;
-    for (int a = 0; a < dim; ++a) {
-        const auto at = static_cast<std::size_t>(a);
-        frame.grid.cells[at] = image->GetDimensions()[a] - 1;
-        frame.grid.origin[at] = image->GetOrigin()[a];
-        frame.grid.spacing[at] = image->GetSpacing()[a];
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int cells = image.points[a] - 1;
+        if ((cells < 1) == (static_cast<int>(a) < dim) || !image.image)
+            throw BadInput(file.string() + ": this frame holds no grid of " + std::to_string(dim) + " dimensions, which the scene has");
+        if (cells < 1) continue;
+        frame.grid.cells[a] = cells, frame.grid.origin[a] = image.origin[a], frame.grid.spacing[a] = image.spacing[a];
     }
-    for (int i = 0; i < image->GetCellData()->GetNumberOfArrays(); ++i) {
-        vtkDataArray* array = image->GetCellData()->GetArray(i);
-        if (array != image->GetCellGhostArray()) frame.cells[array->GetName()] = components_of(*array);
-    }
+    for (const ReadArray& array : image.cell_data)
+        if (array.name != hidden_cells) frame.cells[array.name] = components_of(array.values, array.components);
 }
 
 void read_particles(const std::filesystem::path& file, std::map<std::string, Components>& fields) {
-    vtkNew<vtkXMLPolyDataReader> reader;
-    open(*reader, file);
-    vtkPolyData* data = reader->GetOutput();
-    fields["position"] = Components(3);
-    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) fields["position"][c].push_back(data->GetPoint(i)[c]);
-    for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i) {
-        vtkDataArray* array = data->GetPointData()->GetArray(i);
-        fields[array->GetName()] = components_of(*array);
-    }
+    const ReadFile points = read_vtk(file);
+    if (points.image) throw BadInput(file.string() + ": this frame holds no points");
+    for (const ReadArray& array : points.point_data) fields[array.name] = components_of(array.values, array.components);
+    fields["position"] = components_of(points.position, 3);
 }
 
 }  // namespace

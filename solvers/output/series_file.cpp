@@ -1,12 +1,12 @@
 #include "output/series_file.hpp"
 
 #include "core/error.hpp"
+#include "core/words.hpp"
 #include "output/atomic_file.hpp"
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
+#include <cmath>
 
 namespace weir::output {
 
@@ -37,16 +37,16 @@ std::string series_text(const std::vector<SeriesEntry>& entries) {
 }
 
 std::vector<SeriesEntry> read_series(const std::filesystem::path& pvd) {
-    std::ifstream file(pvd, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    if (!file || text.find("type=\"Collection\"") == std::string::npos || text.find("</VTKFile>") == std::string::npos)
+    const std::string text = bytes_of(pvd);
+    if (text.find("type=\"Collection\"") == std::string::npos || text.find("</VTKFile>") == std::string::npos)
         throw BadInput(pvd.string() + ": not a .pvd series");
     std::vector<SeriesEntry> entries;
     for (std::size_t at = text.find("<DataSet"); at != std::string::npos; at = text.find("<DataSet", at + 1)) {
         const std::string time = attribute(text, "timestep", at);
         SeriesEntry entry{0, attribute(text, "file", at)};
         const auto parsed = std::from_chars(time.data(), time.data() + time.size(), entry.time);
-        if (entry.file.empty() || parsed.ec != std::errc()) throw BadInput(pvd.string() + ": a series entry lacks its time or its file");
+        if (entry.file.empty() || parsed.ec != std::errc() || !std::isfinite(entry.time))
+            throw BadInput(pvd.string() + ": a series entry lacks its time or its file");
         entries.push_back(std::move(entry));
     }
     return entries;

@@ -82,7 +82,9 @@ void Emitters<D>::save(Checkpoint& to) const {
 }
 template <int D>
 void Emitters<D>::restore(const Checkpoint& from) {
-    from.get("particles.layers", layers_);
+    from.get("particles.layers", std::span(layers_));
+    for (const auto layers : layers_)
+        Checkpoint::require_within("particles.layers", static_cast<std::int64_t>(layers), 0, std::int64_t{1} << 53);
 }
 
 template class Emitters<2>;

@@ -222,11 +222,12 @@ std::vector<Integral> Fluid<D>::integrals() const {
     list.push_back({"volume", D == 2 ? "m^2" : "m^3", mass * n / rho0});
     list.push_back({"particles", "1", static_cast<real>(n)});
     list.push_back({"kinetic_energy", "J" + per_depth, block_sum(n, [&](int i) { return 0.5 * mass * dot(velocity(i), velocity(i)); })});
-    list.push_back({"potential_energy", "J" + per_depth, block_sum(n, [&](int i) { return -mass * dot(gravity, position(i) - domain.lo); })});
+    list.push_back(
+        {"potential_energy", "J" + per_depth, block_sum(n, [&](int i) { return -mass * dot(gravity, position(i) - domain.lo); })});
     for (int a = 0; a < D; ++a) {
         const auto& va = v[static_cast<std::size_t>(a)];
-        list.push_back(
-            {std::string("momentum_") + axes[a], "kg m/s" + per_depth, block_sum(n, [&](int i) { return mass * va[static_cast<std::size_t>(i)]; })});
+        list.push_back({std::string("momentum_") + axes[a], "kg m/s" + per_depth,
+                        block_sum(n, [&](int i) { return mass * va[static_cast<std::size_t>(i)]; })});
     }
     list.push_back({"angular_momentum_z", "kg m^2/s" + per_depth, block_sum(n, [&](int i) {
                         const Vec<D> r = position(i) - domain.centre(), u = velocity(i);
@@ -275,6 +276,28 @@ void Fluid<D>::save(Checkpoint& to) const {
     to.put_value("particles.clamps", clamps);
 }
 
+namespace {
+
+/// Of what was read: as many of each as there are particles, each of them a number.
+void require_list(const std::string& name, const std::vector<real>& list, std::size_t count) {
+    if (list.size() != count)
+        throw std::runtime_error("checkpoint block \"particles." + name + "\" holds " + std::to_string(list.size()) + " values of " +
+                                 std::to_string(count) + " particles");
+    Checkpoint::require_finite("particles." + name, list);
+}
+
+template <int D>
+void require_whole(const Fluid<D>& fluid) {
+    for (std::size_t a = 0; a < D; ++a)
+        require_list("x" + std::to_string(a), fluid.x[a], fluid.id.size()),
+            require_list("v" + std::to_string(a), fluid.v[a], fluid.id.size());
+    require_list("id", fluid.id, fluid.id.size()), require_list("density", fluid.density, fluid.id.size());
+    require_list("carried", fluid.carried, fluid.id.size());
+    if (fluid.warm) require_list("enthalpy", fluid.enthalpy, fluid.id.size());
+}
+
+}  // namespace
+
 template <int D>
 void Fluid<D>::restore(const Checkpoint& from) {
     Checkpoint::Held held = from.held<real>("particles.id");
@@ -294,11 +317,14 @@ void Fluid<D>::restore(const Checkpoint& from) {
         std::iota(place.begin(), place.end(), static_cast<real>(held.begin));
         next_place = static_cast<real>(held.all);
     }
-    std::vector<real> clock;
-    from.get("particles.clock", clock);
-    time = clock.at(0);
-    next_id = clock.at(1);
+    std::vector<real> clock(2);
+    from.get("particles.clock", std::span<real>(clock));
+    Checkpoint::require_finite("particles.clock", clock);
+    time = clock[0];
+    next_id = clock[1];
     steps = from.get_value<std::int64_t>("particles.steps");
+    Checkpoint::require_within("particles.steps", steps, 0, std::int64_t{1} << 53);
+    require_whole(*this);
     if (from.has("particles.clamps")) clamps = from.get_value<Clamps>("particles.clamps");
     if (!domain.solids.empty()) domain.solids.set_time(time);
 }

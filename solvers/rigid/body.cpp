@@ -252,7 +252,11 @@ void Body<D>::restore(const Checkpoint& from, const std::string& block) {
     force = from.template get_value<Twist<D>>(block + "force");
     if (rubbed) viscous = from.template get_value<Twist<D>>(block + "viscous");
     wet = from.template get_value<real>(block + "wet");
-    touches = from.template get_value<bool>(block + "touches");
+    touches = from.template get_value<char>(block + "touches") != 0;
+    const auto require = [&](const char* which, const auto& value) {  // all of them are lists of reals
+        Checkpoint::require_finite(block + which, {reinterpret_cast<const real*>(&value), sizeof value / sizeof(real)});
+    };
+    require("at", at), require("orientation", orientation), require("velocity", velocity), require("force", force), require("wet", wet);
 }
 
 template struct Body<2>;

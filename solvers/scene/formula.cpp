@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <stdexcept>
 
 namespace weir::scene {
 
@@ -108,8 +109,10 @@ Formula::Formula(std::string_view text, const std::vector<std::string>& variable
 }
 
 real Formula::operator()(std::span<const real> values) const {
+    std::vector<real>& variables = compiled_->values;
+    if (values.size() < variables.size()) throw std::logic_error("a formula is asked with fewer values than it has variables");
     const std::lock_guard<std::mutex> lock(compiled_->one_at_a_time);
-    std::copy(values.begin(), values.end(), compiled_->values.begin());
+    std::copy_n(values.begin(), variables.size(), variables.begin());
     return compiled_->parser.Eval();
 }
 

@@ -26,7 +26,8 @@ public:
     Formula() = default;
     /// Throws BadFormula. `variables` in the order in which values are given.
     Formula(std::string_view text, const std::vector<std::string>& variables);
-    /// NaN or infinity where the formula has no value.
+    /// NaN or infinity where the formula has no value. One value for each variable; more are not looked at. Throws std::logic_error where
+    /// there are fewer.
     real operator()(std::span<const real> values) const;
     bool empty() const { return compiled_ == nullptr; }
     /// What a formula may say, for hints and manuals.

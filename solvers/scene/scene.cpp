@@ -108,8 +108,10 @@ Table parse_table(std::string_view source, const std::string& file, const std::v
 
 std::string read_text(const std::filesystem::path& path) {
     const std::string name = path.string();
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) throw BadInput(fmt::format("{}: there is no such file", name));
+    std::error_code failed, ignored;
+    if (!std::filesystem::exists(path, failed))
+        throw BadInput(failed ? fmt::format("{}: cannot be read: {}", name, failed.message())
+                              : fmt::format("{}: there is no such file", name));
     if (std::filesystem::is_directory(path, ignored)) throw BadInput(fmt::format("{}: this is a folder, not a file", name));
     std::ifstream in(path, std::ios::binary);
     if (!in) throw BadInput(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));

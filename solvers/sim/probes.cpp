@@ -180,6 +180,8 @@ void Probes::restore(const Checkpoint& from) {
         if (clocks_[i].every == 0 || clocks_[i].joins) continue;
         clocks_[i].next = from.get_value<std::int64_t>(key + "row");
         from.get(key + "begin", clocks_[i].begin);
+        if (!clocks_[i].begin.empty() && clocks_[i].begin.size() != width)
+            throw BadInput("the checkpoint's probe \"" + series.name + "\" is another one");
     }
 }
 

@@ -34,7 +34,65 @@ constexpr real stretch = 1 + 1e-6;
 /// The end that a run has reached, in a checkpoint of the state before the steps that were shortened for it.
 constexpr const char* ended_at = "sim.ended";
 
+/// Where the cells lie, in a checkpoint: a run goes on in its own domain.
+constexpr const char* domain_block = "sim.domain";
+
+std::vector<real> domain_of(const scene::Scene& scene) {
+    std::vector<real> all;
+    for (const char* key : {"grid.cells", "grid.size", "grid.origin"}) {
+        std::vector<real> list = scene.root().numbers(key);
+        list.resize(static_cast<std::size_t>(scene.dim()), list.size() == 1 ? list[0] : 0);
+        all.insert(all.end(), list.begin(), list.end());
+    }
+    return all;
+}
+
+void require_same_domain(const scene::Scene& scene, const Checkpoint& from) {
+    if (!from.has(domain_block)) return;  // a file from before there was one
+    std::vector<real> there;
+    from.get(domain_block, there);
+    if (const std::vector<real> here = domain_of(scene); here != there)
+        throw BadInput(
+            fmt::format("{}: the checkpoint does not fit the scene: it is of a run with [cells, size, origin] = [{}], and the scene has "
+                        "[{}]: a run goes on in "
+                        "its own domain; grid.cells, grid.size and grid.origin stay as they are",
+                        scene.file(), fmt::join(there, ", "), fmt::join(here, ", ")));
+}
+
 void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
+
+/// Of steps, frames or changes: none is beyond what a double counts.
+std::int64_t get_count(const Checkpoint& from, const std::string& name) {
+    const auto count = from.get_value<std::int64_t>(name);
+    Checkpoint::require_within(name, count, 0, std::int64_t{1} << 53);
+    return count;
+}
+
+/// What was read may be of no run: every number is one, and time has begun.
+void require_sound(const Simulation& simulation) {
+    constexpr real far = 1e6;  // a program may step on behind the end, but not so far
+    if (!(simulation.time() >= 0 && simulation.time() <= far * simulation.end_time()))
+        throw BadInput(fmt::format("the checkpoint is of no run: its time is {} s, and the end of its scene is {} s",
+                                   scene::number_text(simulation.time()), scene::number_text(simulation.end_time())));
+    if (slabs().several()) return;  // in parallel (MPI) a rank holds a part of them: the first step checks it
+    try {
+        sim::check_finite(simulation.fields(), {});
+    } catch (const NumericalFailure& failure) {
+        throw BadInput(std::string("the checkpoint is of no run: ") + failure.what());
+    }
+}
+
+/// The rows of a probe up to now are there, but for some where it has not been looked at since it was added.
+void require_rows(const Checkpoint& from, const scene::Scene& scene, real time) {
+    constexpr std::int64_t most_missing = 10000000;
+    for (const scene::Table& probe : scene.root().tables("probes")) {
+        const std::string row = "probe." + probe.text("name") + ".row";
+        const real every = probe.number_or("every", 0);
+        if (!(every > 0) || !from.has(row)) continue;
+        const std::int64_t next = sim::first_after(every, time);
+        Checkpoint::require_within(row, from.get_value<std::int64_t>(row), std::max<std::int64_t>(0, next - most_missing), next + 1);
+    }
+}
 
 std::string get_text(const Checkpoint& from, const std::string& name) {
     std::vector<char> text;
@@ -199,7 +257,7 @@ void Simulation::set(const std::string& key, std::span<const real> values) {
 }
 
 void Simulation::set_at(real time, const scene::Override& change) {
-    if (time < this->time())
+    if (!(time >= this->time() && time < infinity))
         throw BadInput(fmt::format("{} cannot change at {} s: the run is at {} s", change.key, scene::number_text(time),
                                    scene::number_text(this->time())));
     scene_.steered(change, {kind_.schema});  // refuses what it would then
@@ -219,6 +277,7 @@ void Simulation::meet_changes() {
 StepReport Simulation::step() { return step_until(infinity); }
 
 StepReport Simulation::step_until(real t) {
+    if (std::isnan(t)) throw BadInput("step_until(nan): a step goes until a time [s]");
     refuse_while_edited("the simulation steps");
     meet_changes();
     const StepReport report = step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
@@ -232,6 +291,7 @@ StepReport Simulation::step_until(real t) {
 }
 
 void Simulation::run_until(real t) {
+    if (!std::isfinite(t)) throw BadInput(fmt::format("run_until({}): a run goes on until a finite time [s]", t));
     while (!reached(t)) step_until(t);
 }
 
@@ -359,6 +419,7 @@ void Simulation::save(Checkpoint& to) const {
     std::string overrides;
     for (const auto& o : scene_.overrides()) overrides += o.key + '=' + o.value + '\0';
     put_text(to, "sim.overrides", overrides);
+    to.put(domain_block, domain_of(scene_));
     to.put_value("sim.steps", steps_);
     to.put_value("sim.frame", frame_);
     to.put_value("sim.at_frame", at_frame_);
@@ -370,7 +431,7 @@ void Simulation::save(Checkpoint& to) const {
 /// The scene as it stood when the checkpoint was made. One that was read from the checkpoint has the changes in it, and perhaps others
 /// behind them that the user wants.
 void Simulation::resume_changes(const Checkpoint& from) {
-    const auto met = from.has("sim.changed") ? from.get_value<std::int64_t>("sim.changed") : 0;
+    const auto met = from.has("sim.changed") ? get_count(from, "sim.changed") : 0;
     for (; changed_ < met && static_cast<std::size_t>(changed_) < changes_.size(); ++changed_) {
         const auto& what = changes_[static_cast<std::size_t>(changed_)].what;
         const auto& done = scene_.overrides();
@@ -381,37 +442,63 @@ void Simulation::resume_changes(const Checkpoint& from) {
 void Simulation::restore(const Checkpoint& from) {
     refuse_while_edited("the simulation goes on from a checkpoint");
     try {
+        require_same_domain(scene_, from);
         resume_changes(from);
         if (Cut cut = better_cut(from); !cut.empty()) {
             solver_ = make_solver(scene_, kind_, cut);
             shares_->cut = std::move(cut);
         }
         solver_->restore(from);
+        require_sound(*this);
+        require_rows(from, scene_, time());
         probes_.restore(from);
-        steps_ = from.get_value<std::int64_t>("sim.steps");
-        frame_ = from.get_value<std::int64_t>("sim.frame");
-        at_frame_ = from.get_value<bool>("sim.at_frame");
+        steps_ = get_count(from, "sim.steps");
+        frame_ = get_count(from, "sim.frame");
+        at_frame_ = from.get_value<char>("sim.at_frame") != 0;
         ended_ = from.has(ended_at) ? from.get_value<real>(ended_at) : -infinity;
         if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
     } catch (const BadInput&) {
         throw;
-    } catch (const std::runtime_error& error) {
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {  // a size that no vector has, too
         throw BadInput(std::string("the checkpoint does not fit the scene: ") + error.what());
     }
 }
 
 void put_ended(Checkpoint& to, real end) { to.put_value(ended_at, end); }
 
-scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Override>& more) {
+namespace {
+
+/// key=value, each with a zero at its end.
+std::vector<scene::Override> get_overrides(const Checkpoint& from) {
     std::vector<scene::Override> overrides;
-    const std::string lines = get_text(checkpoint, "sim.overrides");
+    const std::string lines = get_text(from, "sim.overrides");
     for (std::size_t at = 0; at < lines.size();) {
         const std::size_t stop = lines.find('\0', at), equals = lines.find('=', at);
+        if (stop == std::string::npos || equals > stop)
+            throw std::runtime_error("checkpoint block \"sim.overrides\" is no list of changes");
         overrides.push_back({lines.substr(at, equals - at), lines.substr(equals + 1, stop - equals - 1)});
         at = stop + 1;
     }
+    return overrides;
+}
+
+}  // namespace
+
+scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Override>& more) {
+    std::vector<scene::Override> overrides;
+    std::string source, file;
+    try {
+        overrides = get_overrides(checkpoint);
+        source = get_text(checkpoint, "sim.source"), file = get_text(checkpoint, "sim.file");
+    } catch (const BadInput&) {
+        throw;
+    } catch (const std::runtime_error& error) {
+        throw BadInput(std::string("the checkpoint holds no scene: ") + error.what());
+    }
     overrides.insert(overrides.end(), more.begin(), more.end());
-    return scene::parse(get_text(checkpoint, "sim.source"), get_text(checkpoint, "sim.file"), sim::schemas(), overrides);
+    return scene::parse(source, file, sim::schemas(), overrides);
 }
 
 }  // namespace weir

@@ -39,17 +39,24 @@ void Extrapolation<D>::find_band_rows(const LevelSet<D>& surface, int layers) {
 template <int D>
 void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers) {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
-    const std::ptrdiff_t stride = surface.phi.stride(a);
     const auto start_row = [&](Index<D> I) {
         if (!is_near(I[D - 1])) return;
-        const bool has_above = a == 0 || I[a] < frame_.cells[a], has_below = a == 0 || I[a] > 0;
-        const std::ptrdiff_t cells = static_cast<std::ptrdiff_t>(surface.phi.linear(I));  // of the row above; it need not be there
+        // Around a periodic axis face n is face 0: the cell beyond either is that at the other end.
+        const bool ring = frame_.periodic(a);
+        const bool has_above = a == 0 || ring || I[a] < frame_.cells[a], has_below = a == 0 || ring || I[a] > 0;
+        const auto row_at = [&](int i) {
+            Index<D> J = I;
+            if (a > 0) J[a] = ring ? (i + frame_.cells[a]) % frame_.cells[a] : i;
+            return surface.phi.linear(J);
+        };
+        const std::size_t above = has_above ? row_at(I[a]) : 0, below = has_below && a > 0 ? row_at(I[a] - 1) : above;
         Extent extent{frame_.cells[0], 0};
-        if (has_above) extent.join(band_rows_[static_cast<std::size_t>(cells) / n]);
-        if (has_below && a > 0) extent.join(band_rows_[static_cast<std::size_t>(cells - stride) / n]);
+        if (has_above) extent.join(band_rows_[above / n]);
+        if (has_below) extent.join(band_rows_[below / n]);
         if (extent.empty()) return;
         if (a == 0) ++extent.end;
-        const std::uint8_t* layer = surface.layer().data() + cells;
+        if (a == 0 && ring && (extent.begin == 0 || extent.end > frame_.cells[0])) extent = {0, frame_.cells[0] + 1};
+        const std::uint8_t *over = surface.layer().data() + above, *under = surface.layer().data() + below;
         std::uint8_t* face = mark.data() + mark.linear(I);
         std::uint8_t* joins = joins_.data();
         const auto near = [&](const std::uint8_t* of, int i) { return of[i] >= 1 && of[i] <= layers; };
@@ -72,8 +79,9 @@ void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const Lev
             for (const int by : {-1, 1})
                 if (Index<D> J = I; step(J, a, d, by)) see(mark.data() + mark.linear(J), extent.begin, extent.end);
         for (int i = extent.begin; i < extent.end; ++i) {
-            const bool wanted = a == 0 ? (i <= last - 1 && near(layer, i)) || (i > 0 && near(layer - 1, i))
-                                       : (has_above && near(layer, i)) || (has_below && near(layer - stride, i));
+            const bool wanted = a > 0  ? (has_above && near(over, i)) || (has_below && near(under, i))
+                                : ring ? near(over, i % last) || near(over, (i + last - 1) % last)
+                                       : (i <= last - 1 && near(over, i)) || (i > 0 && near(over, i - 1));
             joins[i] = static_cast<std::uint8_t>(joins[i] & (face[i] == 0) & wanted);
         }
         for (const std::uint8_t *at = joins + extent.begin, *end = joins + extent.end;

@@ -119,7 +119,8 @@ template <class F>
 void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) const {
     const int planes = frame_.cells[D - 1], lines = static_cast<int>(lines_.size()) / planes;
     int begin = detail::own_share.lower(0) - below, end = detail::own_share.upper(planes) + above;
-    if (!ring || end - begin >= planes) begin = std::max(begin, 0), end = std::min(end, planes);
+    if (!ring) begin = std::max(begin, 0), end = std::min(end, planes);
+    if (end - begin > planes) begin = 0, end = planes;  // each plane once
     parallel_for(begin, end, [&](int k) {
         const int plane = (k + planes) % planes;
         for (int j = 0; j < lines; ++j) f(static_cast<std::size_t>(plane * lines + j));

@@ -98,12 +98,16 @@ void Water<D>::save(Checkpoint& to) const {
 template <int D>
 void Water<D>::restore_markers(const Checkpoint& from) {
     int at = 0;
+    std::size_t all = 0;
     markers_.for_each_array([&](std::vector<real>& array) {
         const std::string name = "water.markers." + std::to_string(at++);
         Checkpoint::Held held = from.held<real>(name);
         if (!held.part) held = held.share(slabs().rank(), slabs().ranks());
         array.resize(held.end - held.begin);
         from.get_part(name, std::span<real>(array), held.begin, held.all);
+        Checkpoint::require_finite(name, array);
+        if (at == 1) all = held.all;
+        if (held.all != all) throw std::runtime_error("checkpoint block \"" + name + "\" is of another number of markers than the first");
     });
     if (held_.cut().empty())
         markers_.sort(frame_);

@@ -215,6 +215,11 @@ water_schemes)
     compare grid "3 1" "$water" "${frictionless[@]}" --set scheme.transfer=grid --set scheme.trace=rk3
     compare apic "3 2" "$water" --set scheme.transfer=apic --set scheme.poisson.method=cg_mic0
     compare ring "2 1,3 2" "$water_deep" $water_ring --set time.cfl=2 --set time.max_dt=0.05
+    # of so few planes around a ring that a rank sees them all, and water that begins on one side of the seam
+    few=$scenes/ranks_tall_pocket.toml
+    seam='--set sides={z_min={kind="periodic"},z_max={kind="periodic"}} --set liquid=[{shape="box",min=[-0.1,-0.1,-1.0],max=[0.4,0.7,0.3]}] --set time.end=0.2'
+    compare ring_of_few "2 1,4 1" "$few" $seam --set solver=mac_water
+    compare ring_of_few_tall "2 1,4 1" "$few" $seam
     compare ring_apic "3 1" "$water_deep" $water_ring $even --set scheme.transfer=apic
     compare ring_own "2 1,4 1" "$water_deep" $water_ring $even --set time.cfl=2 --set time.max_dt=0.05
     holds_own ring_own-4-1

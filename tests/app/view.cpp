@@ -213,4 +213,25 @@ TEST("what it cannot show is refused with what there is, and exit code 2") {
     EXPECT_FALSE(fs::exists(folder.path() / "a.png"));
 }
 
+TEST("a damaged frame is named, with exit code 2, and nothing is drawn") {
+    TemporaryFolder folder;
+    fs::copy(run_of("water"), folder.path() / "run", fs::copy_options::recursive);
+    const auto entries = output::frame_times(folder.path() / "run").size();
+    for (const char* set : {"grid", "markers"}) {
+        char name[64];
+        std::snprintf(name, sizeof name, "%s_%06zu.%s", set, entries - 1, set == std::string("grid") ? "vti" : "vtp");
+        const fs::path frame = folder.path() / "run/frames" / name;
+        const std::string whole = test::text_of(frame);
+        for (const std::string& damaged :
+             {std::string(), whole.substr(0, whole.size() / 2), std::string(whole).replace(whole.size() - 60, 8, "damaged!")}) {
+            std::ofstream(frame, std::ios::binary) << damaged;
+            Process process({"view", folder.path() / "run", "--png", folder.path() / "a.png"}, folder.path() / "log");
+            EXPECT_EQ(process.wait(), 2) << name;
+            EXPECT_NE(process.said().find(name), std::string::npos) << process.said();
+        }
+        std::ofstream(frame, std::ios::binary) << whole;
+    }
+    EXPECT_FALSE(fs::exists(folder.path() / "a.png"));
+}
+
 }  // namespace

@@ -458,3 +458,11 @@ def test_observers_look_on_and_steer():
     with pytest.raises(StopIteration):
         late.run_until(0.1)
     assert late.steps == 3
+
+
+@pytest.mark.parametrize("t", [float("nan"), float("inf"), float("-inf")])
+def test_run_until_takes_finite_times(t):
+    sim = weir.Simulation(dam)
+    with pytest.raises(weir.BadInput, match="finite time"):
+        sim.run_until(t)
+    assert sim.steps == 0

@@ -1,5 +1,7 @@
 #include "validation/harness/variants.hpp"
 
+#include "scene/names.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,14 +27,20 @@ std::vector<real> VariantReader::numbers_of_size(const Table& t) const {
     return size_ == Size::ci && t.has("ci") ? t.numbers("ci") : t.numbers("values");
 }
 
-std::vector<Variant> VariantReader::over(const Table& t, const Variant& common) const {
-    std::vector<Variant> list;
-    for (const std::string& value : size_ == Size::ci && t.has("ci") ? t.texts("ci") : t.texts("values")) {
-        list.push_back(common);
-        list.back().name = value;
-        list.back().overrides.push_back({t.text("key"), value});
+std::vector<Variant> VariantReader::over(const Table& t, const Variant& common, std::string_view names) {
+    std::vector<Variant> chosen;
+    for (const char* of : {"values", "ci"}) {  // both are read, so that a mistake is found at both sizes
+        if (!t.has(of)) continue;
+        std::vector<Variant> list;
+        for (const std::string& value : t.texts(of)) {
+            list.push_back(common);
+            list.back().name = value;
+            list.back().overrides.push_back({t.text("key"), value});
+            check_name(t.place(of), list, fmt::format("a value that is no name stands in [[{}]], with a name and set", names));
+        }
+        if (of == std::string("values") || size_ == Size::ci) chosen = std::move(list);
     }
-    return list;
+    return chosen;
 }
 
 std::vector<Variant> VariantReader::read(const Table& root, std::string_view key, const More& more) {
@@ -40,25 +48,28 @@ std::vector<Variant> VariantReader::read(const Table& root, std::string_view key
     merge(common, root, more);
     std::vector<Variant> list, of_size;
     if (root.has("over")) {
-        list = of_size = over(root.table("over"), common);
+        list = of_size = over(root.table("over"), common, key);
         if (!root.tables(key).empty()) problem(root.table("over").place("key"), fmt::format("there is [over] or [[{}]], not both", key));
     }
     for (const Table& t : root.tables(key)) {
         list.push_back(common);
         list.back().name = said(t, "name");
-        check_name(t, list);
+        check_name(t.place("name"), list);
         merge(list.back(), t, more);
         if (!t.has("size") || t.text("size") == name(size_)) of_size.push_back(list.back());
     }
     return list.empty() ? std::vector<Variant>{common} : of_size;
 }
 
-void VariantReader::check_name(const Table& t, const std::vector<Variant>& list) {
-    const std::string& n = list.back().name;  // it names a folder, so no spaces and no slashes
+/// It names a folder and stands in figures: so no spaces, no slashes, no quotes.
+void VariantReader::check_name(scene::Place at, const std::vector<Variant>& list, const std::string& hint) {
+    const std::string& n = list.back().name;
     if (n.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.") != std::string::npos)
-        problem(t.place("name"), fmt::format("variant name \"{}\" may have letters, digits and _ - + . only", n));
+        problem(at, fmt::format("variant name {} may have letters, digits and _ - + . only", scene::quote(n)), hint);
+    if (n.empty() || n == "." || n == "..")
+        problem(at, fmt::format("{} is no name of a variant: it names a folder", scene::quote(n)), hint);
     if (std::count_if(list.begin(), list.end(), [&](const Variant& v) { return v.name == n; }) > 1)
-        problem(t.place("name"), fmt::format("two variants are called \"{}\"", n));
+        problem(at, fmt::format("two variants are called {}", scene::quote(n)));
 }
 
 /// Lays what a table says over `v`: changes add up, the rest replaces.

@@ -35,8 +35,8 @@ public:
 
 private:
     std::vector<real> numbers_of_size(const scene::Table& t) const;
-    std::vector<Variant> over(const scene::Table& t, const Variant& common) const;
-    void check_name(const scene::Table& t, const std::vector<Variant>& list);
+    std::vector<Variant> over(const scene::Table& t, const Variant& common, std::string_view names);
+    void check_name(scene::Place at, const std::vector<Variant>& list, const std::string& hint = "");
     void merge(Variant& v, const scene::Table& t, const More& more);
     void add_changes(Variant& v, const scene::Table& t);
     Sweep sweep(const scene::Table& t);

@@ -8,11 +8,12 @@ namespace weir::validation {
 namespace {
 
 constexpr real negligible = 40;     // exp(-40) = 4e-18: further terms do not change a double
-constexpr int most_terms = 200000;  // at t = 0, where Poiseuille's terms fall as 1/n^3 and Couette's sum is not used
+constexpr int most_terms = 200000;  // of times so near 0 that exp() does not end the sum before
 
 }  // namespace
 
 real poiseuille_startup(real y, real t, real H, real G, real nu) {
+    if (t <= 0) return 0;
     real u = G / (2 * nu) * y * (H - y);
     for (int n = 0; n < most_terms; ++n) {
         const real k = (2 * n + 1) * pi / H;

@@ -53,13 +53,16 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
     return cases;
 }
 
-void write_outputs(const CaseResult& result, const std::filesystem::path& out) {
+/// Whether its figure could be drawn too; the numbers stand without it.
+bool write_outputs(const CaseResult& result, const std::filesystem::path& out) {
     output::write_file(out / "csv" / (result.plan.name + ".csv"), csv(result));
     try {
         draw(fmt::format("{} ({})", result.plan.name, name(result.plan.size)), panels_of(result),
              out / "svg" / (result.plan.name + ".svg"));
+        return true;
     } catch (const OutputError& failed) {
-        std::fprintf(stderr, "%s\n", failed.what());  // the numbers stand without their picture
+        std::fprintf(stderr, "%s\n", failed.what());
+        return false;
     }
 }
 
@@ -110,7 +113,11 @@ std::filesystem::path find_case(const std::string& name) {
         const auto holds = [&](const char* file) { return std::filesystem::exists(folder / file); };
         return holds("case.toml") || holds("cost.toml") || holds("stability.toml");
     };
-    if (holds_something(name)) return without_slash(std::filesystem::path(name).lexically_normal());
+    if (holds_something(name)) {
+        const auto folder = without_slash(std::filesystem::path(name).lexically_normal());
+        const bool has_name = folder.filename() != "." && folder.filename() != "..";  // the name of the case is that of its folder
+        return has_name ? folder : std::filesystem::canonical(folder);
+    }
     if (holds_something(case_root() / name)) return case_root() / name;
     std::vector<std::string> known;
     for (const auto& path : find_cases(case_root())) known.push_back(path.filename().string());
@@ -143,6 +150,7 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
     std::vector<CaseResult> results;
     auto verdicts = nlohmann::json::array();
     bool passed = true, bad = false;
+    int undrawn = 0;
     for (const Case& c : cases) {
         results.push_back(validate(c, options.out, solvers, progress));
         const CaseResult& result = results.back();
@@ -150,7 +158,7 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
         fmt::print("{}{}\n", claims_table(result), orders_table(result));
         std::fflush(stdout);
         std::fputs(untold_failures(result).c_str(), stderr);
-        write_outputs(result, options.out);
+        undrawn += write_outputs(result, options.out) ? 0 : 1;
         for (const auto& verdict : verdicts_json(result)) verdicts.push_back(verdict);
         output::write_file(options.out / "verdicts.json", verdicts.dump(1) + "\n");  // after each case: a killed run keeps what it has
         passed = passed && result.pass(), bad = bad || result.bad_input();
@@ -163,7 +171,8 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
     fmt::print("{} of {} claims hold, in {} cases", held, claims.size(), results.size());
     if (const std::size_t open = verdicts.size() - claims.size(); open > 0) fmt::print("; {} asked and not reached", open);
     fmt::print("\n");
-    return bad ? exit_bad_input : passed ? exit_success : exit_claim_failed;
+    if (undrawn > 0) std::fprintf(stderr, "%d of %zu figures could not be drawn: exit code 2\n", undrawn, results.size());
+    return bad || undrawn > 0 ? exit_bad_input : passed ? exit_success : exit_claim_failed;
 }
 
 }  // namespace weir::validation

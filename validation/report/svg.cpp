@@ -1,13 +1,17 @@
-// Writes a gnuplot program with its data inside and runs it.
+// Writes a gnuplot program with its data inside and runs it. Text that comes from files stands in single quotes, in which gnuplot replaces
+// nothing; the figure comes from its standard output, because a name after `set output` may be a command.
 #include "validation/report/svg.hpp"
 
 #include "core/error.hpp"
+#include "core/programs.hpp"
+#include "output/atomic_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <fstream>
+#include <cstdio>
+#include <iterator>
+#include <system_error>
 
 namespace weir::validation {
 namespace {
@@ -17,10 +21,26 @@ constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "
 constexpr int marks[] = {7, 4, 8};                    // disk, square, triangle: for the second and third round through the colours
 constexpr int panel_width = 560, panel_height = 420;  // pixels
 
-std::string quoted(std::string text) {
+/// One line without control characters.
+std::string plain(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
+    return text;
+}
+
+/// A text of a gnuplot program. Within double quotes gnuplot runs what stands between back quotes; within single ones nothing is replaced,
+/// and a single quote stands as two.
+std::string quoted(const std::string& text) {
+    std::string all = "'";
+    for (const char c : plain(text)) all += c == '\'' ? "''" : std::string(1, c);
+    return all + "'";
+}
+
+/// A text of a data block, which knows double quotes only, has no sign for one within, and runs nothing.
+std::string quoted_datum(std::string text) {
     std::replace(text.begin(), text.end(), '"', '\'');
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return "\"" + text + "\"";
+    std::replace(text.begin(), text.end(), '\\', '/');
+    return '"' + plain(text) + '"';
 }
 
 /// A point can be drawn: finite, and positive where an axis is logarithmic.
@@ -105,7 +125,7 @@ std::string panel_program(const Panel& p, std::size_t number) {
         data += block + " << EOD\n";
         for (std::size_t i = 0; i < c.size(); ++i)
             if (drawable(p, c.x[i], c.y[i]))
-                data += fmt::format("{:.9g} {:.9g} {}\n", c.x[i], c.y[i], quoted(i < c.names.size() ? c.names[i] : ""));
+                data += fmt::format("{:.9g} {:.9g} {}\n", c.x[i], c.y[i], quoted_datum(i < c.names.size() ? c.names[i] : ""));
         data += "EOD\n";
         plots += fmt::format("{}{} using 1:2 {} title {} noenhanced", drawn ? ", \\\n     " : "plot ", block, style_of(c, drawn),
                              quoted(c.label));
@@ -123,11 +143,11 @@ std::string panel_program(const Panel& p, std::size_t number) {
 
 }  // namespace
 
-std::string gnuplot_program(const std::string& title, const std::vector<Panel>& panels, const std::filesystem::path& svg) {
+std::string gnuplot_program(const std::string& title, const std::vector<Panel>& panels) {
     const int columns = panels.size() > 1 ? 2 : 1;
     const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-    std::string s = fmt::format("set terminal svg size {},{} font 'sans,13' background '#ffffff'\nset output {}\n", columns * panel_width,
-                                rows * panel_height + 30, quoted(svg.string()));
+    std::string s =
+        fmt::format("set terminal svg size {},{} font 'sans,13' background '#ffffff'\n", columns * panel_width, rows * panel_height + 30);
     s += "set grid lc rgb '#dddddd'; set border lw 1; set lmargin 11; set rmargin 3\n";
     s += fmt::format("set multiplot layout {},{} title {} noenhanced font ',16'\n", rows, columns, quoted(title));
     for (std::size_t i = 0; i < panels.size(); ++i) s += panel_program(panels[i], i);
@@ -135,19 +155,22 @@ std::string gnuplot_program(const std::string& title, const std::vector<Panel>& 
 }
 
 void draw(const std::string& title, const std::vector<Panel>& panels, const std::filesystem::path& svg) {
-    std::filesystem::create_directories(svg.parent_path());
-    auto program = svg;
-    program.replace_extension(".gnuplot");
-    {
-        std::ofstream file(program);
-        file << gnuplot_program(title, panels, svg);
-        if (!file.flush()) throw OutputError("cannot write " + program.string());
+    std::error_code failed;
+    std::filesystem::create_directories(svg.parent_path(), failed);
+    if (failed) throw OutputError("cannot make the folder " + svg.parent_path().string() + ": " + failed.message());
+    const auto beside = [&](const char* ending) { return std::filesystem::absolute(svg).replace_extension(ending); };
+    const auto program = beside(".gnuplot"), drawn = beside(".svg.part");
+    output::write_file(program, gnuplot_program(title, panels));
+    const int code = run_program({"gnuplot", program.string()}, {.out = drawn});
+    if (code != 0) {
+        std::filesystem::remove(drawn, failed);
+        throw OutputError(code == 127 ? "cannot draw " + svg.string() +
+                                            ": gnuplot is not on the PATH (Debian: gnuplot-nox); its program is " + program.string()
+                                      : "gnuplot could not draw " + svg.string() + "; its program is " + program.string());
     }
-    const std::string command = "gnuplot '" + program.string() + "'";
-    const int status = std::system(command.c_str());  // the path is ours: folder chosen by the user, name of a case
-    if (status != 0)
-        throw OutputError("gnuplot could not draw " + svg.string() + " (is gnuplot-nox installed?); its program is " + program.string());
-    std::filesystem::remove(program);
+    std::filesystem::rename(drawn, svg, failed);
+    if (failed) throw OutputError("cannot write " + svg.string() + ": " + failed.message());
+    std::filesystem::remove(program, failed);
 }
 
 }  // namespace weir::validation

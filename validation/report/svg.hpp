@@ -9,7 +9,7 @@
 namespace weir::validation {
 
 /// The gnuplot program of a figure: data inside, panels two a row.
-std::string gnuplot_program(const std::string& title, const std::vector<Panel>& panels, const std::filesystem::path& svg);
+std::string gnuplot_program(const std::string& title, const std::vector<Panel>& panels);
 
 /// Draws; throws OutputError when gnuplot is missing, fails, or the file cannot be written.
 void draw(const std::string& title, const std::vector<Panel>& panels, const std::filesystem::path& svg);

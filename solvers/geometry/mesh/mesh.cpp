@@ -122,6 +122,7 @@ void require(const scene::Scene& scene, const scene::Table& table, const std::st
 }  // namespace
 
 PosedMesh make_mesh(const scene::Table& table) {
+    if (table.text("file").empty()) throw BadInput("an empty text names no file; known endings: .obj, .ply, .stl");
     PosedMesh posed;
     posed.mesh = load(table.file("file"), static_cast<int>(table.integer("resolution")));
     posed.scale = table.number("scale");

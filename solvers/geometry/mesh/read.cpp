@@ -167,7 +167,7 @@ public:
                 }
                 if (element.name == "vertex") mesh.points.push_back(x);
                 if (element.name == "vertex" && coloured_) mesh.colours.push_back(rgb);
-                if (element.name == "face") add_face(face, mesh);
+                if (element.name == "face") add_face(face, mesh), refuse_many(name_, static_cast<double>(mesh.corners.size()));
             }
         return mesh;
     }
@@ -227,6 +227,15 @@ private:
         if (!format) words_.fail("the header names no format");
         words_.skip_line();
         at_ = words_.position();
+        require_elements();
+    }
+
+    /// One without properties takes no byte of the file: its count would be gone through, however large.
+    void require_elements() const {
+        for (const Element& element : elements_)
+            if (element.count > 0 && element.properties.empty())
+                throw BadInput(name_ + ": the header announces " + std::to_string(element.count) + " elements \"" +
+                               Words::shown(element.name) + "\" without a property");
     }
 
     real number(const std::string& type) {
@@ -283,8 +292,8 @@ Triangles read_triangles(const std::filesystem::path& file) {
     std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending != ".stl" && ending != ".obj" && ending != ".ply")
         throw BadInput(file.string() + ": its name says no format of meshes; known: .obj, .ply, .stl");
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) throw BadInput(file.string() + ": there is no such file");
+    std::error_code failed;
+    if (!std::filesystem::exists(file, failed) && !failed) throw BadInput(file.string() + ": there is no such file");
     if (ending == ".stl") return read_stl(file);
     if (ending == ".obj") return read_obj(file);
     return Ply(file).read();

@@ -1,56 +1,70 @@
-// How ranks wait for one another: by polls where the processor is their own, asleep where other processes are busy.
+// How ranks wait for one another: by polls where the processor is their own, asleep where other processes are busy. On clocks of the test's
+// own, so that nothing depends on who else is busy.
 #include "distributed/polling_wait.hpp"
 
 #include "support/test.hpp"
 
 namespace {
 
-using weir::distributed::PollingWait;
-using clock_type = std::chrono::steady_clock;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// The calls that a wait makes which is done after some time, each of which takes the processor away for a while.
-int calls_until(PollingWait& wait, microseconds done_after, microseconds away) {
-    const auto start = clock_type::now();
+/// Time that passes by polls, yields and naps alone.
+struct TestTimes {
+    using duration = std::chrono::steady_clock::duration;
+    static inline duration clock{}, processor{};
+    static inline int naps = 0;
+    static duration now() { return clock; }
+    static duration own() { return processor; }
+    static void nap(microseconds time) { clock += time, ++naps; }
+    static void yield() {}
+    /// Another process has the processor.
+    static void lose(duration time) { clock += time; }
+    static void work(duration time) { clock += time, processor += time; }
+};
+using Wait = weir::distributed::PollingWaitBy<TestTimes>;
+
+/// The polls that a wait makes which is done after some time; each works for a microsecond and loses the processor for a while.
+int polls_until(Wait& wait, microseconds done_after, microseconds away = microseconds(0)) {
+    const auto start = TestTimes::clock;
+    TestTimes::naps = 0;
     int calls = 0;
     wait.until([&] {
         ++calls;
-        if (away.count() > 0) std::this_thread::sleep_for(away);
-        return clock_type::now() - start >= done_after;
+        TestTimes::work(microseconds(1)), TestTimes::lose(away);
+        return TestTimes::clock - start >= done_after;
     });
-    return calls;
+    return calls - TestTimes::naps;
 }
 
 TEST("a wait polls for as long as it may, and sleeps between polls from then on") {
-    // A poll takes less than 2 us even here, a nap at least 20 us. Three tries: another process may take the processor in one.
-    int most = 0;
-    for (int tries = 0; tries < 3; ++tries) {
-        PollingWait wait(milliseconds(2));
-        most = std::max(most, calls_until(wait, milliseconds(1), microseconds(0)));
-    }
-    EXPECT_GT(most, 500);
-    PollingWait never(microseconds(0));
-    EXPECT_LE(calls_until(never, milliseconds(4), microseconds(0)), 202);  // 4 ms of naps
+    Wait wait(milliseconds(2));
+    EXPECT_EQ(polls_until(wait, milliseconds(1)), 1000);
+    EXPECT_EQ(TestTimes::naps, 0);
+    EXPECT_NEAR(polls_until(wait, milliseconds(3)), 2000, 2);  // one before the polls, one before the first nap
+    EXPECT_NEAR(TestTimes::naps, 1000 / 21, 1);                // of 20 us, and a poll each
+    Wait never(microseconds(0));
+    EXPECT_LE(polls_until(never, milliseconds(4)), 2);
     EXPECT_EQ(never.busy_seconds(), 0);
 }
 
 TEST("a poll that loses the processor is the last for a second: waits sleep at once, and the time is reported") {
-    PollingWait wait(milliseconds(2));
-    EXPECT_EQ(calls_until(wait, microseconds(0), milliseconds(1)), 1);  // done at once: no wait
+    Wait wait(milliseconds(2));
+    EXPECT_EQ(polls_until(wait, microseconds(0), milliseconds(1)), 1);  // done at once: no wait
     EXPECT_EQ(wait.busy_seconds(), 0);
-    calls_until(wait, milliseconds(3), milliseconds(1));
-    EXPECT_LE(calls_until(wait, milliseconds(4), microseconds(0)), 202);  // naps of 20 us or more
-    EXPECT_GT(wait.busy_seconds(), 0.004);
-    EXPECT_LT(wait.busy_seconds(), 1);
-    PollingWait short_polls(microseconds(100));
-    calls_until(short_polls, milliseconds(3), milliseconds(1));
+    polls_until(wait, milliseconds(3), milliseconds(1));
+    const double before = wait.busy_seconds();
+    EXPECT_LE(polls_until(wait, milliseconds(4)), 2);
+    EXPECT_NEAR(wait.busy_seconds() - before, 0.004, 5e-5);
+    TestTimes::lose(milliseconds(1000));
+    EXPECT_NEAR(wait.busy_seconds(), 1, 1e-9);
+    EXPECT_EQ(polls_until(wait, milliseconds(1)), 1000);  // it polls again
+    Wait little(milliseconds(2));
+    polls_until(little, milliseconds(1), microseconds(1));  // in all 0.5 ms, as interrupts take
+    EXPECT_EQ(little.busy_seconds(), 0);
+    Wait short_polls(microseconds(100));
+    polls_until(short_polls, milliseconds(3), milliseconds(1));
     EXPECT_EQ(short_polls.busy_seconds(), 0);  // it sleeps soon enough
-    std::this_thread::sleep_for(milliseconds(1000));
-    EXPECT_EQ(wait.busy_seconds(), 1);
-    int most = 0;  // it polls again
-    for (int tries = 0; tries < 3; ++tries) most = std::max(most, calls_until(wait, milliseconds(1), microseconds(0)));
-    EXPECT_GT(most, 500);
 }
 
 }  // namespace

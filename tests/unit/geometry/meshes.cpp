@@ -233,11 +233,15 @@ TEST("what bounds no region, and what is broken, is refused with the reason") {
               "type.ply:4:10: \"floaty\" is no type of a property; known: char, uchar, short, ushort, int, uint, float, double, list"},
              {"many.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nelement face 10000000\n",
               "many.ply: 10000000 triangles; at most 1000000 are read, more than a grid of distances can show"},
+             {"bare.ply", "ply\nformat ascii 1.0\nelement vertex 3999999999\nend_header\n",
+              "bare.ply: the header announces 3999999999 elements \"vertex\" without a property"},
              {"head.ply", "ply\nformat ascii 1.0\n", "head.ply:3:1: the header has no end"},
              {"mesh.vtk", "", "mesh.vtk: its name says no format of meshes; known: .obj, .ply, .stl"}})
         EXPECT_EQ(refusal(folder, name, content), expected);
     EXPECT_EQ(refusal(folder, "whole.stl", text(box_of({}, one))), "accepted");
     EXPECT_THROW(read_triangles(folder.path() / "nowhere.stl"), BadInput);
+    std::filesystem::create_symlink("/dev/zero", folder.path() / "endless.stl");
+    EXPECT_THROW(read_triangles(folder.path() / "endless.stl"), BadInput);
 }
 
 TEST("distances are those of the triangles, to what linear interpolation leaves") {

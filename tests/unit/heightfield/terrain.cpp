@@ -60,6 +60,17 @@ TEST("what is wrong with an ASCII grid is told with its line and column") {
     EXPECT_TRUE(has(refusal([] { (void)read_asc("/nowhere.asc", {}); }), "cannot be read"));
 }
 
+TEST("more cells than the file has bytes are refused before they are allocated, and what has no end is not read") {
+    const test::TemporaryFolder folder;
+    const std::string asc = "ncols 16384\nnrows 16384\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n";  // 2 GiB of heights
+    EXPECT_TRUE(has(refusal([&] { (void)read_asc(written(folder, "a.asc", asc), {}); }), "268435456 cells are announced; the file has"));
+    EXPECT_TRUE(
+        has(refusal([&] { (void)read_pgm(written(folder, "a.pgm", "P2 16384 16384 1\n0 1\n")); }), "268435456 cells are announced"));
+    EXPECT_TRUE(has(refusal([&] { (void)read_pgm(written(folder, "b.pgm", "P5 16384 16384 1\n0 1\n")); }), "the picture ends after"));
+    EXPECT_TRUE(has(refusal([] { (void)read_asc("/dev/zero", {}); }), "this is a device or a pipe"));
+    EXPECT_TRUE(has(refusal([] { (void)read_pgm("/dev/zero"); }), "this is a device or a pipe"));
+}
+
 TEST("grey maps, written out and in bytes") {
     const test::TemporaryFolder folder;
     const Raster text = read_pgm(written(folder, "a.pgm", "P2\n# c\n2 2\n10\n0 5\n10 1\n"));
@@ -102,6 +113,13 @@ TEST("formulas: precedence, functions, and where they are wrong") {
     EXPECT_EQ(wrong("x = 2"), "2: \"=\" is not expected here") << "a formula changes nothing";
     EXPECT_EQ(wrong("x, 2"), "0: one value is expected");
     EXPECT_EQ(f("x <= 2 ? 1 : 0", 2), 1);
+}
+
+TEST("a formula takes one value for each variable, looks at no more, and does with no fewer") {
+    const scene::Formula f("2*x", {"x"});
+    const real two[] = {3, 1e300}, none[] = {0};
+    EXPECT_EQ(f(two), 6);  // under the address sanitizer: nothing is written beyond the one variable
+    EXPECT_THROW(f(std::span<const real>(none, 0)), std::logic_error);
 }
 
 TEST("a formula that threads ask at once answers each of them") {

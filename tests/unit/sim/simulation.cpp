@@ -290,3 +290,13 @@ TEST("a small scene takes no more threads than it has work for, a large one all,
 }
 
 }  // namespace
+
+TEST("a run goes on until a finite time: NaN and infinity are refused at once, also of a change to come") {
+    auto simulation = weir::test::fake_simulation("time = { end = 1.0 }", 2);
+    for (const weir::real t : {weir::not_applicable, weir::infinity, -weir::infinity}) {
+        EXPECT_THROW(simulation.run_until(t), weir::BadInput);
+        EXPECT_THROW(simulation.set_at(t, {"time.end", "2"}), weir::BadInput);
+    }
+    EXPECT_THROW(simulation.step_until(weir::not_applicable), weir::BadInput);
+    EXPECT_EQ(simulation.steps(), 0);
+}

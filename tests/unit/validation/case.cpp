@@ -83,6 +83,18 @@ accept = [ { metric = "pressure.l2", order_within = [1.98, 2.02], why = "second 
     EXPECT_EQ(over.variants[1].overrides.back().value, "multigrid");
 }
 
+TEST("values of 'over' name folders, at either size: what is no such name, or stands twice, is refused with its line") {
+    const std::string rest = "accept = [ { metric = \"x\", at_most = 1, why = \"w\" } ]\n";
+    const auto over = [&](const std::string& lists) { return head + rest + "over = { key = \"title\", " + lists + " }\n"; };
+    for (const std::string value : {"'\"a\"'", "'../x'", "'`x`'", "'a b'", "\"a'b\"", "'..'", "'.'", "''"}) {
+        EXPECT_NE(refusal(over("values = ['a', " + value + "]")).find("7: "), std::string::npos) << value;
+        EXPECT_NE(refusal(over("values = ['a'], ci = ['a', " + value + "]")).find("7: "), std::string::npos) << value;  // read at full size
+    }
+    expect_refused(over("values = ['a', 'a']"), "7: two variants are called \"a\"");
+    expect_refused(head + rest + "[[variants]]\nname = \"..\"\n", "\"..\" is no name of a variant");
+    EXPECT_EQ(refusal(over("values = ['-1.5e+3', 'cg_mic0']")).find("may have"), std::string::npos);
+}
+
 TEST("a claim without a reason, and a case that says not what it is blind to, are refused") {
     expect_refused("question = \"q\"\nkind = \"exact\"\naccept = [ { metric = \"x\", at_most = 1, why = \"w\" } ]", "blind_to");
     expect_refused(head + "sweep = { key = \"grid.cells\", values = [1, 2] }\naccept = [ { metric = \"x\", at_most = 1 } ]", "why");
