@@ -58,10 +58,11 @@ TEST_IN_2D_AND_3D("an emitter gives the faces inside it its velocity along their
     FieldPlan plan;
     MacState<D> state(scene, Emitters<D>::needs(scene, plan));
     Emitters<D>(scene, state).apply(state, 0.1);
+    const Vec<3> velocity{{0.1, 0.2, 0.3}};
     for (int a = 0; a < D; ++a)
         for_each_inner_face(state.u, a, [&](const Index<D>& I) {
             const bool inside = norm(state.u.face_centre(a, I) - Vec<D>::constant(0.5)) < 0.2;
-            ASSERT_EQ(state.u[a](I), inside ? (a == 0 ? 0.1 : a == 1 ? 0.2 : 0.3) : 0) << a;
+            ASSERT_EQ(state.u[a](I), inside ? velocity[a] : 0) << a;
         });
 }
 

@@ -74,7 +74,7 @@ TEST_IN_2D_AND_3D("a heater gives its power while it works, and a wall its flux 
     set_threads(1);
     const auto heat_after_a_second = [](const std::string& more) {
         const auto scene = test::mac_scene(
-            "solver = \"mac\"\ndim = " + std::to_string(D) + "\ngrid = { cells = " + test::list(D, "6") +
+            "solver = \"mac\"\ndim = " + std::to_string(D) + "\ngrid = { cells = " + (D == 2 ? "[6, 9]" : "[6, 9, 6]") +  // no cubes
             ", size = " + test::list(D, "0.3") + " }\ntime = { end = 1.0, max_dt = 0.21 }\n" +
             "fluid = { density = 1000.0 }\ninitial = { temperature = { name = \"constant\", value = 310.0 } }\n" + more + wax);
         FlowSolver<D> flow(scene);
@@ -87,6 +87,10 @@ TEST_IN_2D_AND_3D("a heater gives its power while it works, and a wall its flux 
     EXPECT_NEAR(heat_after_a_second(ball + "power = 10.0 } ]\n"), 10, 1e-6);
     EXPECT_NEAR(heat_after_a_second(ball + "power = 10.0, start = 0.25, end = 0.75 } ]\n"), 5, 1e-6);
     EXPECT_NEAR(heat_after_a_second("sides.y_max = { kind = \"wall\", heat_flux = 200.0 }\n"), 200 * std::pow(0.3, D - 1), 1e-6);
+    // Half of what it covers is solid: all of its power goes to the other half.
+    const std::string half =
+        "solids = [ { shape = \"box\", min = " + test::list(D, "0.0") + ", max = " + (D == 2 ? "[0.1, 0.3]" : "[0.1, 0.3, 0.3]");
+    EXPECT_NEAR(heat_after_a_second(ball + "power = 10.0 } ]\n" + half + " } ]\n"), 10, 1e-6);
 }
 
 TEST_IN_2D_AND_3D("where all is ice nothing moves, and the flow around it is free of divergence") {

@@ -19,15 +19,16 @@ std::vector<Motion<D>> motions() {
 }  // namespace
 
 TEST_IN_2D_AND_3D("the velocity of a solid's point is the time derivative of where the point is") {
-    const real t = 0.37, eps = 1e-6;
-    for (const auto& motion : motions<D>()) {
-        Vec<D> rest = Vec<D>::constant(0.3);
-        rest[0] = -0.8;
-        const Vec<D> before = motion.pose(t - eps).to_world(rest), after = motion.pose(t + eps).to_world(rest);
-        const auto pose = motion.pose(t);
-        const Vec<D> v = pose.velocity_at(pose.to_world(rest));
-        for (int a = 0; a < D; ++a) EXPECT_NEAR(v[a], (after[a] - before[a]) / (2 * eps), 1e-8);  // eps^2 and 1e-16 / eps
-    }
+    const real eps = 1e-6;
+    for (const auto& motion : motions<D>())
+        for (const real t : {0.37, 2.3}) {  // in both of the keyframes' spans
+            Vec<D> rest = Vec<D>::constant(0.3);
+            rest[0] = -0.8;
+            const Vec<D> before = motion.pose(t - eps).to_world(rest), after = motion.pose(t + eps).to_world(rest);
+            const auto pose = motion.pose(t);
+            const Vec<D> v = pose.velocity_at(pose.to_world(rest));
+            for (int a = 0; a < D; ++a) EXPECT_NEAR(v[a], (after[a] - before[a]) / (2 * eps), 1e-8);  // eps^2 and 1e-16 / eps
+        }
 }
 
 TEST_IN_2D_AND_3D("to_rest undoes to_world, and distances are kept") {

@@ -86,3 +86,12 @@ TEST_IN_2D_AND_3D("a wave's surface is where its cosine says, and a step of its 
         EXPECT_NEAR(water->distance(surface + d * normal), d, 6e-5);
     }
 }
+
+TEST_IN_2D_AND_3D("a capsule ends in half a ball at both of its ends, whichever is named first") {
+    const Vec<D> a = Vec<D>::constant(0.1), b = a + 0.5 * Vec<D>::unit(0), beyond = 0.4 * Vec<D>::unit(0) + 0.3 * Vec<D>::unit(1);
+    for (const bool turned : {false, true}) {
+        const auto shape = turned ? capsule<D>(b, a, 0.2) : capsule<D>(a, b, 0.2);
+        EXPECT_NEAR(shape->distance(b + beyond), 0.3, 1e-15);
+        EXPECT_NEAR(shape->distance(a - beyond), 0.3, 1e-15);
+    }
+}

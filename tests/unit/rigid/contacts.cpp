@@ -96,3 +96,27 @@ TEST("a body comes to rest on a solid of the scene, and is carried by one that m
     EXPECT_NEAR(world.bodies[0].at[1], 1.1, 2e-3);
     EXPECT_NEAR(world.bodies[0].velocity[0], 0.3, 1e-6);
 }
+
+TEST_IN_2D_AND_3D("a ball turns back at every wall where its surface meets it") {
+    const real dt = 1e-3;
+    for (int a = 0; a < D; ++a)
+        for (const real way : {-1.0, 1.0}) {
+            Dry<D> world(
+                fmt::format("bodies = [ {{ shape = \"sphere\", centre = {}, radius = 0.25, density = 100.0, restitution = 1.0 }} ]",
+                            D == 2 ? "[2.0, 2.0]" : "[2.0, 2.0, 2.0]"),
+                0);
+            world.bodies[0].velocity[static_cast<std::size_t>(a)] = 2 * way;
+            real furthest = 0;
+            for (int i = 0; i < 1500; ++i) world.step(dt), furthest = std::max(furthest, way * (world.bodies[0].at[a] - 2));
+            EXPECT_NEAR(furthest, 1.75, 2 * dt) << a << ' ' << way;  // a step's way
+            EXPECT_NEAR(world.bodies[0].velocity[static_cast<std::size_t>(a)], -2 * way, 1e-9);
+        }
+}
+
+TEST_IN_2D_AND_3D("what lies on the floor does not bounce, however lively") {
+    Dry<D> world(fmt::format("bodies = [ {{ shape = \"sphere\", centre = {}, radius = 0.25, density = 100.0, restitution = 0.9 }} ]",
+                             D == 2 ? "[2.0, 0.25]" : "[2.0, 0.25, 2.0]"));
+    real fastest = 0;
+    for (int i = 0; i < 200; ++i) world.step(2e-3), fastest = std::max(fastest, std::abs(world.bodies[0].velocity[1]));
+    EXPECT_LT(fastest, 1e-9);  // a bounce by the fall of a step would be 0.9 g dt, 1.8e-2 m/s
+}

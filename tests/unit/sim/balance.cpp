@@ -128,6 +128,10 @@ TEST("heat is balanced against what was added to it") {
     const BalanceOfRun run = balance(heat(10));
     ASSERT_EQ(run.warnings.size(), 1u);
     EXPECT_NEAR(*run.quantities[0].unexplained, -10.0 / 140, 1e-12);
+    EXPECT_TRUE(
+        balance([](real t) {
+            return std::vector<Integral>{{"heat", "J/m", 100 + 30 * t}, {"heat_added", "J/m", 50 * t}, {"vapour_heat", "J/m", 20 * t}};
+        }).warnings.empty());  // what vapour takes along is explained
 }
 
 TEST("solids thinner than two cells are named with their thickness, whatever shape they have") {

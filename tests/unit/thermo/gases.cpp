@@ -66,6 +66,16 @@ TEST("densities lie on the equation of state, on the branch of the state asked f
     EXPECT_EQ(fluid->state(top), State::supercritical);
 }
 
+TEST("the expansion of van der Waals's liquid is the slope of its density over the temperature, at the pressure of saturation") {
+    const auto fluid = van_der_waals(R, top, liquid, vapour);
+    for (const real part : {0.5, 0.7}) {
+        const real T = part * top.T, eps = 1e-4 * T, p = fluid->pressure({}, T + eps);  // liquid at both ends
+        const real slope = (fluid->density(State::liquid, {T + eps, p}) - fluid->density(State::liquid, {T - eps, p})) / (2 * eps);
+        // The pressure is higher than that of saturation by 1e-4 T dp/dT: a part of 1e-3 of it, which a liquid hardly feels.
+        EXPECT_NEAR(fluid->expansion(T), -slope / fluid->colder_density({}, T), 1e-3 * fluid->expansion(T));
+    }
+}
+
 TEST("thin, van der Waals's fluid is the ideal gas, and that has no other state") {
     const auto fluid = van_der_waals(R, top, liquid, vapour), gas = ideal_gas(R, vapour);
     const Point thin{600, 10};

@@ -77,6 +77,15 @@ TEST("boiling points agree with the table to 1e-6") {
     }
 }
 
+TEST("along the line of melting ice and water shrink each by its own compressibility") {
+    const real warm = 272, cold = 262, rise = water()->pressure(Boundary::melting, cold) - water()->pressure(Boundary::melting, warm);
+    // Of R10-06 and of IAPWS-95 at 0 °C [1/Pa]
+    EXPECT_NEAR(std::log(water()->colder_density(Boundary::melting, cold) / water()->colder_density(Boundary::melting, warm)) / rise,
+                1.1779e-10, 1e-14);
+    EXPECT_NEAR(std::log(water()->warmer_density(Boundary::melting, cold) / water()->warmer_density(Boundary::melting, warm)) / rise,
+                5.0885e-10, 1e-14);
+}
+
 TEST("each line's inverse gives back its temperature to rounding") {
     // Of p, rounding is 1e-16; T moves by p/(dp/dT) times that, less than T of it on these lines, melting near the triple point apart:
     // there 1e-16 of the terms of the sum, 1e6 p_t, is 1e-11 K at 13 MPa/K.

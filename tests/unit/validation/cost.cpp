@@ -76,6 +76,16 @@ TEST("the price of a setting is the median of its repeats, not the fastest nor t
     EXPECT_EQ(point.seconds_per_second, 1.5);
 }
 
+TEST("the first step, which fills caches, is not timed where there is another") {
+    RunRecord record;
+    record.history.resize(5);  // the initial state and four steps
+    for (std::size_t i = 1; i < 5; ++i) record.history[i].seconds = i == 1 ? 100 : 1, record.history[i].report.dt = 0.5;
+    const Timing t = timing_of(record);
+    EXPECT_EQ(t.computing, 3);
+    EXPECT_EQ(t.simulated, 1.5);
+    EXPECT_EQ(t.steps, 3);
+}
+
 TEST("a study is read at the asked size; what is wrong in it is named") {
     const Study full = parse_study(head + methods, "cost.toml", "cases/sample", Size::full);
     const Study ci = parse_study(head + methods, "cost.toml", "cases/sample", Size::ci);

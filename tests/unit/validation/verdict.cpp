@@ -76,6 +76,11 @@ TEST("a claim speaks of the last run, of the one it names, or of the worst of al
     EXPECT_EQ(worst.at, "16");
     EXPECT_FALSE(worst.pass);
     EXPECT_EQ(worst.seconds, 6);
+    const Verdict unknown = judged(claim(Test::at_most, -inf, 0.6), {run(8, 0.3), run(16, std::nan("")), run(32, 0.1)});
+    EXPECT_TRUE(unknown.pass) << "of the last run alone";
+    Criterion all = claim(Test::at_most, -inf, 0.6);
+    all.every = true;
+    EXPECT_FALSE(judged(all, {run(8, 0.3), run(16, std::nan("")), run(32, 0.1)}).pass) << "what is not a number is the worst";
 }
 
 TEST("an order is taken from the finest pair, and a stalled one fails") {
