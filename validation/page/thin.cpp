@@ -18,8 +18,8 @@ struct Point {
 };
 using Line = std::vector<Point>;
 
-constexpr double visible = 0.3;        // pixels off the straight line
-constexpr double column = 0.5;         // pixels
+constexpr double visible = 0.5;        // pixels off the straight line
+constexpr double column = 1.0;         // pixels
 constexpr double mark_distance = 1.5;  // pixels
 
 void replace_all(std::string& s, std::string_view from, std::string_view to) {

@@ -5,8 +5,8 @@
 
 namespace weir::validation {
 
-/// Lines keep every corner that is off by more than 0.3 px from the straight line drawn in its place (Douglas & Peucker 1973), and in
-/// each column of half a pixel the highest and lowest point; marks of one colour keep one in each square of 1.5 px.
+/// Lines keep every corner that is off by more than 0.5 px from the straight line drawn in its place (Douglas & Peucker 1973), and in
+/// each column of a pixel the highest and lowest point; marks of one colour keep one in each square of 1.5 px.
 std::string thin_svg(const std::string& svg);
 
 /// An SVG to stand inside a page: no prolog, ids that begin with `prefix`, ink in the page's own colour and paper see-through.
