@@ -1,6 +1,6 @@
 // Liquid that walls close in all around, no way from it to air: its pressure is known up to a constant, and what a wall that moves sweeps
 // into it no pressure can make good. As on the uniform grid (poisson/poisson.hpp) the right-hand side is made compatible: what comes in is
-// spread evenly over the pocket's rows, and its pressure has the mean 0. Over ranks each joins the knots of its own lines; which sets are
+// spread evenly over the pocket's rows, and its pressure has the mean 0. In parallel each rank joins the knots of its lines; which sets are
 // one across the cuts all learn from the knots of the lines beside them. Sums are added line by line, so that no bit depends on the ranks.
 #pragma once
 #include "tallcell/column_matrix.hpp"

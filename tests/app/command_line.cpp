@@ -13,18 +13,7 @@ namespace {
 
 using weir::test::Process;
 using weir::test::TemporaryFolder;
-
-struct Answer {
-    int code;
-    std::string text;
-};
-
-Answer weir_says(std::vector<std::string> arguments) {
-    TemporaryFolder folder;
-    Process process(std::move(arguments), folder.path() / "log");
-    const int code = process.wait();
-    return {code, process.said()};
-}
+using weir::test::weir_says;
 
 const std::string smoke = std::string(WEIR_SOURCE_DIR) + "/tests/app/scenes/smoke.toml";
 

@@ -11,21 +11,11 @@
 namespace {
 
 namespace fs = std::filesystem;
+using weir::test::Answer;
 using weir::test::Process;
 using weir::test::TemporaryFolder;
 using weir::test::text_of;
-
-struct Answer {
-    int code;
-    std::string text;
-};
-
-Answer weir_says(std::vector<std::string> arguments) {
-    TemporaryFolder folder;
-    Process process(std::move(arguments), folder.path() / "log");
-    const int code = process.wait();
-    return {code, process.said()};
-}
+using weir::test::weir_says;
 
 void write(const fs::path& file, const std::string& text) {
     if (file.has_parent_path()) fs::create_directories(file.parent_path());

@@ -1,5 +1,7 @@
 // The executable as a user starts it: arguments, signals, exit code, what it says.
 #pragma once
+#include "support/temporary_folder.hpp"
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -93,6 +95,18 @@ private:
     int status_ = 0;
     long most_kilobytes_ = 0;
 };
+
+struct Answer {
+    int code;
+    std::string text;
+};
+/// What the executable says to these arguments, waited for.
+inline Answer weir_says(std::vector<std::string> arguments) {
+    TemporaryFolder folder;
+    Process process(std::move(arguments), folder.path() / "log");
+    const int code = process.wait();
+    return {code, process.said()};
+}
 
 /// Every file below `a` but run.json and timings.csv (they hold milliseconds) and checkpoints has a twin below `b` with the same bytes, and
 /// none is missing. Returns the first that differs; empty where all agree.
