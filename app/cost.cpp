@@ -96,6 +96,10 @@ void add_cost(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 99));
     command->add_option("--time-limit", options.measure.time_limit, "Seconds after which a run counts as failed")
         ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--compare", options.compare,
+                     "Folder of published tables: errors and bytes of the ci size, each setting once; one that moved fails (exit code 1)")
+        ->check(CLI::ExistingDirectory);
     command->add_flag("--effects", arguments->effects, "What each effect of each solver costs: effects.csv and effects.md");
     command->add_option("--plan", arguments->plan,
                         "A scene or a case: its memory and the time of its steps, before it runs; nothing is written");

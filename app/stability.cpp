@@ -14,6 +14,10 @@ void add_stability(CLI::App& app, int& exit_code) {
     arguments->add_to(*command, "Every case with a stability.toml", "ci: limits within a factor 1.5; full: 1.1",
                       "Folder of what was found");
     command->add_flag("--floors", options.floors, "Only check that each floor holds: one run an axis");
+    command
+        ->add_option("--compare", options.compare,
+                     "Folder of published limits: one run at either end of each; one that moved fails (exit code 1)")
+        ->check(CLI::ExistingDirectory);
     command->add_option("--axis", options.axis, "Only this axis");
     command->callback([arguments, &exit_code] { exit_code = validation::stability_command(arguments->chosen()); });
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include <gnu/libc-version.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -13,18 +14,29 @@ namespace weir::output {
 
 namespace {
 
-std::string processor_name() {
+/// What the system says of the first processor; "unknown" where it does not.
+std::string of_processor(const std::string& key) {
     std::ifstream cpuinfo("/proc/cpuinfo");
-    for (std::string line; std::getline(cpuinfo, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    for (std::string line; std::getline(cpuinfo, line);) {
+        const auto colon = line.find(':');
+        if (colon == std::string::npos || colon + 2 > line.size()) continue;
+        const auto last = line.find_last_not_of(" \t", colon - 1);
+        if (line.substr(0, last + 1) == key) return line.substr(colon + 2);
+    }
     return "unknown";
+}
+
+/// A processor's model decides which instructions a native build has and which kernels BLAS takes.
+std::string rounding() {
+    return of_processor("vendor_id") + " family " + of_processor("cpu family") + " model " + of_processor("model") + ", " + build_compiler +
+           ", " + build_type + ", " + build_options + ", glibc " + gnu_get_libc_version();
 }
 
 }  // namespace
 
 Machine this_machine() {
     Machine machine;
-    machine.processor = processor_name();
+    machine.processor = of_processor("model name");
     machine.logical_cores = static_cast<int>(std::thread::hardware_concurrency());
     machine.threads = threads();
     machine.memory_gib = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)) / (1ll << 30);
@@ -32,6 +44,7 @@ Machine this_machine() {
     if (uname(&name) == 0) machine.system = std::string(name.sysname) + ' ' + name.release;
     machine.compiler = build_compiler;
     machine.build = build_type;
+    machine.rounding = rounding();
     machine.options = build_options;
     machine.version = build_version;
     machine.commit = build_commit;

@@ -12,6 +12,7 @@ struct Machine {
     std::string system;    // kernel and its release
     std::string compiler;  // name and version
     std::string build;     // Release, Debug
+    std::string rounding;  // what decides the last digits: processor model, compiler, build, mathematical library
     std::string options;   // that the build has on: "native, VTK, OpenCL"
     std::string version;   // of weir
     std::string commit;    // of the source, "unknown" outside a git clone

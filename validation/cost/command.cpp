@@ -7,7 +7,9 @@
 #include "validation/cost/report_table.hpp"
 #include "validation/cost/tables.hpp"
 #include "validation/page/sections.hpp"
+#include "validation/page/text.hpp"
 #include "validation/report/command.hpp"
+#include "validation/report/pins.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -42,6 +44,27 @@ void write_outputs(const StudyResult& result, const json& study, const std::file
     output::write_file(out / (name + ".csv"), cost_csv(result));
     output::write_file(out / (name + ".json"), study.dump(1) + "\n");
     output::write_file(out / (name + ".svg"), cost_figure(study));
+}
+
+/// Errors and bytes at ci size: each setting runs once, on one thread, which bytes depend on.
+Numbers ci_numbers(const Study& study, CostOptions options, const Solvers& solvers) {
+    options.size = Size::ci, options.measure.repeats = 1;
+    Study small = prepared(study.folder, options, solvers);
+    for (Variant& method : small.methods) method.threads = 1;
+    return numbers_of(measure_study(small, options.measure, solvers));
+}
+
+/// Whether errors and bytes are those that the published tables began with.
+int compare_studies(const std::vector<Study>& studies, const CostOptions& options, const Solvers& solvers) {
+    bool same = true;
+    for (const Study& study : studies) {
+        const Comparison c = compare_numbers(ci_numbers(study, options, solvers), json_of(pins_file(options.compare, study.name)));
+        const std::string command = fmt::format("weir cost {} --size full --publish", study.name);
+        std::fputs(comparison_text(study.name + ", cost", command, c).c_str(), stderr);
+        same = same && c.moved.empty();
+    }
+    fmt::print("{} of {} studies compared with {}\n", same ? "all" : "not all", studies.size(), options.compare.string());
+    return same ? exit_success : exit_claim_failed;
 }
 
 json read_json(const std::filesystem::path& file) {
@@ -102,6 +125,7 @@ int cost_command(const CostOptions& options, const Solvers& solvers) {
         for (const Study& s : studies) fmt::print("{:28} {}\n", s.name, s.question);
         return exit_success;
     }
+    if (!options.compare.empty()) return compare_studies(studies, options, solvers);
     output::require_writable(options.out);
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
     const output::Machine machine = output::this_machine();
@@ -119,6 +143,11 @@ int cost_command(const CostOptions& options, const Solvers& solvers) {
         done.back()["machine"] =
             fmt::format("{} ({} threads), {}, {}", machine.processor, result.threads, machine.system, machine.compiler);
         write_outputs(result, done.back(), options.out);
+        if (!options.publish.empty()) {
+            double seconds = 0;
+            for (const CostPoint& p : result.points) seconds += p.repeats * p.ms_per_step * 1e-3 * static_cast<double>(p.steps);
+            write_pins(pins_json(ci_numbers(study, options, solvers), seconds), options.publish, study.name);
+        }
         all_failed |= std::all_of(result.points.begin(), result.points.end(), [](const CostPoint& p) { return p.failure.has_value(); });
     }
     if (!options.publish.empty()) publish_studies(done, options.out, options.publish);

@@ -23,11 +23,12 @@ struct CostOptions {
     Drawn drawn{};                           // of the report's table: what a window reaches
     std::filesystem::path out = "out/cost";  // <study>.csv, .json, .svg
     std::filesystem::path publish{};         // folder of the published page; empty: not published
+    std::filesystem::path compare{};         // published folder to compare errors and bytes of the ci size with; empty: measured as usual
     bool quiet = false;
 };
 
 /// Runs the command and returns its exit code. A setting that fails stays in the table and is no error of the command; a study in which
-/// every setting failed is (exit code 1). Throws BadInput before anything is run.
+/// every setting failed is (exit code 1), and so is a published table that is older than the code. Throws BadInput before anything is run.
 int cost_command(const CostOptions& options, const Solvers& solvers = sim::registry());
 
 }  // namespace weir::validation

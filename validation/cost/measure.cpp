@@ -151,6 +151,19 @@ std::string CostPoint::name() const {
     return s;
 }
 
+std::map<std::string, real> numbers_of(const StudyResult& result) {
+    std::map<std::string, real> numbers;
+    for (const CostPoint& p : result.points) {
+        if (!p.was_run() || !p.device_kind.empty()) continue;
+        const std::string place = p.name().empty() ? "" : p.name() + ": ";
+        numbers[place + "bytes"] = static_cast<real>(p.bytes);
+        if (p.failure) continue;
+        numbers[place + result.study.error] = p.error;
+        for (const auto& [metric, x] : p.also) numbers[place + metric] = x;
+    }
+    return numbers;
+}
+
 void mark_front(std::vector<CostPoint>& points, const Study& study) {
     constexpr real alike = 1.05;
     const auto beats = [&](const CostPoint& a, const CostPoint& b) {

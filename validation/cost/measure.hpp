@@ -71,6 +71,9 @@ struct MeasureOptions {
 StudyResult measure_study(const Study& study, const MeasureOptions& options, const Solvers& solvers,
                           const std::function<void(const std::string&)>& progress = nullptr);
 
+/// Errors, further metrics and bytes of every point that ran on the processor: what does not depend on how fast it is.
+std::map<std::string, real> numbers_of(const StudyResult& result);
+
 /// Marks the points that no other one dominates (Pareto), by what the reference can tell: of errors below what it is known to, and of
 /// errors that differ by less than 5%, the cheaper point wins.
 void mark_front(std::vector<CostPoint>& points, const Study& study);

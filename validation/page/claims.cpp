@@ -128,9 +128,10 @@ std::string detail(const CaseClaims& c, const std::filesystem::path& results) {
                   v->value("pass", false) || !short_of.empty() ? "" : "fail");
     }
     s += table.html() + figure(c.name, results);
-    return s + fmt::format("<p class=\"fine\"><code>./weir.sh validate {0} --size {1}</code> · commit {2}, {3}{4}</p></details>\n",
+    return s + fmt::format("<p class=\"fine\"><code>./weir.sh validate {0} --size {1}</code> · commit {2}{5}, {3}{4}</p></details>\n",
                            escaped(c.name), escaped(text_at(first, "size")), escaped(text_at(first, "commit")),
-                           escaped(text_at(first, "machine")), links(c.name, results));
+                           escaped(text_at(first, "machine")), links(c.name, results),
+                           first.value("pinned", false) ? " (unchanged since)" : "");
 }
 
 /// "Verification: 120 of 120", one line a part of the suite.
@@ -158,11 +159,11 @@ std::string not_reached(const json& bounds) {
     return "<h3 id=\"asked\">Asked and not reached</h3>\n" + table.html();
 }
 
-std::string older(const json& verdicts) {
+std::string unpinned(const json& verdicts) {
     std::string list;
-    for (const std::string& name : older_cases(verdicts))
+    for (const std::string& name : unpinned_cases(verdicts))
         list += fmt::format("{0}<a href=\"#case-{1}\">{1}</a>", list.empty() ? "" : ", ", escaped(name));
-    return list.empty() ? "" : "<p><b>Measured at an older commit than the others:</b> " + list + ".</p>\n";
+    return list.empty() ? "" : "<p><b>Not compared with the code since they were measured:</b> " + list + ".</p>\n";
 }
 
 std::string failures(const json& verdicts) {
@@ -205,7 +206,7 @@ Section claims_section(const json& all_verdicts, const std::filesystem::path& re
     section.html =
         "<p>A claim is a measured number, a bound, and the reason of that bound. Verification asks whether the equations are "
         "solved right, validation whether they are the right equations. A case also says what it cannot see.</p>\n" +
-        older(all_verdicts) + overview(cases) + not_reached(open) +
+        unpinned(all_verdicts) + overview(cases) + not_reached(open) +
         "<h3 id=\"cases\">Claim by claim</h3>\n<p class=\"tools\"><label>Show claims that contain <input id=\"filter\" "
         "type=\"search\" placeholder=\"sph, divergence, order …\"></label> <button type=\"button\" id=\"unfold\">Open all "
         "cases</button></p>\n";

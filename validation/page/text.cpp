@@ -79,10 +79,10 @@ nlohmann::json claimed(const nlohmann::json& verdicts) {
     return list;
 }
 
-std::vector<std::string> older_cases(const nlohmann::json& verdicts) {
+std::vector<std::string> unpinned_cases(const nlohmann::json& verdicts) {
     std::set<std::string> names;
     for (const auto& v : verdicts)
-        if (v.value("older", false)) names.insert(text_at(v, "case"));
+        if (!v.value("pinned", false)) names.insert(text_at(v, "case"));
     return {names.begin(), names.end()};
 }
 

@@ -24,8 +24,8 @@ std::string text_at(const nlohmann::json& entry, const char* key);
 /// The verdicts that are claimed, without the bounds that are asked for and not reached; and those alone.
 nlohmann::json claimed(const nlohmann::json& verdicts);
 nlohmann::json asked(const nlohmann::json& verdicts);
-/// Cases whose verdicts are of another commit than the newest publication's.
-std::vector<std::string> older_cases(const nlohmann::json& verdicts);
+/// Cases that were published without numbers of the ci size that the tests could compare.
+std::vector<std::string> unpinned_cases(const nlohmann::json& verdicts);
 std::optional<double> number_at(const nlohmann::json& entry, const char* key);
 
 /// A table whose columns sort by a click on their heads; a cell's `key` is what it sorts by where that is not its text.

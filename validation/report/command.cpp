@@ -9,6 +9,7 @@
 #include "validation/page/text.hpp"
 #include "validation/report/figure.hpp"
 #include "validation/report/publish.hpp"
+#include "validation/report/published_case.hpp"
 #include "validation/report/svg.hpp"
 #include "validation/report/tables.hpp"
 
@@ -51,6 +52,27 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
         }
     if (!problems.empty()) throw BadInput(problems);
     return cases;
+}
+
+/// Which sizes pins are of, and which scenes the published results.
+void check_comparable(const ValidateOptions& options) {
+    if (options.compare.empty()) return;
+    if (options.size != Size::ci) throw BadInput("--compare takes the ci size, whose numbers are published beside those of full size");
+    if (!options.backend.empty()) throw BadInput("--compare takes the scenes as they are, without --backend");
+}
+
+/// Whether nothing that is published has moved.
+bool is_as_published(const CaseResult& result, const ValidateOptions& options) {
+    const Comparison c = compare_with_published(result, read_case(result.plan.folder, Size::full), options.compare);
+    const std::string command = fmt::format("weir validate {} --size full --publish", result.plan.name);
+    std::fputs(comparison_text(result.plan.name, command, c).c_str(), stderr);
+    return c.moved.empty();
+}
+
+/// The numbers of the case at ci size: of `result` itself, or of runs anew.
+Numbers ci_numbers(const CaseResult& result, const std::filesystem::path& out, const Solvers& solvers, const Progress& progress) {
+    if (result.plan.size == Size::ci) return numbers_of(result);
+    return numbers_of(validate(read_case(result.plan.folder, Size::ci), out / "ci", solvers, progress));
 }
 
 /// Whether its figure could be drawn too; the numbers stand without it.
@@ -141,6 +163,7 @@ std::vector<std::filesystem::path> chosen_folders(const std::string& command, co
 int validate_command(const ValidateOptions& options, const Solvers& solvers) {
     const std::vector<Case> cases = read_all(options, solvers);
     if (options.list) return list_cases(cases);
+    check_comparable(options);
     output::require_writable(options.out);
     std::filesystem::create_directories(options.out / "csv");
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
@@ -148,6 +171,7 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
         if (talk) std::fprintf(stderr, "\r\033[K%s", what.c_str());
     };
     std::vector<CaseResult> results;
+    std::vector<nlohmann::json> pins;
     auto verdicts = nlohmann::json::array();
     bool passed = true, bad = false;
     int undrawn = 0;
@@ -158,12 +182,14 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
         fmt::print("{}{}\n", claims_table(result), orders_table(result));
         std::fflush(stdout);
         std::fputs(untold_failures(result).c_str(), stderr);
+        if (!options.compare.empty()) passed = is_as_published(result, options) && passed;
+        if (!options.publish.empty()) pins.push_back(pins_json(ci_numbers(result, options.out, solvers, progress), result.seconds()));
         undrawn += write_outputs(result, options.out) ? 0 : 1;
         for (const auto& verdict : verdicts_json(result)) verdicts.push_back(verdict);
         output::write_file(options.out / "verdicts.json", verdicts.dump(1) + "\n");  // after each case: a killed run keeps what it has
         passed = passed && result.pass(), bad = bad || result.bad_input();
     }
-    if (!options.publish.empty()) publish(results, options.out, options.publish);
+    if (!options.publish.empty()) publish(results, pins, options.out, options.publish);
     if (!options.publish.empty() && options.page) fmt::print("{}\n", write_page(options.publish).string());
     const auto claims = claimed(verdicts);
     std::size_t held = 0;

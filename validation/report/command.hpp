@@ -17,6 +17,7 @@ struct ValidateOptions {
     Size size = Size::ci;
     std::filesystem::path out = "out/validate";  // verdicts.json, svg/, csv/ and the frames of each run
     std::filesystem::path publish{};             // folder of the published page; empty: not published
+    std::filesystem::path compare{};             // published folder to compare the ci size with; empty: not compared
     bool page = false;                           // write its index.html too
     bool quiet = false;                          // no progress on the terminal
     std::string backend{};                       // for every scene that has scheme.backend; empty: its own
@@ -38,8 +39,8 @@ std::filesystem::path find_case(const std::string& name);
 std::vector<std::filesystem::path> chosen_folders(const std::string& command, const std::vector<std::string>& names, bool all, bool list,
                                                   const std::function<std::vector<std::filesystem::path>()>& find);
 
-/// Runs the command and returns its exit code: 0, 1 (a claim failed), 2 (a case asks for what is not there). Throws BadInput before
-/// anything is run or written when a name is unknown or a case file or its scene is wrong.
+/// Runs the command and returns its exit code: 0, 1 (a claim failed, published results are older than the code), 2 (a case asks for what is
+/// not there). Throws BadInput before anything is run or written when a name is unknown or a case file or its scene is wrong.
 int validate_command(const ValidateOptions& options, const std::vector<scene::SolverKind>& solvers = sim::registry());
 
 }  // namespace weir::validation

@@ -5,6 +5,7 @@
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
 #include "validation/page/text.hpp"
+#include "validation/report/published_case.hpp"
 #include "validation/report/tables.hpp"
 
 #include <fmt/format.h>
@@ -56,9 +57,9 @@ std::string section(const std::vector<const json*>& claims) {
     s += "| | claim | measured | bound | why | seconds | figure | frames |\n|---|---|---|---|---|---|---|---|\n";
     for (const json* v : claims) s += row(*v);
     s += fmt::format(
-        "\n![{0}](svg/{0}.svg)\n\nEvery number: [csv/{0}.csv](csv/{0}.csv). Measured at size {1}, commit {2}, on {3}: "
+        "\n![{0}](svg/{0}.svg)\n\nEvery number: [csv/{0}.csv](csv/{0}.csv). Measured at size {1}, commit {2}{4}, on {3}: "
         "`./weir.sh validate {0} --size {1}`\n\n",
-        name, text(first, "size"), text(first, "commit"), text(first, "machine"));
+        name, text(first, "size"), text(first, "commit"), text(first, "machine"), first.value("pinned", false) ? " (unchanged since)" : "");
     return s;
 }
 
@@ -103,8 +104,10 @@ std::string index_markdown(const json& verdicts) {
     for (const json& v : claims) passed += v.value("pass", false) ? 1 : 0;
     std::string s = "# Results\n\nThis page is written by `weir validate --publish`; nothing in it is typed by hand.\n\n";
     s += fmt::format("**{} of {} claims hold, in {} cases.**\n\n", passed, claims.size(), by_case.size());
-    if (const auto older = older_cases(verdicts); !older.empty())
-        s += fmt::format("Measured at an older commit than the others: {}.\n\n", fmt::join(older, ", "));
+    s += "The tests run every case at its small size and compare its numbers with those that were published with the page: one that moved "
+         "fails.\n\n";
+    if (const auto unpinned = unpinned_cases(verdicts); !unpinned.empty())
+        s += fmt::format("Not compared with the code since they were measured: {}.\n\n", fmt::join(unpinned, ", "));
     s += not_reached_table(asked(verdicts));
     const std::pair<const char*, std::set<std::string>> parts[] = {
         {"Verification: are the equations solved right?", {"exact", "convergence"}},
@@ -121,7 +124,8 @@ std::string index_markdown(const json& verdicts) {
     return s + fmt::format("---\nWritten by weir {} (commit {}) on {}.\n", m.version, m.commit, machine_text(m));
 }
 
-void publish(const std::vector<CaseResult>& results, const std::filesystem::path& out, const std::filesystem::path& folder) {
+void publish(const std::vector<CaseResult>& results, const std::vector<json>& pins, const std::filesystem::path& out,
+             const std::filesystem::path& folder) {
     const output::Machine machine = output::this_machine();
     std::set<std::string> measured;
     json entries = json::array();
@@ -129,7 +133,7 @@ void publish(const std::vector<CaseResult>& results, const std::filesystem::path
         const std::string& name = result.plan.name;
         measured.insert(name);
         for (json entry : verdicts_json(result)) {
-            entry["commit"] = machine.commit, entry["machine"] = machine_text(machine);
+            entry["commit"] = machine.commit, entry["machine"] = machine_text(machine), entry["pinned"] = true;
             entries.push_back(entry);
         }
         if (std::filesystem::exists(out / "svg" / (name + ".svg")))
@@ -138,9 +142,10 @@ void publish(const std::vector<CaseResult>& results, const std::filesystem::path
     }
     for (json old : read_entries(folder / "verdicts.json"))
         if (!measured.count(text(old, "case"))) {
-            old["older"] = text(old, "commit") != machine.commit;
+            old.erase("older");
             entries.push_back(old);
         }
+    for (std::size_t i = 0; i < results.size(); ++i) write_pins(pins.at(i), folder, results[i].plan.name);
     output::write_file(folder / "verdicts.json", entries.dump(1) + "\n");
     output::write_file(folder / "index.md", index_markdown(entries));
 }

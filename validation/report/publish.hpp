@@ -13,8 +13,9 @@ namespace weir::validation {
 /// The page made of all verdicts (with the machine and commit that each was measured on).
 std::string index_markdown(const nlohmann::json& verdicts);
 
-/// Copies the figures and tables of `results` from `out` to `folder`, replaces their entries in folder/verdicts.json (others stay, marked
-/// as older where they are of another commit), and writes folder/index.md anew.
-void publish(const std::vector<CaseResult>& results, const std::filesystem::path& out, const std::filesystem::path& folder);
+/// Copies the figures and tables of `results` from `out` to `folder`, replaces their entries in folder/verdicts.json (others stay), writes
+/// their `pins` (of pins_json, in the same order) and folder/index.md anew.
+void publish(const std::vector<CaseResult>& results, const std::vector<nlohmann::json>& pins, const std::filesystem::path& out,
+             const std::filesystem::path& folder);
 
 }  // namespace weir::validation

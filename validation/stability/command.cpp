@@ -95,6 +95,7 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
             for (const Stress& s : study.stresses) fmt::print("{:24} {:16} {:16} {}\n", study.name, s.name, s.method, s.hard_because);
         return exit_success;
     }
+    if (!options.compare.empty()) return compare_limits(studies, options.compare, solvers);
     output::require_writable(options.out);
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
     const output::Machine machine = output::this_machine();
@@ -123,6 +124,10 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
         done.back()["commit"] = machine.commit;
         done.back()["machine"] = fmt::format("{}, {}, {}", machine.processor, machine.system, machine.compiler);
         output::write_file(options.out / (study.name + ".json"), done.back().dump(1) + "\n");
+        if (options.publish.empty()) continue;
+        double seconds = 0;
+        for (const Limit& l : limits) seconds += l.seconds;
+        write_pins(pins_json(numbers_of(limits), seconds), options.publish, study.name);
     }
     if (!options.publish.empty()) publish_limits(done, options.publish);
     return sound ? exit_success : exit_claim_failed;

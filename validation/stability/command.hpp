@@ -1,6 +1,7 @@
 // `weir stability`: where each solver breaks.
 #pragma once
 #include "sim/registry.hpp"
+#include "validation/report/pins.hpp"
 #include "validation/stability/limit.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,6 +17,7 @@ struct StabilityOptions {
     bool all = false;                  // every case with a stability.toml
     bool list = false;                 // axes of each, nothing is run
     std::string axis{};                // only this one
+    std::filesystem::path compare{};   // published folder: only whether each limit is where it was, by a run at either end
     bool floors = false;               // only whether each floor still holds: one run an axis
     Size size = Size::ci;
     std::filesystem::path out = "out/stability";  // <case>.json and limits.csv
@@ -29,6 +31,11 @@ inline real bisection_factor(Size size) { return size == Size::ci ? 1.5 : 1.1; }
 /// One line an axis and method: the last stable value, theory, what broke first, where and when, the floor.
 std::string limits_table(const StressStudy& study, const std::vector<Limit>& limits);
 nlohmann::json limits_json(const StressStudy& study, const std::vector<Limit>& limits);
+/// Each axis' ends, what its run is hard by, the step and time at which it breaks.
+Numbers numbers_of(const std::vector<Limit>& limits);
+/// Whether the limits are where they were published, by a run at either end of each; where they were found with other rounding, or none
+/// are published, whether their floors hold. The exit code of the command.
+int compare_limits(const std::vector<StressStudy>& studies, const std::filesystem::path& published, const Solvers& solvers);
 std::string limits_markdown(const nlohmann::json& study);
 /// What was asked for beyond the floors and is not reached, of all studies; empty where nothing is.
 std::string asked_limits_markdown(const std::vector<nlohmann::json>& studies);
@@ -41,7 +48,8 @@ std::string maps_text(const nlohmann::json& study);
 /// "study-dt-against-iterations-flip.svg"
 std::string map_file(const nlohmann::json& study, const nlohmann::json& map);
 
-/// Runs the command and returns its exit code: 1 where a floor is not reached or an axis proves to be another than it says. Throws BadInput
+/// Runs the command and returns its exit code: 1 where a floor is not reached, an axis proves to be another
+/// than it says, or published limits are older than the code. Throws BadInput
 /// before anything is run.
 int stability_command(const StabilityOptions& options, const Solvers& solvers = sim::registry());
 

@@ -237,6 +237,17 @@ Limit check_floor(const Stress& stress, const Solvers& solvers) {
     return proven(at_floor, stress, 1, solvers);
 }
 
+Limit recheck(const Stress& stress, std::optional<real> last_stable, std::optional<real> first_unstable, const Solvers& solvers) {
+    Limit limit{.stress = stress, .climbed = true};
+    const auto start = std::chrono::steady_clock::now();
+    if (last_stable && !push(stress, *last_stable, solvers, &limit.hardship)) limit.last_stable = last_stable;
+    if (first_unstable)
+        if (const auto broke = push(stress, *first_unstable, solvers)) limit.first_unstable = first_unstable, limit.broke = *broke;
+    limit.runs = last_stable.has_value() + first_unstable.has_value();
+    limit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return limit;
+}
+
 Limit find_limit(const Stress& stress, real factor, const Solvers& solvers) {
     Limit limit = proven(stress, stress, factor, solvers);
     limit.climbed = true;

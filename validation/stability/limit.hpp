@@ -125,6 +125,9 @@ Limit find_limit(const Stress& stress, real factor, const Solvers& solvers);
 /// Whether the floor holds, by one run at it.
 Limit check_floor(const Stress& stress, const Solvers& solvers);
 
+/// The two ends of a limit that was found before, each run once: without what does not hold there now. Either may be absent.
+Limit recheck(const Stress& stress, std::optional<real> last_stable, std::optional<real> first_unstable, const Solvers& solvers);
+
 /// What each run of a map came to: [x][y].
 std::vector<std::vector<std::optional<Break>>> fill_map(const StressMap& map, const Solvers& solvers,
                                                         const std::function<void(std::size_t)>& progress = nullptr);

@@ -83,7 +83,7 @@ namespace {
 
 std::string text(const json& entry, const char* key) { return entry.value(key, std::string()); }
 
-std::string number_at(const json& entry, const char* key) {
+std::string number_cell(const json& entry, const char* key) {
     return entry.contains(key) ? fmt::format("{:.3g}", entry[key].get<double>()) : std::string();
 }
 
@@ -96,12 +96,12 @@ std::string limits_markdown(const json& study) {
     s += "| | axis | method | kind | last stable | there | theory | floor | what broke first | hard because |\n"
          "|---|---|---|---|---|---|---|---|---|---|\n";
     for (const auto& l : study["limits"]) {
-        std::string theory = number_at(l, "theory");
+        std::string theory = number_cell(l, "theory");
         if (!theory.empty()) theory += fmt::format(" ({})", text(l, "theory_source"));
         const std::string wrong = l["guarded"].get<bool>() ? text(l, "doubt") : "below its floor";
         s += fmt::format("| {} | {}{} | {} | {} | {} | {} | {} | {} | {} | {} |\n", wrong.empty() ? "" : "**" + wrong + "**",
                          text(l, "axis"), key_text(l), text(l, "method"), text(l, "kind"), text(l, "last_stable_text"), text(l, "hardship"),
-                         theory, number_at(l, "floor"), text(l, "broke"), text(l, "hard_because"));
+                         theory, number_cell(l, "floor"), text(l, "broke"), text(l, "hard_because"));
     }
     if (study.contains("maps"))
         for (const auto& map : study["maps"])
@@ -115,7 +115,7 @@ std::string asked_limits_markdown(const std::vector<json>& studies) {
         for (const auto& l : study["limits"])
             if (l.contains("asked"))
                 rows += fmt::format("| [{0}](#{0}) | {1} | {2} | {3} | {4} | {5} | {6} |\n", text(study, "study"), text(l, "axis"),
-                                    text(l, "method"), number_at(l, "asked"), number_at(l, "last_stable"), number_at(l, "floor"),
+                                    text(l, "method"), number_cell(l, "asked"), number_cell(l, "last_stable"), number_cell(l, "floor"),
                                     text(l, "not_reached"));
     if (rows.empty()) return "";
     return "## Asked and not reached\n\n| case | axis | method | asked | last stable | floor that is guarded | why it is not reached |\n"
@@ -130,7 +130,7 @@ std::string all_limits_markdown(const std::vector<json>& studies) {
             const std::string solver = text(l, "solver");
             const std::string method = text(l, "method");
             rows.push_back({solver, fmt::format("| {} | {} | {} | {} | {} | {} | {} | [{}](#{}) |\n", solver, text(l, "axis"), method,
-                                                text(l, "kind"), text(l, "last_stable_text"), number_at(l, "theory"), text(l, "broke"),
+                                                text(l, "kind"), text(l, "last_stable_text"), number_cell(l, "theory"), text(l, "broke"),
                                                 text(study, "study"), text(study, "study"))});
         }
     std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -195,6 +195,24 @@ TEST("the command writes table, JSON, figure and page; a setting that fails stay
     EXPECT_TRUE(fs::exists(folder.path() / "page/svg/study.svg"));
 }
 
+TEST("errors and bytes of a published study are compared with the code: what moved fails, how fast it is does not matter") {
+    const test::TemporaryFolder folder;
+    const auto study = add(folder.path(), head + methods);
+    CostOptions options{
+        .names = {study.string()}, .size = Size::full, .out = folder.path() / "out", .publish = folder.path() / "page", .quiet = true};
+    ASSERT_EQ(cost_command(options, test::fake_kinds()), exit_success);
+    options.size = Size::ci, options.publish = "", options.compare = folder.path() / "page";
+    EXPECT_EQ(cost_command(options, test::fake_kinds()), exit_success);
+    auto pins = nlohmann::json::parse(read(folder.path() / "page/pins/study.json"));
+    ASSERT_EQ(pins["numbers"].size(), 3u) << pins.dump();
+    const auto first = pins["numbers"].begin();
+    *first = first->get<double>() * 1.01 + 1;
+    std::ofstream(folder.path() / "page/pins/study.json") << pins.dump();
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(cost_command(options, test::fake_kinds()), exit_claim_failed);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find(first.key() + " moved by"), std::string::npos);
+}
+
 TEST("a backend that is not here leaves its row with the reason, and the study goes on; a method may have threads of its own") {
     const test::TemporaryFolder folder;
     auto kinds = test::fake_kinds();

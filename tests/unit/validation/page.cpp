@@ -105,12 +105,12 @@ TEST("a bound that is asked for and not reached stands in a table of its own, is
     const weir::test::TemporaryFolder folder;
     json open = claim(false, 3, 2, "<= 2"), old = claim(true, 1, 2, "<= 2");
     open["not_reached"] = "the floor is rough";
-    old["older"] = true;
+    open["pinned"] = true;
     const std::string page = page_html(results_with(folder.path(), json::array({old, open})));
     EXPECT_NE(page.find("<p class=\"big pass\">1 of 1</p>"), std::string::npos);
     EXPECT_NE(page.find("<h3 id=\"asked\">Asked and not reached</h3>"), std::string::npos);
     EXPECT_EQ(count(page, "the floor is rough"), 2u);
-    EXPECT_NE(page.find("Measured at an older commit than the others:</b> <a href=\"#case-tank\">"), std::string::npos);
+    EXPECT_NE(page.find("Not compared with the code since they were measured:</b> <a href=\"#case-tank\">"), std::string::npos);
     EXPECT_EQ(count(page, "<b class=\"no\">FAIL</b>"), 0u);
 }
 

@@ -107,17 +107,65 @@ TEST("a bound that is asked for and not reached is listed with its figure and cl
     EXPECT_EQ(run(folder, {broken}), exit_claim_failed);
 }
 
-TEST("publishing some cases marks the others as older where they were measured at another commit") {
+TEST("publishing names the cases whose numbers at ci size are not published, which nothing can compare with the code") {
     const Folder folder;
     const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
     const auto first = folder.add("first", head + claims), second = folder.add("second", head + claims);
     EXPECT_EQ(run(folder, {first, second}), exit_success);
-    EXPECT_EQ(folder.read("results/index.md").find("older commit"), std::string::npos);
+    EXPECT_EQ(folder.read("results/index.md").find("Not compared"), std::string::npos);
+    EXPECT_NE(folder.read("results/index.md").find(" (unchanged since)"), std::string::npos);
     auto published = nlohmann::json::parse(folder.read("results/verdicts.json"));
-    for (auto& v : published) v["commit"] = "before";
+    for (auto& v : published) v.erase("pinned");
     std::ofstream(folder.path / "results/verdicts.json") << published.dump();
     EXPECT_EQ(run(folder, {second}), exit_success);
-    EXPECT_NE(folder.read("results/index.md").find("Measured at an older commit than the others: first."), std::string::npos);
+    EXPECT_NE(folder.read("results/index.md").find("Not compared with the code since they were measured: first."), std::string::npos);
+}
+
+TEST("published results that are older than the code fail with what moved; those that are not hold, and so does what is not published") {
+    const Folder folder;
+    const std::string claims =
+        head + "full = { set = [\"grid.cells = [16, 8]\"] }\n" + "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
+    const auto tank = folder.add("tank", claims);
+    auto publishing = folder.options({tank}), comparing = publishing;
+    publishing.size = Size::full;
+    comparing.publish = "", comparing.compare = folder.path / "results";
+    fs::create_directories(comparing.compare);
+    const auto compared = [&] {
+        testing::internal::CaptureStderr();
+        const int code = validate_command(comparing, test::fake_kinds());
+        return std::pair(code, testing::internal::GetCapturedStderr());
+    };
+    EXPECT_EQ(compared(),
+              (std::pair<int, std::string>(exit_success, "tank: not compared with the published results: none are published\n")));
+    ASSERT_EQ(validate_command(publishing, test::fake_kinds()), exit_success);
+    EXPECT_EQ(compared(), (std::pair<int, std::string>(exit_success, "")));  // the ci size, which was published beside the full one
+    std::ofstream(folder.path / "tank/scene.toml") << "solver = \"fake\"\ndim = 2\ngrid = { cells = [8, 4], size = [1, 1] }\n"
+                                                      "time = { end = 0.10001 }\n";  // what a change of the solver would do to 2 y + t
+    const auto [code, said] = compared();
+    EXPECT_EQ(code, exit_claim_failed);
+    EXPECT_NE(said.find("tank: published results are older than the code; publishing takes 1 s: weir validate tank --size full --publish"),
+              std::string::npos)
+        << said;
+    EXPECT_NE(said.find("velocity.max moved by 0.00048%: 2.1 published, 2.10001 now"), std::string::npos) << said;
+}
+
+TEST("a claim whose bound is another than the published one is older than the code") {
+    const Folder folder;
+    const auto claims = [](const std::string& bound) {
+        return head + "accept = [ { metric = \"velocity.max\", at_most = " + bound + ", why = \"w\" } ]\n";
+    };
+    const auto tank = folder.add("tank", claims("10"));
+    ASSERT_EQ(run(folder, {tank}), exit_success);
+    folder.add("tank", claims("9"));
+    auto comparing = folder.options({tank});
+    comparing.publish = "", comparing.compare = folder.path / "results";
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(validate_command(comparing, test::fake_kinds()), exit_claim_failed);
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("the claim is not published: velocity.max at_most <= 9"), std::string::npos) << said;
+    EXPECT_NE(said.find("the claim is published and no longer made: velocity.max at_most <= 10"), std::string::npos) << said;
+    comparing.size = Size::full;
+    EXPECT_THROW(validate_command(comparing, test::fake_kinds()), BadInput);
 }
 
 TEST("a numerical failure and an exceeded time limit fail every claim of the run with their message; other cases go on") {

@@ -147,6 +147,34 @@ TEST("a map holds one run a pair of values, with what broke first, in JSON, on t
     EXPECT_NE(text.str().find("| fake | end |"), std::string::npos) << "the table of all limits names the solver";
 }
 
+TEST("published limits are compared with the code by a run at either end: one that moved fails") {
+    const test::TemporaryFolder folder;
+    StabilityOptions options;
+    options.names = {add(folder.path(), stalls + axis).string()}, options.quiet = true;
+    options.out = folder.path() / "out", options.publish = folder.path() / "page";
+    ASSERT_EQ(stability_command(options, test::fake_kinds()), exit_success);
+    options.publish = "", options.compare = folder.path() / "page";
+    EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_success);
+    const auto file = folder.path() / "page/pins/study.json";
+    std::ifstream stream(file);
+    const auto pins = nlohmann::json::parse(stream);
+    int ends = 0;
+    for (const auto& [name, value] : pins["numbers"].items()) {  // each end moved beyond the other: the run there says otherwise
+        auto moved = pins;
+        if (name.ends_with("last stable"))
+            moved["numbers"][name] = 10 * value.get<double>(), ++ends;
+        else if (name.ends_with("first unstable"))
+            moved["numbers"][name] = 0.1 * value.get<double>(), ++ends;
+        else
+            continue;
+        std::ofstream(file) << moved.dump();
+        testing::internal::CaptureStderr();
+        EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_claim_failed) << name;
+        EXPECT_NE(testing::internal::GetCapturedStderr().find(name), std::string::npos);
+    }
+    EXPECT_GE(ends, 2);
+}
+
 TEST("a run that fails is a break, with its step and time") {
     const test::TemporaryFolder folder;
     const Stress stress = only(add(folder.path(), stalls + axis));

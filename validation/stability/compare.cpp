@@ -1,0 +1,63 @@
+// Limits as they are published, beside the code as it is now.
+#include "core/error.hpp"
+#include "validation/page/text.hpp"
+#include "validation/stability/command.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace weir::validation {
+namespace {
+
+using nlohmann::json;
+
+std::string place_of(const Stress& s) { return (s.method.empty() ? s.name : s.name + ", " + s.method) + ": "; }
+
+constexpr auto stable_end = "last stable", unstable_end = "first unstable";
+
+Limit at_pinned_ends(const Stress& s, const json& numbers, const Solvers& solvers) {
+    const std::string place = place_of(s);
+    return recheck(s, number_at(numbers, (place + stable_end).c_str()), number_at(numbers, (place + unstable_end).c_str()), solvers);
+}
+
+}  // namespace
+
+Numbers numbers_of(const std::vector<Limit>& limits) {
+    Numbers numbers;
+    for (const Limit& l : limits) {
+        const std::string place = place_of(l.stress);
+        if (l.last_stable) numbers[place + stable_end] = *l.last_stable;
+        for (const Shown& h : l.hardship) numbers[place + h.quantity] = h.value;
+        if (!l.first_unstable) continue;
+        numbers[place + unstable_end] = *l.first_unstable;
+        numbers[place + "step that breaks"] = static_cast<real>(l.broke.step);
+        numbers[place + "time that breaks"] = l.broke.time;
+    }
+    return numbers;
+}
+
+int compare_limits(const std::vector<StressStudy>& studies, const std::filesystem::path& published, const Solvers& solvers) {
+    bool sound = true;
+    for (const StressStudy& study : studies) {
+        const json pins = json_of(pins_file(published, study.name));
+        const bool comparable = pins.is_object() && pins.contains("numbers") && rounds_otherwise(pins).empty();
+        std::vector<Limit> limits;
+        for (const Stress& s : study.stresses) {
+            if (comparable)
+                limits.push_back(at_pinned_ends(s, pins["numbers"], solvers));
+            else if (s.floor)
+                limits.push_back(check_floor(s, solvers)), sound = sound && limits.back().passes();
+        }
+        fmt::print("{}\n", limits_table(study, limits));
+        std::fflush(stdout);
+        const Comparison c = compare_numbers(numbers_of(limits), pins);
+        const std::string command = fmt::format("weir stability {} --size full --publish", study.name);
+        std::fputs(comparison_text(study.name + ", limits", command, c).c_str(), stderr);
+        sound = sound && c.moved.empty();
+    }
+    return sound ? exit_success : exit_claim_failed;
+}
+
+}  // namespace weir::validation
