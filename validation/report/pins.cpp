@@ -71,8 +71,6 @@ Comparison compare_numbers(const Numbers& now, const json& pins) {
         return c;
     }
     c.seconds_to_publish = number_at(pins, "seconds_to_publish").value_or(0);
-    c.not_compared = rounds_otherwise(pins);
-    if (!c.not_compared.empty()) return c;
     for (const auto& [name, x] : now) {
         const auto at = pinned->find(name);
         if (at == pinned->end())
@@ -82,6 +80,8 @@ Comparison compare_numbers(const Numbers& now, const json& pins) {
     }
     for (const auto& [name, x] : pinned->items())
         if (!now.count(name)) c.moved.push_back(fmt::format("{} is published and no longer measured", name));
+    if (const std::string why = rounds_otherwise(pins); !why.empty())
+        c.not_compared = fmt::format("{} ({} of {} differ)", why, c.moved.size(), pinned->size()), c.moved.clear();
     return c;
 }
 
