@@ -177,9 +177,14 @@ FieldSet ClosedVessel::fields() const {
     return set;
 }
 
+/// The energy is that of the temperature, not U_, the sum that it was found from: their difference is an error of the state.
 std::vector<Integral> ClosedVessel::integrals() const {
-    return {{"pressure", "Pa", p_},       {"temperature", "K", T_},   {"vapour_mass", "kg", vapour_}, {"liquid_mass", "kg", liquid_mass()},
-            {"internal_energy", "J", U_}, {"heat_added", "J", added_}};
+    return {{"pressure", "Pa", p_},
+            {"temperature", "K", T_},
+            {"vapour_mass", "kg", vapour_},
+            {"liquid_mass", "kg", liquid_mass()},
+            {"internal_energy", "J", energy(T_)},
+            {"heat_added", "J", added_}};
 }
 
 void ClosedVessel::save(Checkpoint& to) const { to.put_value("vessel", std::array<real, 4>{vapour_, U_, added_, time_}); }

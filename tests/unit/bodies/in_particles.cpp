@@ -2,6 +2,7 @@
 // plain double-precision reference beside the threads.
 #include "pbf/solver.hpp"
 #include "sph/solver.hpp"
+#include "sph/state.hpp"
 #include "support.hpp"
 
 using namespace weir;
@@ -130,6 +131,42 @@ TEST("bodies of any weight among particles: none is thrown, none stirs the water
             EXPECT_LT(fastest, std::sqrt(2 * 9.81 * 0.4)) << solver << density;
             EXPECT_GT(shown(*s, "position", 1), 0.14) << solver << density;
         }
+}
+
+// What comes back to a particle from its body's own change du is the linear part of what the body gives: with du along the pull g the
+// density at the step's end is lower by 2 rho dt g.du (a body stands for liquid and its image behind it), the pressure by c² times that,
+// and the push by 2 dt dp/rho g with it.
+TEST_IN_2D_AND_3D("the response of SPH to a body's change of velocity is the derivative of the pressure force") {
+    const OneThread alone;
+    const std::string middle = D == 2 ? "0.5, 0.3" : "0.5, 0.3, 0.5";
+    const auto scene =
+        scene::parse(fmt::format("solver = \"sph\"\ndim = {}\ngrid = {{ cells = [{}], size = [{}] }}\ntime = {{ end = 1.0 }}\n"
+                                 "fluid = {{ density = 1000.0 }}\nliquid = [ {{ shape = \"box\", min = [{}], max = [{}] }} ]\n"
+                                 "scheme = {{ sound_speed = 30.0 }}\nbodies = [ {{ shape = \"sphere\", centre = [{}], radius = "
+                                 "0.1, density = 500.0 }} ]\n",
+                                 D, D == 2 ? "10, 10" : "10, 10, 10", D == 2 ? "1.0, 1.0" : "1.0, 1.0, 1.0",
+                                 D == 2 ? "0.0, 0.0" : "0.0, 0.0, 0.0", D == 2 ? "1.0, 0.6" : "1.0, 0.6, 1.0", middle),
+                     "stiff.toml", {sph::kind().schema});
+    auto fluid = sph::first_fluid<D>(scene);
+    const sph::Options options(scene, 1);
+    const auto params = sph::sph_params<particles::plain::SphParams, D>(options, fluid.domain.spacing, fluid.rho0);
+    fluid.carried[0] = 2000, fluid.density[0] = options.density(2000, fluid.rho0);
+    const real dt = 1e-3, rho = fluid.density[0];
+    Vec<D> change = Vec<D>::constant(0.02);
+    change[0] = -0.05;
+    const auto met = [&](real rise) {
+        particles::Meeting<D> m;
+        m.particle = 0, m.body = 0, m.at = fluid.position(0), m.part = 0.2;
+        for (int a = 0; a < D; ++a) m.pull[a] = 3.0 - a;
+        (void)sph::meet_body(options, params, fluid, 0, rise, dt, m);
+        return m;
+    };
+    const auto still = met(100);
+    const real closing = dot(still.pull, change);
+    const auto changed = met(100 - 2 * rho * options.sound * options.sound * dt * closing);
+    for (int a = 0; a < D; ++a)  // some roundings
+        EXPECT_NEAR(changed.given[a] - still.given[a], still.stiff * closing * still.pull[a], 1e-12 * norm(still.given)) << a;
+    EXPECT_GT(norm(changed.given - still.given), 0.01 * norm(still.given));
 }
 
 // Two spacings below the ball the floor begins. Where a particle between them saw each hide a part of the other, the water carried a

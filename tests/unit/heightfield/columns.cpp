@@ -128,6 +128,60 @@ TEST_IN_2D_AND_3D("an object at a periodic seam makes the waves that it makes aw
         }
 }
 
+// A float that spans one axis is a 2D problem along the other. Columns are 3 times as long along the spanned axis as along the other. 40
+// steps leave some thousand units of round-off.
+TEST("a float from wall to wall heaves as in 2D, along x and along z, in columns that are not squares") {
+    const auto heave = [](int dim, const std::string& grid, const std::string& at, const std::string& size, const std::string& g,
+                          const char* along) {
+        const auto solver = test::height_solver(scene::parse(
+            fmt::format("solver = \"heightfield\"\ntime = {{ end = 1.0 }}\ndim = {}\n{}\neffects.gravity.g = {}\nscheme.model = "
+                        "\"columns\"\ninitial.surface = \"0.02*cos(5*{})\"\nterrain = {{ kind = \"formula\", height = \"-0.5\" }}\n"
+                        "floats = [ {{ size = {}, at = {}, density = 0.4 }} ]\n",
+                        dim, grid, g, along, size, at),
+            "scene.toml", {heightfield::kind().schema}));
+        std::vector<real> heights;
+        for (int i = 0; i < 40; ++i) solver->step(0.004), heights.push_back(value(*solver, "float0_height"));
+        return heights;
+    };
+    const auto plane =
+        heave(2, "grid = { cells = [40, 1], size = [1.0, 1.0], origin = [0, -1] }", "[0.43, -0.14]", "[0.3, 0.2]", "[0, -9.81]", "x");
+    const auto by_x = heave(3, "grid = { cells = [40, 1, 8], size = [1.0, 1.0, 0.6], origin = [0, -1, 0] }", "[0.43, -0.14, 0.3]",
+                            "[0.3, 0.2, 0.6]", "[0, -9.81, 0]", "x");
+    const auto by_z = heave(3, "grid = { cells = [8, 1, 40], size = [0.6, 1.0, 1.0], origin = [0, -1, 0] }", "[0.3, -0.14, 0.43]",
+                            "[0.6, 0.2, 0.3]", "[0, -9.81, 0]", "z");
+    EXPECT_GT(std::abs(plane.back() + 0.14), 1e-3);  // it does heave
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        EXPECT_NEAR(by_x[i], plane[i], 1e-12) << i;
+        EXPECT_NEAR(by_z[i], plane[i], 1e-12) << i;
+    }
+}
+
+// Held in water whose surface is tilted, an object is pushed down the slope by rho g d^2/2 for each metre of an upright side, d the depth
+// of its outermost columns below their water. Its sides stand on edges of columns.
+TEST_IN_2D_AND_3D("the horizontal force on a float in tilted water is the difference of rho g d^2/2 of its two sides") {
+    constexpr int n = 30, m = n + 13;
+    constexpr real dx = 1.0 / n, dz = 1.5 / m, slope = 0.1, underside = -0.12;
+    for (const bool along_z : {false, true}) {
+        if (D == 2 && along_z) continue;
+        const std::string size = D == 2 ? fmt::format("[{}, 0.2]", 9 * dx) : fmt::format("[{}, 0.2, {}]", 9 * dx, 10 * dz),
+                          at = D == 2 ? fmt::format("[{}, {}]", 13.5 * dx, underside)
+                                      : fmt::format("[{}, {}, {}]", 13.5 * dx, underside, 15 * dz);
+        const auto solver = test::height_solver(columns(D,
+                                                        fmt::format("fluid.density = 1000.0\n"
+                                                                    "initial.surface = \"{}*{}\"\n"
+                                                                    "floats = [ {{ heave = false, at = {}, size = {} }} ]\n",
+                                                                    slope, along_z ? "z" : "x", at, size),
+                                                        n));
+        const real first = along_z ? 10.5 * dz : 9.5 * dx, last = along_z ? 19.5 * dz : 17.5 * dx,
+                   side = D == 2    ? 1
+                          : along_z ? 9 * dx
+                                    : 10 * dz;
+        const real low = slope * first - underside, high = slope * last - underside,
+                   push = 0.5 * 1000 * 9.81 * (low * low - high * high) * side;
+        EXPECT_NEAR(value(*solver, along_z ? "float0_force_z" : "float0_force_x"), push, 1e-10 * std::abs(push)) << along_z;
+    }
+}
+
 TEST_IN_2D_AND_3D("the same bits for any number of threads, and after a restart, with objects") {
     std::vector<real> first;
     for (const int count : {1, 3}) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace weir;
@@ -37,6 +38,24 @@ TEST("what leaves through any open side is counted: volume is what there was and
             for (int i = 0; i < 60; ++i) solver->step(0.01);
             EXPECT_GT(std::abs(value(*solver, "volume") - before), 1e-5) << model << ' ' << side;  // of 0.24 m3: something left
             EXPECT_NEAR(value(*solver, "volume"), before + value(*solver, "poured_volume"), 1e-12 * before) << model << ' ' << side;
+        }
+}
+
+TEST("a depth that is edited adds the area of its column times its rise to the poured volume, in columns that are not squares") {
+    for (const std::string model : {"shallow_water", "columns"})
+        for (const bool exchanged : {false, true}) {
+            const auto solver = hill(model, "", exchanged);
+            for (int i = 0; i < 5; ++i) solver->step(0.01);
+            const real before = value(*solver, "volume");
+            const std::vector<EditableField> fields = solver->editable();
+            const auto edit =
+                std::find_if(fields.begin(), fields.end(), [&](const EditableField& f) { return f.data.size() == 1; });  // not the velocity
+            ASSERT_NE(edit, fields.end()) << model;
+            edit->data[0][25] += 0.01;
+            solver->edited(*edit);
+            const real poured = 0.01 * 0.05 * 0.1;
+            EXPECT_NEAR(value(*solver, "volume"), before + poured, 1e-13) << model << exchanged;  // of 0.24 m3
+            EXPECT_NEAR(value(*solver, "poured_volume"), poured, 1e-13) << model << exchanged;
         }
 }
 

@@ -2,7 +2,9 @@
 #include "rigid/moments.hpp"
 
 #include "support.hpp"
+#include "support/temporary_folder.hpp"
 
+#include <fstream>
 #include <random>
 
 using namespace weir;
@@ -75,6 +77,29 @@ TEST_IN_2D_AND_3D("a difference is its whole less its hole, a union of overlappi
     const std::string both = D == 2 ? "min = [0.2, 0.5], max = [1.3, 0.8]" : "min = [0.2, 0.5, 0.1], max = [1.3, 0.8, 0.3]";
     const auto united = shape_table(D, "shape = \"union\", of = [ { shape = \"box\", " + left + " }, { shape = \"box\", " + right + " } ]");
     EXPECT_LT(difference<D>(moments_of<D>(united), moments_of<D>(shape_table(D, "shape = \"box\", " + both)), bounds_of<D>(united)), 1e-6);
+}
+
+TEST(
+    "a scaled and turned mesh has the moments of the box that it is: volumes with the third power of the scale, second moments with the "
+    "fifth") {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "box.obj";
+    std::ofstream obj(file);
+    for (int c = 0; c < 8; ++c) obj << "v " << (c & 1 ? 0.6 : 0.1) << ' ' << (c & 2 ? 0.5 : 0.2) << ' ' << (c & 4 ? 0.9 : 0.7) << '\n';
+    obj << "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n";
+    obj.close();
+    for (const real scale : {0.5, 1.0, 2.0}) {
+        const auto found = moments_of<3>(shape_table(
+            3, fmt::format("shape = \"mesh\", file = \"{}\", scale = {}, at = [1.0, 1.2, 0.3], axis = [0.0, 0.0, 1.0], angle = {:.17g}",
+                           file.string(), scale, 0.5 * pi)));
+        // Turned by a quarter about z: what was along x lies along y. 0.5 x 0.3 x 0.2 m; files and moments have double precision.
+        const real s3 = scale * scale * scale, volume = 0.03 * s3;
+        EXPECT_NEAR(found.volume, volume, 1e-14 * s3) << scale;
+        const std::array<real, 3> edges{0.3 * scale, 0.5 * scale, 0.2 * scale};
+        for (std::size_t a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b)
+                EXPECT_NEAR(found.second[a][b], static_cast<int>(a) == b ? volume * edges[a] * edges[a] / 12 : 0, 1e-13 * volume) << scale;
+    }
 }
 
 TEST("a half space and a wave have no end") {

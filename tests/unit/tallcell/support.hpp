@@ -20,8 +20,10 @@ struct Basin {
     std::mt19937 random{7};
 
     /// `ground`: rows of solid, at most; `waves`: how far the surface strays from `level` (a part of the height).
-    explicit Basin(const Index<D>& cells, int ground = 0, real level = 0.8, real waves = 0.1, real h = 0.25) {
-        state.u = MacVelocity<D>(cells, Vec<D>::constant(h), Vec<D>{});
+    explicit Basin(const Index<D>& cells, int ground = 0, real level = 0.8, real waves = 0.1,
+                   const Vec<D>& edges = Vec<D>::constant(0.25)) {
+        const real h = edges[1];
+        state.u = MacVelocity<D>(cells, edges, Vec<D>{});
         state.p = Grid<real, D>(cells);
         state.cells = Grid<poisson::Cell, D>(cells);
         state.rho = 1000;

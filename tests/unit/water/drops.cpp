@@ -70,6 +70,28 @@ TEST_IN_2D_AND_3D("curvature of circles and spheres is of second order") {
     EXPECT_LT(fine, bound / 3);
 }
 
+// Where no surface crosses the window, second differences of the distance are all there is: of a ball's, κ = (D − 1)/r of the ball through
+// the cell. They err by h² |x|⁻² times a fourth derivative over 12, of order 1: 2 (h/r)² is allowed for.
+TEST_IN_2D_AND_3D("away from the surface curvature is that of the distance's second differences") {
+    set_threads(1);
+    const MacVelocity<D> u(Index<D>::constant(32), Vec<D>::constant(1.0 / 32), Vec<D>{});
+    const Frame<D> frame(u, geometry::Sides<D>());
+    Grid<real, D> phi(u.cells);
+    const Vec<D> middle = Vec<D>::constant(0.51);
+    for_each_cell(u.cells, [&](const Index<D>& I) { phi(I) = norm(frame.centre(I) - middle) - 0.15; });
+    int slanted = 0;
+    for_each_cell(u.cells, [&](const Index<D>& I) {
+        const Vec<D> x = frame.centre(I) - middle;
+        const real r = norm(x), h = 1.0 / 32;
+        for (int a = 0; a < D; ++a)
+            if (I[a] < 2 || I[a] > 29) return;
+        if (r < 0.15 + 4.5 * h) return;  // the window reaches two cells along each axis
+        EXPECT_NEAR(curvature_near(phi, frame, I) * r / (D - 1), 1, 2 * h * h / (r * r));
+        slanted += std::abs(x[0]) > 0.5 * r && std::abs(x[1]) > 0.5 * r;
+    });
+    EXPECT_GT(slanted, 20);
+}
+
 // 6 periods of its slowest swing. Of a surface energy of 1.57 J/m a hundred thousandth moves; second differences of distances move a
 // thousandth, and the drop by more than a cell.
 TEST("a drop at rest off the grid's middle stays where it is") {

@@ -1,4 +1,5 @@
 // Heat in a liquid with a free surface: conduction in a still pool, freezing at a wall, evaporation, and the balance of it all in a splash.
+#include "matter/closed_gas.hpp"
 #include "support.hpp"
 #include "thermo/substance.hpp"
 
@@ -165,6 +166,32 @@ TEST_IN_2D_AND_3D("in a closed box liquid and vapour come to the saturation pres
             EXPECT_EQ(p > p_began, empty);
             // The surface's warmth runs after the pressure by a step of 1 s or less; asked for: 1%.
             EXPECT_NEAR(p / thermo::water()->pressure(thermo::Boundary::saturation, T), 1, 0.01) << (splash ? "splash" : "at rest");
+        }
+}
+
+// The limit of a long step is equilibrium, p_sat(T − L m/C) = p, linearised: the rest is of second order in the first difference of
+// pressures.
+TEST("evaporation into a closed gas over a long step reaches the saturation pressure of the cooled surface") {
+    const real T = 350, space = 2e-3, liquid = 1e-3;
+    const auto substance = thermo::water();
+    const auto line = thermo::Boundary::saturation;
+    const real full = substance->warmer_density(line, T) * (space - liquid);  // mass of saturated vapour
+    for (const real capacity : {0.5, 5.0, 500.0})                             // J/K: that of heat first, of mass last
+        for (const real lacks : {0.02, 0.01}) {
+            const auto scene =
+                water_scene(box(2, {"4", "4"}, {"0.1", "0.1"}) +
+                            fmt::format("liquid = [ {{ shape = \"box\", min = [0.0, 0.0], max = [0.1, 0.05] }} ]\nfluid = {{ density = "
+                                        "1000.0 }}\nsubstance = \"water\"\nheat = {{ evaporation = 1e-5, enclosed_vapour = {:.17g} }}\n",
+                                        full * (1 - lacks)));
+            const auto melting = matter::melting_at(*substance, 101325);
+            matter::ClosedGas gas(scene, substance, melting, space, liquid, T);
+            const real p_sat = substance->pressure(line, T), before = p_sat - gas.pressure();
+            ASSERT_NEAR(before / p_sat, lacks, 0.1 * lacks);
+            const real m = gas.evaporates(1.0, T, capacity, 1e9);
+            const real cooled = T - substance->latent_heat(line, T) * m / capacity;
+            gas.take(m, melting, cooled, liquid);
+            // d ln p_sat/dT = 0.042 per K at 350 K: what second derivatives leave of a part d of p is a few d², and the vapour's own T/350.
+            EXPECT_LT(std::abs(substance->pressure(line, cooled) - gas.pressure()) / before, 3 * lacks + 0.08) << capacity << ' ' << lacks;
         }
 }
 

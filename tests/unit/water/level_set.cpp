@@ -95,6 +95,28 @@ TEST_IN_2D_AND_3D("distances to a tilted plane are exact in flat cells too, howe
     }
 }
 
+// The level set continues into solids by the mean of its neighbours: beside a corner |grad phi| is between 1 and |(1/2, 1)|, which
+// redistancing does not rescale (up to 7/5). The sum of two neighbours would be a slope of 2.
+TEST_IN_2D_AND_3D("redistancing leaves the distance to a plane as it is beside the corner of a solid, wherever in its cells the plane is") {
+    set_threads(1);
+    for (const real height : {0.44, 0.455, 0.47, 0.485, 0.5}) {
+        const auto plane = geometry::plane<D>(height * Vec<D>::unit(1), Vec<D>::unit(1));
+        Surface<D> s(16, *plane);
+        Grid<std::uint8_t, D> closed(s.frame.cells);
+        for_each_cell(s.frame.cells, [&](const Index<D>& I) { closed(I) = I[0] >= 10 && I[1] <= static_cast<int>(height * 16 + 0.5); });
+        s.level_set.set_closed(closed);
+        s.level_set.redistance();
+        int beside = 0;
+        for (std::size_t i = 0; i < s.level_set.layer_end(1); ++i) {
+            const Index<D> I = s.level_set.band()[i];
+            if (closed(I)) continue;
+            EXPECT_NEAR(s.level_set.phi(I), plane->distance(s.frame.centre(I)), 1e-15) << height << ' ' << I[0] << ' ' << I[1];
+            beside += I[0] == 9;
+        }
+        EXPECT_GT(beside, 0);
+    }
+}
+
 TEST("a disc in solid rotation comes back: cubic advection changes its area by under 1% in a turn at 64 cells") {
     Surface<2> s(64, *geometry::sphere<2>(Vec<2>{{0.5, 0.7}}, 0.15));
     for (int a = 0; a < 2; ++a)
