@@ -15,6 +15,8 @@ void add_stability(CLI::App& app, int& exit_code) {
                       "Folder of what was found");
     command->add_flag("--floors", options.floors, "Only check that each floor holds: one run an axis");
     command->add_option("--axis", options.axis, "Only this axis");
+    command->add_option("--steps", options.steps, "With --floors: end each run after N steps and judge nothing")
+        ->check(CLI::PositiveNumber);
     command->callback([arguments, &exit_code] { exit_code = validation::stability_command(arguments->chosen()); });
 }
 

@@ -13,6 +13,10 @@ void add_validate(CLI::App& app, int& exit_code) {
     arguments->add_to(*command, "Every case", "ci: minutes; full: as published", "Folder of verdicts.json, svg/, csv/ and frames");
     command->add_option("--backend", arguments->options.backend,
                         "threads[:isa], opencl[:N] (weir list devices) or reference, for all runs of particles");
+    command
+        ->add_option("--steps", arguments->options.steps,
+                     "End each run after N steps, at the first value of its sweep: all code of a case is run and nothing judged")
+        ->check(CLI::PositiveNumber);
     command->add_flag("--report", arguments->options.page, "Publish, and write all published results as one HTML page");
     command->callback([arguments, &exit_code] {
         arguments->publish |= arguments->options.page;
