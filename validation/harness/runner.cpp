@@ -3,6 +3,7 @@
 
 #include "output/frames.hpp"
 #include "sim/simulation.hpp"
+#include "validation/harness/fitting.hpp"
 #include "validation/harness/generic_metrics.hpp"
 
 #include <fmt/format.h>
@@ -80,7 +81,7 @@ void take(RunResult& result, const RunRecord& record, const Reference& reference
         if (const auto series = history_of(record, metric, is_series(metric, variant))) result.series[metric] = *series;
         if (!is_series(metric, variant)) result.measured[metric] = (cut ? measure_if_there : measure)(metric, record, reference);
         const Metric* m = find_metric(metric);
-        if (m && m->figure) result.panels.push_back(m->figure(record, reference));
+        if (m && m->figure) result.panels.push_back(fitting(metric, [&] { return m->figure(record, reference); }));
     }
 }
 
@@ -103,7 +104,8 @@ void RunWatch::remember(const StepReport& report, double seconds) {
     for (const Integral& i : record_.integrals) moment.integrals.push_back(i.value);
     if (!observers_.empty()) {
         const FieldSet fields = simulation_->fields();
-        for (const Metric* m : observers_) moment.observed.push_back(m->observe(fields, *record_.scene, moment.time));
+        for (const Metric* m : observers_)
+            moment.observed.push_back(fitting(m->name, [&] { return m->observe(fields, *record_.scene, moment.time); }));
     }
     record_.history.push_back(std::move(moment));
     record_.time = simulation_->time();
@@ -158,7 +160,7 @@ Reference make_reference(const std::string& name, const scene::Scene& scene, con
     if (name.empty()) return {};
     std::vector<std::string> known;
     for (const ReferenceKind& kind : references()) {
-        if (kind.name == name) return kind.make(scene, case_folder / "data");
+        if (kind.name == name) return fitting(name, [&] { return kind.make(scene, case_folder / "data"); });
         known.push_back(kind.name);
     }
     throw BadInput(
