@@ -19,6 +19,8 @@ void add_stability(CLI::App& app, int& exit_code) {
                      "Folder of published limits: one run at either end of each; one that moved fails (exit code 1)")
         ->check(CLI::ExistingDirectory);
     command->add_option("--axis", options.axis, "Only this axis");
+    command->add_option("--steps", options.steps, "With --floors: end each run after N steps and judge nothing")
+        ->check(CLI::PositiveNumber);
     command->callback([arguments, &exit_code] { exit_code = validation::stability_command(arguments->chosen()); });
 }
 

@@ -17,6 +17,10 @@ void add_validate(CLI::App& app, int& exit_code) {
         ->add_option("--compare", arguments->options.compare,
                      "Folder of published results: a number that differs from the published one fails (exit code 1)")
         ->check(CLI::ExistingDirectory);
+    command
+        ->add_option("--steps", arguments->options.steps,
+                     "End each run after N steps, at the first value of its sweep: all code of a case is run and nothing judged")
+        ->check(CLI::PositiveNumber);
     command->add_flag("--report", arguments->options.page, "Publish, and write all published results as one HTML page");
     command->callback([arguments, &exit_code] {
         arguments->publish |= arguments->options.page;

@@ -24,6 +24,7 @@ if(NOT WEIR_WIDE_REGISTERS)
 endif()
 if(WEIR_SANITIZE)
   target_compile_options(weir_flags INTERFACE -fsanitize=${WEIR_SANITIZE} -fno-omit-frame-pointer)
+  target_compile_definitions(weir_flags INTERFACE _GLIBCXX_ASSERTIONS)  # an index past size() and within the capacity is no error of memory
   target_link_options(weir_flags INTERFACE -fsanitize=${WEIR_SANITIZE})
 endif()
 

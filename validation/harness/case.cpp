@@ -143,6 +143,17 @@ Case read_case(const std::filesystem::path& folder, Size size) {
     return parse_case(scene::read_text(file), file.string(), folder, size);
 }
 
+Case cut_short(Case c, std::int64_t steps) {
+    const auto first_alone = [](std::vector<real>& values) { values.resize(1); };
+    for (Variant& v : c.variants) {
+        if (!v.sweep) continue;
+        first_alone(v.sweep->values);
+        for (auto& also : v.sweep->also) first_alone(also.values);
+    }
+    c.cut = steps;
+    return c;
+}
+
 std::filesystem::path frames_folder(const Case& c, const Variant& variant, std::size_t i) {
     std::filesystem::path folder = c.name;
     if (!variant.name.empty()) folder /= variant.name;

@@ -72,8 +72,13 @@ struct Case {
     std::string question, blind_to;
     Kind kind = Kind::exact;
     Size size = Size::ci;
-    std::vector<Variant> variants;  // those that claim something at this size
+    std::vector<Variant> variants;      // those that claim something at this size
+    std::optional<std::int64_t> cut{};  // every run ends after so many steps, and nothing is judged; absent: runs are whole
 };
+
+/// The case with runs of at most `steps` steps, each variant at the first value of its sweep: all that a run calls, the scene's frames, the
+/// reference and the metrics too, in little time. For tools that watch a program, such as sanitizers.
+Case cut_short(Case c, std::int64_t steps);
 
 /// The scene of run `i` of a variant, with the case's changes. Throws BadScene.
 scene::Scene scene_of(const Variant& variant, std::size_t i, const std::vector<scene::SolverSchema>& solvers);

@@ -3,6 +3,7 @@
 #include "core/types.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace weir::validation {
@@ -30,6 +31,9 @@ inline real interpolate(const Curve& c, real at) {
 struct Axis {
     std::string label{};  // quantity and unit: "y [m]"
     bool log = false;
+    // Not an aggregate: where a later part of a Panel throws (a curve that is not there), GCC 12 frees the text of an axis in braces twice.
+    Axis() = default;
+    Axis(std::string its_label, bool is_log = false) : label(std::move(its_label)), log(is_log) {}
 };
 
 /// Where differences mean nothing: shaded from the bottom of a diagram up to `below`; 0: nowhere. Of studies only (page/chart.hpp).

@@ -3,6 +3,7 @@
 
 #include "scene/names.hpp"
 #include "sim/owners.hpp"
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <fmt/format.h>
@@ -195,7 +196,7 @@ std::string unit_of(std::string_view name, const RunRecord& run) {
 }
 
 real measure(std::string_view name, const RunRecord& run, const Reference& reference) {
-    if (const Metric* m = find_metric(name); m && m->measure) return m->measure(run, reference);
+    if (const Metric* m = find_metric(name); m && m->measure) return fitting(m->name, [&] { return m->measure(run, reference); });
     if (const auto c = cost(name, run)) return *c;
     if (has_series(run, std::string(name))) return statistic(run.series(name), "");  // an observed metric may have a dot in its name
     const Name n = split(name);

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ using Solvers = std::vector<scene::SolverKind>;
 struct RunOptions {
     std::filesystem::path frames{};                            // folder of this run's .pvd; empty: none is written
     real time_limit = infinity;                                // wall seconds
+    std::optional<std::int64_t> steps{};                       // the most; absent: to the scene's end
     std::vector<const Metric*> observers{};                    // metrics that watch every step
     std::function<void(const RunRecord&)> at_start = nullptr;  // sees the initial state; may throw BadInput before a step is spent
 };

@@ -1,6 +1,7 @@
 // Bodies that float, are let go, heave, capsize and are moored. The scene's probe "body" follows the one that is asked about; what is said
 // of all bodies asks for a probe of each.
 #include "rigid/bodies.hpp"
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/signal.hpp"
 
@@ -36,7 +37,7 @@ real body_draft_error(const RunRecord& run, const Reference& ref) {
 real added_mass_error(const RunRecord& run, const Reference& ref) {
     const Curve v = track(run, "velocity_y");
     const real s = run.scene->root().tables("bodies").at(0).number("density") / run.scene->number("fluid.density");
-    const real g = -run.scene->effect("gravity")->numbers("g").at(1), start = (v.y.at(1) - v.y.at(0)) / (v.x.at(1) - v.x.at(0));
+    const real g = -needed_effect(*run.scene, "gravity").numbers("g").at(1), start = (v.y.at(1) - v.y.at(0)) / (v.x.at(1) - v.x.at(0));
     return std::abs(((1 - s) * g / start - s) / ref.number("coefficient") - 1);
 }
 

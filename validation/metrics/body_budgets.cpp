@@ -1,6 +1,7 @@
 // What bodies and the fluid that carries them hold together: momentum, which walls alone may change where no weight acts; angular momentum
 // of particles, whose walls are far; and energy, which nothing puts in.
 #include "rigid/bodies.hpp"
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
@@ -153,7 +154,7 @@ real energy_of_water(const FieldSet& fields, const scene::Scene& scene) {
     if (!phi || !velocity || velocity->where != Where::face) return 0;
     rigid::Bodies<D> bodies(scene);
     bodies.recall([&](const char* name, std::size_t component, std::size_t body) {
-        return fields.find(rigid::body_set_name, name)->data.at(component)[body];
+        return needed_field(fields, rigid::body_set_name, name).data.at(component)[body];
     });
     const GridView& g = fields.grid;
     const auto* gravity = scene.effect("gravity");

@@ -2,6 +2,7 @@
 #include "matter/ambient.hpp"
 #include "matter/substance.hpp"
 #include "thermo/substance.hpp"
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 
 #include <algorithm>
@@ -14,14 +15,14 @@ namespace {
 constexpr int strips_of_gas = 8;
 
 bool all_vapour(const FieldSet& fields) {
-    const auto& share = fields.find("particles", "vapour")->data[0];
+    const auto& share = needed_field(fields, "particles", "vapour").data[0];
     return std::all_of(share.begin(), share.end(), [](real v) { return v == 1; });
 }
 
 /// Mass in each of so many strips along an axis over the mean of all. A particle is spread over the gas's mean spacing, and what of that
 /// is beyond the walls counts inside: counted as points, a lattice's rows would beat with the strips.
 std::vector<real> gas_profile(const FieldSet& fields, std::size_t axis) {
-    const auto& x = fields.find("particles", "position")->data;
+    const auto& x = needed_field(fields, "particles", "position").data;
     const GridView& g = fields.grid;
     real volume = 1;
     for (std::size_t a = 0; a < x.size() && a < static_cast<std::size_t>(g.dim); ++a) volume *= g.spacing[a] * g.cells[a];
@@ -73,9 +74,9 @@ real last_known(const RunRecord& run, const char* series) {
 /// while no more than a hundredth of all has become vapour, before bubbles stir it.
 real boiling_error(const FieldSet& fields, const scene::Scene& scene, real t) {
     constexpr real first_hundredth = 0.01;
-    const auto& y = fields.find("particles", "position")->data[1];
-    const auto& T = fields.find("particles", "temperature")->data[0];
-    const auto& share = fields.find("particles", "vapour")->data[0];
+    const auto& y = needed_field(fields, "particles", "position").data[1];
+    const auto& T = needed_field(fields, "particles", "temperature").data[0];
+    const auto& share = needed_field(fields, "particles", "vapour").data[0];
     const GridView& g = fields.grid;
     real all = 0;
     for (const real s : share) all += s;

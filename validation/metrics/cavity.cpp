@@ -1,4 +1,5 @@
 // Cavities: velocity on the centrelines against tables, heat through the walls against single numbers.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 
@@ -12,7 +13,7 @@ Curve centreline(const RunRecord& run, int c) {
     const GridView& g = run.fields.grid;
     const int axis = 1 - c;
     const auto A = static_cast<std::size_t>(axis);
-    const Curve inner = along_line(run.field("velocity"), g, c, middle(g), axis);
+    const Curve inner = along_line(needed_field(run.fields, "", "velocity"), g, c, middle(g), axis);
     const real lid = c == 0 ? run.scene->root().numbers("sides.y_max.velocity").at(0) : 0;
     Curve line{.label = "weir", .x = {g.origin[A]}, .y = {0}};
     line.x.insert(line.x.end(), inner.x.begin(), inner.x.end());
@@ -68,7 +69,7 @@ Heat heat_of(const RunRecord& run) {
 real nusselt_of_plane(const RunRecord& run, int i) {
     const GridView& g = run.fields.grid;
     const Heat heat = heat_of(run);
-    const FieldView &u = run.field("velocity"), &T = run.field("temperature");
+    const FieldView &u = needed_field(run.fields, "", "velocity"), &T = needed_field(run.fields, "", "temperature");
     const int n = g.cells[0];
     const real h = g.spacing[0];
     real sum = 0;
@@ -97,7 +98,7 @@ real nusselt_mean(const RunRecord& run) {
 /// Largest velocity on a centreline (u along y for c = 0), in units of alpha / L, at the top of the cubic's neighbourhood.
 real largest_on_centreline(const RunRecord& run, const Reference& ref, int c) {
     const GridView& g = run.fields.grid;
-    const Curve line = along_line(run.field("velocity"), g, c, middle(g), 1 - c);
+    const Curve line = along_line(needed_field(run.fields, "", "velocity"), g, c, middle(g), 1 - c);
     real largest = 0;
     const int fine = 20 * static_cast<int>(line.size());
     for (int i = 0; i <= fine; ++i)

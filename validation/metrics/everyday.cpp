@@ -166,9 +166,12 @@ std::size_t first_felt(const Curve& curve) {
     return static_cast<std::size_t>(std::find_if(curve.y.begin(), curve.y.end(), [](real p) { return p > 1000; }) - curve.y.begin());
 }
 
-/// When p1 first exceeds 1 kPa, less when the reference's does [s].
+/// When p1 first exceeds 1 kPa, less when the reference's does [s]; NaN where the run ends before.
 real impact_time(const RunRecord& run, const Reference& ref) {
-    const auto felt = [](const Curve& curve) { return curve.x.at(first_felt(curve)); };
+    const auto felt = [](const Curve& curve) {
+        const std::size_t first = first_felt(curve);
+        return first < curve.size() ? curve.x[first] : std::nan("");
+    };
     return felt(run.series("probe.p1")) - felt(ref.curve("P1"));
 }
 

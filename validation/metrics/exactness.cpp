@@ -1,4 +1,5 @@
 // Claims that hold to round-off or to a solver's tolerance: discrete Poisson errors, the identity of the projection, rest, mirrors.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
@@ -12,7 +13,7 @@ namespace {
 /// How far the error of "pressure" is from the table's error of the exactly solved difference equations, relative; RMS or largest,
 /// whichever is worse.
 real discrete_deviation(const RunRecord& run, const Reference& ref) {
-    const auto& p = run.field("pressure").data[0];
+    const auto& p = needed_field(run.fields, "", "pressure").data[0];
     const ScalarField& exact = ref.scalar("pressure");
     const auto count = static_cast<real>(p.size());
     std::vector<real> error(p.size());
@@ -42,7 +43,7 @@ real identity_error(const RunRecord& run, const Reference&) {
 
 /// Largest |u(x) - mirrored u| over largest |u|, mirrored at the middle plane across `axis`: the normal component changes its sign.
 real asymmetry(const FieldSet& fields, int axis) {
-    const FieldView& u = *fields.find("velocity");
+    const FieldView& u = needed_field(fields, "", "velocity");
     const GridView& g = fields.grid;
     real worst = 0;
     for (int c = 0; c < u.components(); ++c) {

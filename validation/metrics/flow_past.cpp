@@ -1,4 +1,5 @@
 // Flow past solids that it sticks to: drag, shedding and recirculation behind a cylinder, where flow behind a step reattaches.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
@@ -41,7 +42,7 @@ real last_rise(const Curve& c) {
 }
 
 Curve velocity_along(const RunRecord& run, real height) {
-    return along_line(run.field("velocity"), run.fields.grid, 0, Vec<3>{0, height, 0}, 0);
+    return along_line(needed_field(run.fields, "", "velocity"), run.fields.grid, 0, Vec<3>{0, height, 0}, 0);
 }
 
 real wake_length(const RunRecord& run, const Reference&) {

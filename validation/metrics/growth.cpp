@@ -1,4 +1,5 @@
 // Buoyant flow: how far a thermal's centre or a plume's front has risen, and the exponent with which it goes on rising.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
@@ -19,9 +20,9 @@ struct Excess {
     real operator()(std::size_t i) const { return temperature.data[0][i] - ambient; }
 };
 Excess excess(const FieldSet& fields, const scene::Scene& scene) {
-    const FieldView* T = fields.find("temperature");
+    const FieldView* T = fields.find("", "temperature");
     if (!T) throw BadInput("the solver shows no field \"temperature\"");
-    return {*T, scene.effect("buoyancy")->number("ambient")};
+    return {*T, needed_effect(scene, "buoyancy").number("ambient")};
 }
 
 /// Height of the centre of the heat.
@@ -59,7 +60,7 @@ Curve rise(const RunRecord& run, const Reference& ref, const std::string& metric
 Curve height_against_heat(const RunRecord& run, const Reference& ref) {
     Curve c = rise(run, ref, "plume.exponent_error");
     const Curve heat = run.series("total_temperature");
-    const real beta = run.scene->effect("buoyancy")->number("beta");
+    const real beta = needed_effect(*run.scene, "buoyancy").number("beta");
     for (std::size_t i = 0; i < c.size(); ++i)
         c.x[i] = std::pow(std::max(0.0, beta * (heat.y[i] - heat.y[0]) * c.x[i] * c.x[i]), 1.0 / (run.scene->dim() + 1));
     return c;

@@ -1,4 +1,5 @@
 // Columns of water: discharge along a river, where it jumps, crests and run-up.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 /// Highest surface of columns that are deeper than a thousandth of the deepest, above y = 0, where these scenes have their still water.
 real crest_height(const FieldSet& fields, const scene::Scene&, real) {
-    const FieldView *depth = fields.find("depth"), *surface = fields.find("surface");
+    const FieldView *depth = fields.find("", "depth"), *surface = fields.find("", "surface");
     if (!depth || !surface) throw BadInput("the solver shows no fields \"depth\" and \"surface\"");
     const auto &h = depth->data[0], &s = surface->data[0];
     const real film = 1e-3 * *std::max_element(h.begin(), h.end());
@@ -25,7 +26,7 @@ real highest_of(const Curve& series) { return *std::max_element(series.y.begin()
 
 Panel depth_panel(const RunRecord& run, const Reference& ref) {
     Curve ours{.label = "weir", .x = {}, .y = {}}, exact{.label = ref.source, .x = {}, .y = {}};
-    const auto& h = run.field("depth").data[0];
+    const auto& h = needed_field(run.fields, "", "depth").data[0];
     for_each_sample(run.fields.grid, -1, [&](const Vec<3>& x, real, std::size_t i) {
         ours.x.push_back(x[0]), ours.y.push_back(h[i]);
         exact.x.push_back(x[0]), exact.y.push_back(ref.scalar("depth")(x, run.time));
@@ -35,7 +36,7 @@ Panel depth_panel(const RunRecord& run, const Reference& ref) {
 }
 
 real discharge_error(const RunRecord& run, const Reference& ref) {
-    const auto &h = run.field("depth").data[0], &u = run.field("velocity").data[0];
+    const auto &h = needed_field(run.fields, "", "depth").data[0], &u = needed_field(run.fields, "", "velocity").data[0];
     const real q = ref.number("discharge");
     real worst = 0;
     for (std::size_t c = 0; c < h.size(); ++c) worst = std::max(worst, std::abs(h[c] * u[c] - q) / q);
@@ -44,8 +45,8 @@ real discharge_error(const RunRecord& run, const Reference& ref) {
 
 /// Where the last shooting column meets tranquil water.
 real jump_error(const RunRecord& run, const Reference& ref) {
-    const auto &h = run.field("depth").data[0], &u = run.field("velocity").data[0];
-    const real g = -run.scene->effect("gravity")->numbers("g").at(1);
+    const auto &h = needed_field(run.fields, "", "depth").data[0], &u = needed_field(run.fields, "", "velocity").data[0];
+    const real g = -needed_effect(*run.scene, "gravity").numbers("g").at(1);
     const GridView& grid = run.fields.grid;
     real at = std::nan("");
     for (std::size_t c = 0; c + 1 < h.size(); ++c)
@@ -95,7 +96,7 @@ real heave_history_error(const RunRecord& run, const Reference& ref) {
 /// Angle between the way of a dragged object and the crest of its wake: a straight line through the highest surface of each row of columns
 /// that lies between two and six widths beside the way.
 real wake_angle_error(const RunRecord& run, const Reference& ref) {
-    const auto& s = run.field("surface").data[0];
+    const auto& s = needed_field(run.fields, "", "surface").data[0];
     const GridView& g = run.fields.grid;
     const real way = first_float(run).numbers("at").at(2), width = first_float(run).numbers("size").at(2);
     real n = 0, sz = 0, sx = 0, szz = 0, szx = 0;

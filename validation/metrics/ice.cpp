@@ -1,4 +1,5 @@
 // Ice afloat among particles: how deep it lies, and where the water stands before, while and after it melts.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace {
 
 using Column = std::pair<int, int>;  // along x and, in 3D, z
 
-const std::vector<std::span<const real>>& positions(const FieldSet& fields) { return fields.find("particles", "position")->data; }
-std::span<const real> shares(const FieldSet& fields) { return fields.find("particles", "liquid")->data[0]; }
+const std::vector<std::span<const real>>& positions(const FieldSet& fields) { return needed_field(fields, "particles", "position").data; }
+std::span<const real> shares(const FieldSet& fields) { return needed_field(fields, "particles", "liquid").data[0]; }
 bool frozen(real liquid) { return liquid < 0.5; }
 
 Column column_of(const FieldSet& fields, std::size_t i) {

@@ -1,4 +1,5 @@
 // Melting and freezing: fronts, what ice and water come to, and the balance of heat.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 
 #include <fmt/format.h>
@@ -106,7 +107,7 @@ Panel balance_panel(const RunRecord& run, const Reference&) {
 
 /// Temperatures of the first row of cells, along x.
 Curve first_row(const RunRecord& run) {
-    const auto& T = run.field("temperature").data[0];
+    const auto& T = needed_field(run.fields, "", "temperature").data[0];
     const auto& grid = run.fields.grid;
     Curve row{.label = "weir"};
     for (int i = 0; i < grid.cells[0]; ++i)
@@ -153,8 +154,8 @@ real return_error(const RunRecord& run, const Reference&) {
 
 /// Of a wave of one period along x, by projection.
 real amplitude(const FieldSet& fields) {
-    const FieldView& x = *fields.find("particles", "position");
-    const auto& T = fields.find("particles", "temperature")->data[0];
+    const FieldView& x = needed_field(fields, "particles", "position");
+    const auto& T = needed_field(fields, "particles", "temperature").data[0];
     const real k = 2 * pi / (fields.grid.spacing[0] * fields.grid.cells[0]);
     real sum = 0;
     for (std::size_t i = 0; i < T.size(); ++i) sum += T[i] * std::sin(k * (x.data[0][i] - fields.grid.origin[0]));
@@ -169,8 +170,8 @@ real decay_error(const RunRecord& run, const Reference& ref) {
 
 /// Largest difference of any particle from the steady temperatures of a slab of ice and water, over that of its two sides.
 real slab_error(const RunRecord& run, const Reference& ref) {
-    const FieldView& x = *run.fields.find("particles", "position");
-    const auto& T = run.fields.find("particles", "temperature")->data[0];
+    const FieldView& x = needed_field(run.fields, "particles", "position");
+    const auto& T = needed_field(run.fields, "particles", "temperature").data[0];
     const auto exact = ref.scalars.at("temperature");
     real worst = 0;
     for (std::size_t i = 0; i < T.size(); ++i) worst = std::max(worst, std::abs(T[i] - exact({x.data[0][i], 0, 0}, run.time)));

@@ -1,4 +1,5 @@
 // Melting with natural convection: how much has melted, where the front stands, how many rolls turn in the melt.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ Panel melted_panel(const RunRecord& run, const Reference& ref) {
 
 /// x of the front at each row of cells: the liquid of the row.
 Panel gallium_panel(const RunRecord& run, const Reference& ref) {
-    const auto& liquid = run.field("liquid");
+    const auto& liquid = needed_field(run.fields, "", "liquid");
     const auto& cells = run.scene->root().numbers("grid.cells");
     const auto& size = run.scene->root().numbers("grid.size");
     const int nx = static_cast<int>(cells[0]), ny = static_cast<int>(cells[1]);
@@ -56,7 +57,7 @@ Panel gallium_panel(const RunRecord& run, const Reference& ref) {
 
 /// Extrema of the stream function, whose values are sums of u along y, that reach a twentieth of its largest magnitude.
 real rolls(const RunRecord& run, const Reference&) {
-    const auto& u = run.field("velocity").data[0];
+    const auto& u = needed_field(run.fields, "", "velocity").data[0];
     const auto& cells = run.scene->root().numbers("grid.cells");
     const auto& size = run.scene->root().numbers("grid.size");
     const int nx = static_cast<int>(cells[0]), ny = static_cast<int>(cells[1]);

@@ -15,7 +15,7 @@ template <int D>
 real smoke_inside(const FieldSet& fields, const scene::Scene& scene, real t) {
     geometry::Solids<D> solids(scene.root().tables("solids"));
     solids.set_time(t);
-    const FieldView* smoke = fields.find("smoke");
+    const FieldView* smoke = fields.find("", "smoke");
     if (!smoke) throw BadInput("the solver shows no field \"smoke\"");
     real diagonal = 0;
     for (int d = 0; d < D; ++d) diagonal += std::pow(fields.grid.spacing[static_cast<std::size_t>(d)], 2);

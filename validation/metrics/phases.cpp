@@ -1,4 +1,5 @@
 // Particles between two states of rest: what a minute at rest changes, and a liquid that becomes a gas and a liquid again.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr int boxes = 4;  // along each axis: each of 16 then expects a sixteent
 
 /// Smallest number of particles in any of boxes^2 parts of the container, over the mean of all: 1 is spread evenly, 0 leaves a part empty.
 real emptiest_part(const FieldSet& fields) {
-    const FieldView& x = *fields.find("particles", "position");
+    const FieldView& x = needed_field(fields, "particles", "position");
     const GridView& g = fields.grid;
     std::vector<real> inside(static_cast<std::size_t>(boxes * boxes), 0.0);
     for (std::size_t i = 0; i < x.data[0].size(); ++i) {
@@ -42,10 +43,11 @@ real emptiest_part(const FieldSet& fields) {
 /// Standard deviation over mean of the density of all particles that are farther than `skin` spacings below the highest one.
 real density_spread(const FieldSet& fields) {
     constexpr real skin = 3;  // a kernel that reaches out of the liquid sees less of it
-    const auto& y = fields.find("particles", "position")->data[1];
-    const auto& rho = fields.find("particles", "density")->data[0];
+    const auto& y = needed_field(fields, "particles", "position").data[1];
+    const auto& rho = needed_field(fields, "particles", "density").data[0];
     std::vector<real> heights(y.begin(), y.end());
     std::sort(heights.begin(), heights.end());
+    if (heights.empty()) return std::nan("");
     const real surface = heights[heights.size() * 98 / 100];  // a drop in flight is no surface
     real sum = 0, squares = 0, seen = 0;
     for (std::size_t i = 0; i < y.size(); ++i)

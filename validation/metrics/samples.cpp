@@ -10,7 +10,7 @@ namespace {
 int face_axis_of(const FieldView& field, int component) { return field.where == Where::face ? component : -1; }
 
 const FieldView& velocity(const FieldSet& fields) {
-    const FieldView* u = fields.find("velocity");
+    const FieldView* u = fields.find("", "velocity");
     if (!u) throw BadInput("the solver shows no field \"velocity\"");
     return *u;
 }
@@ -55,7 +55,7 @@ real value_at(const FieldView& field, const GridView& g, int component, const st
     const std::array<int, 3> n = sample_counts(g, face_axis_of(field, component));
     const std::size_t i = static_cast<std::size_t>(I[0]) +
                           static_cast<std::size_t>(n[0]) * (static_cast<std::size_t>(I[1]) + static_cast<std::size_t>(n[1] * I[2]));
-    return field.data[static_cast<std::size_t>(component)][i];
+    return field.data.at(static_cast<std::size_t>(component))[i];
 }
 
 Curve along_line(const FieldView& field, const GridView& g, int component, const Vec<3>& through, int axis) {
@@ -112,7 +112,7 @@ real mean_kinetic_energy(const FieldSet& fields) {
 
 real max_speed(const FieldSet& fields) {
     const FieldView& u = velocity(fields);
-    const FieldView* phi = fields.find("level_set");
+    const FieldView* phi = fields.find("", "level_set");
     const GridView& g = fields.grid;
     real speed = 0;
     for (int c = 0; c < u.components(); ++c) {

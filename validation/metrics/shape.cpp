@@ -1,5 +1,6 @@
 // What advection did to a shape: area and symmetric difference of a level set by 8 x 8 points a cell, and the peak of a hill; each can be
 // compared with the error that an independent implementation of the same scheme makes on the same grid.
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 
@@ -25,7 +26,7 @@ struct Areas {
 };
 
 Areas areas(const RunRecord& run, const Reference& ref) {
-    const FieldView& phi = run.field("level_set");
+    const FieldView& phi = needed_field(run.fields, "", "level_set");
     const GridView& g = run.fields.grid;
     const ScalarField& exact = ref.scalar("level_set");
     long inside = 0, different = 0;
@@ -54,7 +55,7 @@ real over_baseline(const RunRecord& run, const Reference& ref, real ours, const 
 }
 
 real rms_error(const RunRecord& run, const Reference& ref) {
-    const auto& data = run.field("tracer").data[0];
+    const auto& data = needed_field(run.fields, "", "tracer").data[0];
     const ScalarField& exact = ref.scalar("tracer");
     real sum = 0;
     for_each_sample(run.fields.grid, -1,

@@ -2,6 +2,7 @@
 #include "reconstruction/measure.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "reconstruction/triangle.hpp"
+#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
 
 #include <algorithm>
@@ -141,7 +142,7 @@ struct Rest {
 Rest at_rest(const RunRecord& run) {
     const SurfaceMesh mesh = mesh_of(run);
     const GridView& grid = run.fields.grid;
-    const auto& y = run.fields.find(particle_set_name, "position")->data[1];
+    const auto& y = needed_field(run.fields, particle_set_name, "position").data[1];
     real level = 0;
     for (const real one : y) level += 2 * (one - grid.origin[1]) / static_cast<real>(y.size());
     real sum = 0, squares = 0, count = 0;

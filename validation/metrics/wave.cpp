@@ -20,7 +20,7 @@ real surface_height(const FieldSet& fields, const FieldView& phi, int i) {
 
 /// Amplitude of cos(k x) in the surface: 2/n sum eta cos(k x). The mean level drops out, and so do the other modes.
 real mode_amplitude(const FieldSet& fields, const scene::Scene& scene, real) {
-    const FieldView *phi = fields.find("level_set"), *columns = fields.find("surface");
+    const FieldView *phi = fields.find("", "level_set"), *columns = fields.find("", "surface");
     if (!phi && !columns) throw BadInput("the solver shows no field \"level_set\" and no \"surface\"");
     const GridView& g = fields.grid;
     const scene::Table& wave = scene.root().tables("liquid").at(0);

@@ -1,4 +1,5 @@
 // Bodies in water: what Archimedes, Lamb and Ursell say of them.
+#include "validation/harness/fitting.hpp"
 #include "validation/harness/reference.hpp"
 #include "validation/references/table.hpp"
 
@@ -79,7 +80,7 @@ REFERENCE(heave_decay) {
     const Table table = read_table(data / "heave_decay_cylinder_2d_linear.csv");
     Reference ref{.source = "linear theory, from Ursell's multipoles (1949)"};
     Curve curve = table.curve("t_star", "x_over_x0", ref.source);
-    const real a = first_body(scene).number("radius"), g = -scene.effect("gravity")->numbers("g").at(1);
+    const real a = first_body(scene).number("radius"), g = -needed_effect(scene, "gravity").numbers("g").at(1);
     for (real& t : curve.x) t *= std::sqrt(a / g);
     ref.curves["heave"] = curve;
     ref.numbers["start"] = first_body(scene).numbers("centre").at(1) - level(scene);

@@ -1,4 +1,5 @@
 #include "validation/references/channel.hpp"
+#include "validation/harness/fitting.hpp"
 
 #include "validation/harness/reference.hpp"
 
@@ -53,7 +54,7 @@ Reference parallel_flow(const scene::Scene& scene, std::string source, std::func
 
 REFERENCE(poiseuille) {
     const real H = scene.vec<2>("grid.size")[1], nu = scene.number("fluid.viscosity");
-    const real G = scene.effect("gravity")->vec<2>("g")[0];
+    const real G = needed_effect(scene, "gravity").vec<2>("g")[0];
     return parallel_flow(scene, "plane Poiseuille flow from rest (exact series; Batchelor 1967, sec. 4.3)",
                          [=](real y, real t) { return poiseuille_startup(y, t, H, G, nu); });
 }
@@ -67,7 +68,7 @@ REFERENCE(couette) {
 
 REFERENCE(poiseuille_beside_solid) {
     const real H = scene.root().tables("solids").at(0).vec<2>("min")[1], nu = scene.number("fluid.viscosity");
-    const real G = scene.effect("gravity")->vec<2>("g")[0];
+    const real G = needed_effect(scene, "gravity").vec<2>("g")[0];
     Reference ref = parallel_flow(scene, "plane Poiseuille flow from rest (exact series; Batchelor 1967, sec. 4.3)",
                                   [=](real y, real t) { return poiseuille_startup(y, t, H, G, nu); });
     ref.covers = [=](const Vec<3>& x, real) { return x[1] < H; };

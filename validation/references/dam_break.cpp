@@ -1,5 +1,6 @@
 // Experiments with a collapsing column of water, n^2 = height / base = 2. Z = x_front / a against T = t sqrt(2 g / a), H = height / (2 a)
 // against tau = t sqrt(g / a), a = base width. (Two scalings: the front's time has the factor sqrt 2, the height's has not.)
+#include "validation/harness/fitting.hpp"
 #include "validation/harness/reference.hpp"
 #include "validation/references/table.hpp"
 
@@ -18,7 +19,7 @@ constexpr real gate_delay = 0.175;
 void add_scales(Reference& ref, const scene::Scene& scene) {
     const scene::Table& column = scene.root().tables("liquid").at(0);
     const real a = column.vec<2>("max")[0] - column.vec<2>("min")[0];
-    const real g = -scene.effect("gravity")->numbers("g").at(1);
+    const real g = -needed_effect(scene, "gravity").numbers("g").at(1);
     ref.numbers["base"] = a;
     ref.numbers["height"] = column.vec<2>("max")[1] - column.vec<2>("min")[1];
     ref.numbers["front_time"] = std::sqrt(a / (2 * g));

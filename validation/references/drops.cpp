@@ -1,4 +1,5 @@
 #include "validation/references/drops.hpp"
+#include "validation/harness/fitting.hpp"
 
 #include "validation/harness/reference.hpp"
 
@@ -76,7 +77,7 @@ REFERENCE(rotating_patch) {
 REFERENCE(static_drop) {
     const real R = disk(scene).number("radius");
     Reference ref{.source = "Laplace 1806: the pressure in a drop"};
-    ref.numbers = {{"pressure", (scene.dim() - 1) * scene.effect("surface_tension")->number("sigma") / R}, {"radius", R}};
+    ref.numbers = {{"pressure", (scene.dim() - 1) * needed_effect(scene, "surface_tension").number("sigma") / R}, {"radius", R}};
     return ref;
 }
 
@@ -86,7 +87,7 @@ REFERENCE(swinging_drop) {
     const Vec<2> from = capsule.vec<2>("from"), to = capsule.vec<2>("to");
     const real r = capsule.number("radius"), R = std::sqrt(r * r + 2 * r * norm(to - from) / pi);
     Reference ref{.source = "Rayleigh 1879, Proc. R. Soc. 29, 71: omega^2 = n (n^2 - 1) sigma/(rho R^3), n = 2"};
-    const real sigma = scene.effect("surface_tension")->number("sigma");
+    const real sigma = needed_effect(scene, "surface_tension").number("sigma");
     ref.numbers["frequency"] = std::sqrt(6 * sigma / (scene.number("fluid.density") * R * R * R));
     ref.numbers["middle"] = 0.5 * (from[0] + to[0]) - 0.5 * (from[1] + to[1]);
     return ref;
@@ -96,7 +97,7 @@ REFERENCE(swinging_drop) {
 REFERENCE(viscous_current) {
     const scene::Table& box = disk(scene);
     const Vec<2> to = box.vec<2>("max");
-    const Vec<2> g = scene.effect("gravity")->vec<2>("g");
+    const Vec<2> g = needed_effect(scene, "gravity").vec<2>("g");
     const real A = to[0] * to[1], reach = 1.411 * std::pow(norm(g) * A * A * A / (3 * scene.number("fluid.viscosity")), 0.2);
     Reference ref{.source = "Huppert 1982, J. Fluid Mech. 121, 43: x_N = 1.411 (g A^3/(3 nu))^(1/5) t^(1/5)"};
     ref.numbers = {{"reach", reach}, {"wall", 0.0}};

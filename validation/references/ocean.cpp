@@ -1,4 +1,5 @@
 #include "validation/references/ocean.hpp"
+#include "validation/harness/fitting.hpp"
 
 #include "validation/harness/reference.hpp"
 #include "validation/references/waves.hpp"
@@ -47,7 +48,7 @@ real density(const scene::Table& s, real g, real at) {
     return alpha * g * g * std::pow(at, -5) * std::exp(-1.25 * std::pow(peak / at, 4)) * std::pow(s.number("gamma"), b);
 }
 
-real gravity_of(const scene::Scene& scene) { return -scene.effect("gravity")->numbers("g").at(1); }
+real gravity_of(const scene::Scene& scene) { return -needed_effect(scene, "gravity").numbers("g").at(1); }
 real depth_of(const scene::Scene& scene) { return scene.root().number_or("waves.depth", infinity); }
 real level_of(const scene::Scene& scene) { return scene.root().number_or("waves.level", 0); }
 

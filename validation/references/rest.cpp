@@ -1,4 +1,5 @@
 // Liquid at rest: the pressure is that of the weight above, p = rho g . (x - x_s) below the surface, whatever the direction of gravity.
+#include "validation/harness/fitting.hpp"
 #include "validation/harness/reference.hpp"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ real greatest_depth(const scene::Scene& scene, const Vec<3>& down, const Vec<3>&
 // The liquid is the half space behind a plane whose normal is against gravity.
 REFERENCE(hydrostatic) {
     const scene::Table& liquid = scene.root().tables("liquid").at(0);
-    const Vec<3> g = in_3d(scene.effect("gravity")->numbers("g")), surface = in_3d(liquid.numbers("point"));
+    const Vec<3> g = in_3d(needed_effect(scene, "gravity").numbers("g")), surface = in_3d(liquid.numbers("point"));
     const real rho = scene.number("fluid.density");
     Reference ref{.source = "hydrostatics (exact)"};
     ref.scalars["pressure"] = [=](const Vec<3>& x, real) { return rho * dot(g, x - surface); };

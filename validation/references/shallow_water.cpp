@@ -1,6 +1,7 @@
 // Exact solutions of the shallow-water equations, as collected by SWASHES (Delestre, Lucas, Ksinant, Darboux, Laguerre, Vo, James &
 // Cordier 2013). Depth, surface and velocity; a height field's samples have no height of their own, so that y is not looked at.
 #include "scene/formula.hpp"
+#include "validation/harness/fitting.hpp"
 #include "validation/harness/reference.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ using namespace weir::validation;
 
 namespace {
 
-real gravity_down(const scene::Scene& scene) { return -scene.effect("gravity")->numbers("g").at(1); }
+real gravity_down(const scene::Scene& scene) { return -needed_effect(scene, "gravity").numbers("g").at(1); }
 
 /// A formula of the scene, of x and in 3D of z.
 ScalarField formula_of(const scene::Scene& scene, const std::string& path) {

@@ -2,6 +2,7 @@
 // With the buoyancy F of a thermal [m^(D+1)/s^2] as the only parameter, lengths go like (F t^2)^(1/(D+1)): z ~ t^(2/3) in 2D, t^(1/2) in
 // 3D. A thermal that leaves rest as a disk (ball) in unbounded inviscid fluid accelerates as a whole by g' (D - 1)/D: the pressure that
 // solves lap p = d(rho g')/dy inside a ball is linear there and takes the fraction 1/D of the buoyancy.
+#include "validation/harness/fitting.hpp"
 #include "validation/harness/reference.hpp"
 
 #include <cmath>
@@ -12,8 +13,8 @@ using namespace weir::validation;
 // The thermal is a hot ball of fluid at rest: initial.temperature = { name = "ball", ... }.
 REFERENCE(thermal) {
     const scene::Table& ball = scene.root().table("initial.temperature");
-    const scene::Table* buoyancy = scene.effect("buoyancy");
-    const real excess = buoyancy->number("beta") * (ball.number("value") - buoyancy->number("ambient"));
+    const scene::Table& buoyancy = needed_effect(scene, "buoyancy");
+    const real excess = buoyancy.number("beta") * (ball.number("value") - buoyancy.number("ambient"));
     const int D = scene.dim();
     Reference ref{.source = "self-similarity: Morton, Taylor & Turner 1956; Scorer 1957 (exponents exact, factors not)"};
     ref.numbers = {{"exponent", 2.0 / (D + 1)},

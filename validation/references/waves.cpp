@@ -1,4 +1,5 @@
 #include "validation/references/waves.hpp"
+#include "validation/harness/fitting.hpp"
 
 #include "validation/harness/reference.hpp"
 #include "validation/references/faddeeva.hpp"
@@ -59,7 +60,7 @@ namespace {
 constexpr int samples_a_period = 64;  // of the drawn and fitted reference curve: a parabola between samples errs by under 1e-4
 
 real gravity(const scene::Scene& scene) {
-    const auto& g = scene.effect("gravity")->numbers("g");
+    const auto& g = needed_effect(scene, "gravity").numbers("g");
     return -g.at(1);
 }
 

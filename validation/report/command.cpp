@@ -46,6 +46,7 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
     for (const auto& folder : chosen_folders("validate", options.names, options.all, options.list, found)) try {
             cases.push_back(read_case(folder, options.size));
             if (!options.list && !options.backend.empty()) move_to_backend(cases.back(), options, solvers);
+            if (options.steps > 0) cases.back() = cut_short(std::move(cases.back()), options.steps);
             if (!options.list) check_case(cases.back(), solvers);
         } catch (const BadInput& wrong) {
             problems += (problems.empty() ? "" : "\n") + std::string(wrong.what());
@@ -58,6 +59,7 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
 void check_comparable(const ValidateOptions& options) {
     if (options.compare.empty()) return;
     if (options.size != Size::ci) throw BadInput("--compare takes the ci size, whose numbers are published beside those of full size");
+    if (options.steps > 0) throw BadInput("--compare takes runs to their end, without --steps");
     if (!options.backend.empty()) throw BadInput("--compare takes the scenes as they are, without --backend");
 }
 
@@ -86,6 +88,24 @@ bool write_outputs(const CaseResult& result, const std::filesystem::path& out) {
         std::fprintf(stderr, "%s\n", failed.what());
         return false;
     }
+}
+
+/// "couette: 4 runs, at most 3 steps each: not judged"
+std::string cut_runs(const CaseResult& result) {
+    std::size_t runs = 0;
+    for (const auto& v : result.variants) runs += v.runs.size();
+    return fmt::format("{}: {} runs of at most {} steps, not judged", result.plan.name, runs, *result.plan.cut);
+}
+
+/// The exit code of runs that are not judged: each must come to its end.
+int ended(const std::vector<CaseResult>& results, int undrawn) {
+    bool failed = false, bad = undrawn > 0;
+    for (const CaseResult& result : results) {
+        bad = bad || result.bad_input();
+        for (const auto& v : result.variants)
+            for (const RunResult& run : v.runs) failed = failed || run.failure;
+    }
+    return bad ? exit_bad_input : failed ? exit_claim_failed : exit_success;
 }
 
 int list_cases(const std::vector<Case>& cases) {
@@ -161,6 +181,8 @@ std::vector<std::filesystem::path> chosen_folders(const std::string& command, co
 }
 
 int validate_command(const ValidateOptions& options, const Solvers& solvers) {
+    if (options.steps > 0 && !options.publish.empty())
+        throw BadInput("--steps judges nothing, so there is nothing to publish: weir validate takes --steps or --publish, not both");
     const std::vector<Case> cases = read_all(options, solvers);
     if (options.list) return list_cases(cases);
     check_comparable(options);
@@ -179,16 +201,18 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
         results.push_back(validate(c, options.out, solvers, progress));
         const CaseResult& result = results.back();
         if (talk) std::fprintf(stderr, "\r\033[K");
-        fmt::print("{}{}\n", claims_table(result), orders_table(result));
+        fmt::print("{}\n", c.cut ? cut_runs(result) : claims_table(result) + orders_table(result));
         std::fflush(stdout);
         std::fputs(untold_failures(result).c_str(), stderr);
         if (!options.compare.empty()) passed = is_as_published(result, options) && passed;
         if (!options.publish.empty()) pins.push_back(pins_json(ci_numbers(result, options.out, solvers, progress), result.seconds()));
         undrawn += write_outputs(result, options.out) ? 0 : 1;
+        if (c.cut) continue;
         for (const auto& verdict : verdicts_json(result)) verdicts.push_back(verdict);
         output::write_file(options.out / "verdicts.json", verdicts.dump(1) + "\n");  // after each case: a killed run keeps what it has
         passed = passed && result.pass(), bad = bad || result.bad_input();
     }
+    if (options.steps > 0) return ended(results, undrawn);
     if (!options.publish.empty()) publish(results, pins, options.out, options.publish);
     if (!options.publish.empty() && options.page) fmt::print("{}\n", write_page(options.publish).string());
     const auto claims = claimed(verdicts);

@@ -20,6 +20,7 @@ struct ValidateOptions {
     std::filesystem::path compare{};             // published folder to compare the ci size with; empty: not compared
     bool page = false;                           // write its index.html too
     bool quiet = false;                          // no progress on the terminal
+    std::int64_t steps = 0;                      // cut_short() by so many, and judge nothing; 0: whole runs
     std::string backend{};                       // for every scene that has scheme.backend; empty: its own
 };
 

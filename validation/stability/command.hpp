@@ -20,6 +20,7 @@ struct StabilityOptions {
     std::filesystem::path compare{};   // published folder: only whether each limit is where it was, by a run at either end
     bool floors = false;               // only whether each floor still holds: one run an axis
     Size size = Size::ci;
+    std::int64_t steps = 0;                       // with floors: runs end after so many, and nothing is judged; 0: whole runs
     std::filesystem::path out = "out/stability";  // <case>.json and limits.csv
     std::filesystem::path publish{};              // folder of the published page; empty: not published
     bool quiet = false;

@@ -168,7 +168,8 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
         hardship.step(*simulation, report);
         if (auto found = broken()) return found;
     }
-    hardship.end(*simulation, report), prove(false);
+    hardship.end(*simulation, report);
+    if (!stress.cut) prove(false);
     if (shown) *shown = hardship.shown();
     return std::nullopt;
 }

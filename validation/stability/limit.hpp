@@ -50,6 +50,7 @@ struct Stress {
     std::string not_reached{};    // why
     bool nested = false;          // a run at one value contains those at all lesser ones: the end is tried first
     std::int64_t steps = 0;       // a run ends here if its scene has not ended before
+    bool cut = false;             // before the hardship has come: nothing is proven at the end
     Variant base{};
     std::vector<Invariant> watch{};
     std::vector<Proof> proof{};  // that the hardship is there, at each value

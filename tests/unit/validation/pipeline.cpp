@@ -1,5 +1,6 @@
 // From case.toml to exit code, verdicts.json, CSV, SVG and the published page, on a solver whose numbers are known.
 #include "core/error.hpp"
+#include "validation/harness/runner.hpp"
 #include "validation/report/command.hpp"
 
 #include <nlohmann/json.hpp>
@@ -231,4 +232,40 @@ TEST("a sweep over cells keeps the scene's proportions, or refuses what has none
     EXPECT_EQ(scene_of(c.variants[0], 0, schemas).root().numbers("grid.cells"), (std::vector<double>{16, 8}));
     EXPECT_EQ(scene_of(c.variants[0], 1, schemas).root().numbers("grid.cells"), (std::vector<double>{6, 3}));
     EXPECT_THROW(scene_of(c.variants[0], 2, schemas), BadInput);  // 3.5 cells along y
+}
+
+TEST("a run that is cut off runs, measures and draws at the first value of its sweep, and nothing of it is judged or published") {
+    const Folder folder;
+    const auto good = folder.add("good", head + R"(
+sweep = { key = "grid.cells", values = [8, 16, 32], also = [ { key = "time.max_dt", values = [0.02, 0.01, 0.005] } ] }
+accept = [
+  { metric = "velocity.max", at_most = 0, why = "wrong on purpose" },
+  { metric = "velocity.max", at = 32, at_most = 0, why = "of a value that is not run" },
+])");
+    ValidateOptions options = folder.options({good});
+    options.steps = 2;
+    EXPECT_THROW(validate_command(options, test::fake_kinds()), BadInput);  // nothing to publish
+    options.publish.clear();
+    EXPECT_EQ(validate_command(options, test::fake_kinds()), exit_success);
+    EXPECT_FALSE(fs::exists(folder.path / "out/verdicts.json"));
+    EXPECT_NE(folder.read("out/svg/good.svg").find("</svg>"), std::string::npos);
+    EXPECT_NE(folder.read("out/csv/good.csv").find("velocity.max"), std::string::npos);
+    EXPECT_TRUE(fs::exists(folder.path / "out/good/8/frames/grid_000001.vti"));  // the last step, which is no frame of the scene's
+    EXPECT_FALSE(fs::exists(folder.path / "out/good/16"));
+    const CaseResult result = validate(cut_short(read_case(good, Size::ci), 2), folder.path / "out", test::fake_kinds());
+    ASSERT_EQ(result.variants.at(0).runs.size(), 1u);
+    EXPECT_EQ(result.variants[0].runs[0].steps, 2);
+    EXPECT_EQ(result.variants[0].runs[0].measured.count("velocity.max"), 1u);
+}
+
+TEST("a run that is cut off and fails, or asks for what is not there, is told by the exit code") {
+    const Folder folder;
+    const auto broken =
+        folder.add("broken", head + "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n", "fail_at = 2\n");
+    const auto odd = folder.add("odd", head + "accept = [ { metric = \"volocity.max\", at_most = 10, why = \"w\" } ]");
+    for (const auto& [name, code] : {std::pair{broken, exit_claim_failed}, {odd, exit_bad_input}}) {
+        ValidateOptions options = folder.options({name});
+        options.steps = 3, options.publish.clear();
+        EXPECT_EQ(validate_command(options, test::fake_kinds()), code);
+    }
 }
