@@ -159,7 +159,7 @@ peaks() {
 # pieces of a file between two ranks, and blocks that are being compressed
 handed=$((4 * 1048576 + 2 * 8 * 32768)) huge_page=$((2 * 1048576))
 # Of every number of ranks and threads a few; WEIR_TEST_SIZE=full takes all.
-every="2 1,3 2,4 1"
+every="2 1,3 2,4 2"
 [ "${WEIR_TEST_SIZE:-ci}" = ci ] || every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
