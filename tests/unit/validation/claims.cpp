@@ -76,9 +76,9 @@ std::map<std::pair<std::string, std::string>, std::vector<std::array<real, 2>>> 
 /// Errors in cells or spacings become lengths.
 bool is_in_cells(const std::string& metric) { return find_metric(metric)->unit == "cells" || metric == "surface.hausdorff"; }
 
-/// By more than a twentieth, over all grids and between the two finest. An error below a fifth of its bound may scatter.
+/// By more than a twentieth, over all grids and between the two finest. An error below a third of its bound may scatter.
 bool grows(const std::string& metric, const std::vector<std::array<real, 2>>& measured, real bound) {
-    if (measured.size() < 2 || !(measured.back()[1] > bound / 5)) return false;
+    if (measured.size() < 2 || !(measured.back()[1] > bound / 3)) return false;
     const bool scale = find_metric(metric) != nullptr && is_in_cells(metric);
     const auto error = [&](const std::array<real, 2>& m) { return scale ? m[0] * m[1] : m[1]; };
     return error(measured.back()) > 1.05 * error(measured.front()) && error(measured.back()) > error(measured[measured.size() - 2]);
