@@ -14,6 +14,8 @@
 #   list WHAT           solvers, effects, cases or devices
 #   describe [WHAT]     what a scene may say
 #   test [...]          all tests; more words go to ctest
+#   lint [WHAT]         warnings of clang 14 over the whole tree, or tidy: the checks of .clang-tidy
+#   fuzz [SECONDS KIND] readers of files that users hand in, fed with damaged ones
 #   python              the package of Python, in build/release/python
 #   docs                the book as a site, in build/docs/site
 #   install DIR         the program, its cases and the library
@@ -27,6 +29,8 @@ weir_needs=(g++ cmake ninja-build git libeigen3-dev libfmt-dev libtomlplusplus-d
             ocl-icd-opencl-dev libgsl-dev libmuparser-dev libfftw3-dev libsuitesparse-dev libopenblas-dev libvtk9-dev libembree-dev)
 figures_need=(gnuplot-nox)
 python_needs=(python3-dev pybind11-dev python3-numpy)
+lint_needs=(clang-14 clang-tidy-14 libomp-14-dev)
+fuzz_needs=(clang-14 libclang-rt-14-dev libomp-14-dev)
 docs_need=(mkdocs libjs-katex)
 package_needs=(dpkg-dev gzip lintian)
 films_need=(ffmpeg)
@@ -123,6 +127,8 @@ case "${1:-}" in
     movie)
         install_missing "${weir_needs[@]}" "${films_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     view | live) install_missing "${weir_needs[@]}" && build weir weir-view weir-live >&2 && exec "$here/build/release/weir" "$@" ;;
+    lint) install_missing "${weir_needs[@]}" "${python_needs[@]}" "${tests_need[@]}" "${lint_needs[@]}" && exec "$here/tests/lint/clang.py" "${2:-warnings}" "${@:3}" ;;
+    fuzz) install_missing "${weir_needs[@]}" "${fuzz_needs[@]}" && exec "$here/tests/fuzz/run.sh" "${@:2}" ;;
     python) build_python ;;
     docs) install_missing "${docs_need[@]}" && python3 "$here/docs/site/make.py" "$here/build/docs" ;;
     package) build_packages ;;

@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "core/programs.hpp"
 #include "output/atomic_file.hpp"
+#include "output/image_file.hpp"
 #include "output/read_frame.hpp"
 #include "sim/registry.hpp"
 #include "validation/report/command.hpp"
@@ -121,6 +122,22 @@ void move_to(const std::filesystem::path& made, const std::filesystem::path& nam
     if (failed) throw OutputError("cannot write " + name.string() + ": " + failed.message());
 }
 
+constexpr const char* of_a_film = "weir movie";  // in the pictures of a film: its poster is one of them
+
+/// The poster's name follows from the film's, which the user gave: what stands there already may be the user's.
+std::filesystem::path poster_of(const std::filesystem::path& film) {
+    std::filesystem::path poster = film;
+    return poster.replace_extension(".png");
+}
+void refuse_foreign_poster(const std::filesystem::path& film) {
+    const auto poster = poster_of(film);
+    std::error_code ignored;
+    if (std::filesystem::symlink_status(poster, ignored).type() == std::filesystem::file_type::not_found) return;
+    if (std::filesystem::is_directory(poster, ignored) || output::was_made_as(poster, of_a_film)) return;
+    throw BadInput(poster.string() + ": the poster of " + film.string() +
+                   " would replace this file, which is no poster of an earlier film: give the film another name, or move the file");
+}
+
 void refuse_folder(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(file)) throw BadInput(file.string() + ": this is a folder, and a file is to be written there");
 }
@@ -158,12 +175,12 @@ int film(const MovieArguments& arguments) {
     const auto ending = std::filesystem::path(arguments.out).extension();
     if (!arguments.out.empty() && ending != ".mp4" && ending != ".webm")
         throw BadInput("--out " + arguments.out + ": a film is an .mp4 or a .webm");
+    if (!arguments.out.empty()) refuse_foreign_poster(arguments.out);
     const std::filesystem::path folder = run_of(arguments);
     const scene::Scene scene = scene_of_run(folder);
     const std::vector<real> times = output::frame_times(folder);
     const std::filesystem::path out = arguments.out.empty() ? folder / "movie.mp4" : std::filesystem::path(arguments.out);
-    std::filesystem::path poster = out;
-    poster.replace_extension(".png");
+    const std::filesystem::path poster = poster_of(out);
     refuse_folder(out), refuse_folder(poster);
     output::require_writable(out.has_parent_path() ? out.parent_path() : ".");
     catch_interrupts();
@@ -171,7 +188,7 @@ int film(const MovieArguments& arguments) {
     for (std::size_t frame = 0; frame < times.size(); ++frame) {
         if (interruptions() > 0) return exit_interrupted();
         show(frame, times.size(), arguments.quiet);
-        picture::draw_frame(folder, scene, frame, arguments.wish).write(workshop.picture(frame));
+        picture::draw_frame(folder, scene, frame, arguments.wish).write(workshop.picture(frame), of_a_film);
     }
     show(times.size(), times.size(), arguments.quiet);
     run_or_refuse(encoder(workshop.folder(), arguments.rate > 0 ? arguments.rate : usual_rate(times), workshop.film()));
@@ -189,7 +206,8 @@ void add_movie(CLI::App& app, int& exit_code) {
     movie->add_option("result", arguments->result, "Output folder of a run; or a scene or a case, which is run first, to out/<its name>")
         ->required();
     movie->add_option("--set", arguments->set, "Of a scene: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
-    movie->add_option("--out", arguments->out, "File to write: .mp4 or .webm (default: RESULT/movie.mp4); the poster beside it");
+    movie->add_option("--out", arguments->out,
+                      "File to write: .mp4 or .webm (default: RESULT/movie.mp4); the poster beside it, where no other file has its name");
     movie->add_option("--field", arguments->wish.field, "What is shown, as weir picture");
     movie->add_option("--range", arguments->range,
                       "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: each frame's own)");

@@ -48,6 +48,8 @@ std::filesystem::path earlier(const std::filesystem::path& checkpoint) {
     return checkpoint.parent_path() / ("earlier_" + checkpoint.filename().string());
 }
 
+bool holds_run(const std::filesystem::path& folder, const std::string& run) { return !run.empty() && run_in(folder) == run; }
+
 std::string own_as_new(const std::filesystem::path& folder, const scene::Scene& scene, bool quiet) {
     by_first_rank([&] {
         for (const auto& checkpoint : {sim::checkpoint_file(folder), sim::last_good_file(folder)}) move_away(checkpoint, quiet);
@@ -55,16 +57,18 @@ std::string own_as_new(const std::filesystem::path& folder, const scene::Scene& 
     return sim::run_id(scene);
 }
 
-std::string own_as_continued(const std::filesystem::path& folder, const scene::Scene& scene, const std::string& continued) {
-    bool holds_run = false;
+std::string own_as_continued(const std::filesystem::path& folder, const scene::Scene& scene, const std::string& continued,
+                             std::int64_t steps) {
+    const std::string branch = sim::branch_id(scene, continued, steps);
+    bool holds_continued = false;
     by_first_rank([&] {
         const std::string there = run_in(folder);
-        holds_run = std::filesystem::exists(folder / "run.json");
-        if (!there.empty() && there != continued)
+        holds_continued = std::filesystem::exists(folder / "run.json") && there != branch;
+        if (!there.empty() && there != continued && there != branch)
             throw BadInput(folder.string() + ": the files there are of run " + there + ", and the checkpoint is of run " + continued +
                            ": continue in the folder of its own run, or in a new one (--out)");
     });
-    return slabs().largest(holds_run ? 1 : 0) != 0 ? continued : sim::run_id(scene);
+    return slabs().largest(holds_continued ? 1 : 0) != 0 ? continued : branch;
 }
 
 }  // namespace weir::app

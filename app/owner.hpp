@@ -3,6 +3,7 @@
 #include "output/folder_lock.hpp"
 #include "scene/scene.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -18,8 +19,13 @@ std::unique_ptr<output::FolderLock> lock_folder(const std::filesystem::path& fol
 /// Returns the id of the run, the same on all ranks.
 std::string own_as_new(const std::filesystem::path& folder, const scene::Scene& scene, bool quiet);
 
-/// The same of a run that goes on from a checkpoint of run `continued`. Throws BadInput where the folder has files of another run.
-std::string own_as_continued(const std::filesystem::path& folder, const scene::Scene& scene, const std::string& continued);
+/// The same of a run that goes on from a checkpoint of run `continued` after so many steps. In a folder without a run it is a run of its
+/// own, a branch: the same branch again takes the place of what is there. Throws BadInput where the folder has files of another run.
+std::string own_as_continued(const std::filesystem::path& folder, const scene::Scene& scene, const std::string& continued,
+                             std::int64_t steps);
+
+/// Whether the folder has files of that run.
+bool holds_run(const std::filesystem::path& folder, const std::string& run);
 
 /// The name that a checkpoint of an earlier run gets.
 std::filesystem::path earlier(const std::filesystem::path& checkpoint);

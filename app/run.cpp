@@ -74,7 +74,7 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
         });
         return std::nullopt;
     }
-    return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1) : output::Frames(folder, options);
+    return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1, simulation.time()) : output::Frames(folder, options);
 }
 
 std::string explain_ranks(const Simulation& simulation) {
@@ -142,14 +142,18 @@ double memory_for_all(const scene::Scene& scene) {
 class Recorder final : public sim::Watcher {
 public:
     /// checkpoint: what was read of the one that is continued [bytes]; 0: none.
-    Recorder(const Simulation& simulation, const std::filesystem::path& folder, const std::string& run, std::size_t checkpoint, bool quiet)
-        : checkpoint_(checkpoint),
+    /// earlier: the folder with the files of the run that is continued, where that is another one.
+    Recorder(Simulation& simulation, const std::filesystem::path& folder, const std::string& run, std::size_t checkpoint,
+             const std::filesystem::path& earlier, bool quiet)
+        : simulation_(simulation),
+          checkpoint_(checkpoint),
           balance_(simulation),
           quiet_(quiet),
           probes_(folder / "probes"),
           log_(folder / "run.json", simulation.scene(), run),
           progress_(simulation.time(), simulation.end_time(), quiet) {
-        frames_ = open_frames(simulation, folder, checkpoint > 0);
+        frames_ = open_frames(simulation, folder, checkpoint > 0);  // where that refuses the folder, all stays as it is
+        by_first_rank([&] { probes_.begin(simulation.probes(), earlier.empty() ? earlier : earlier / "probes"); });
         tell_ranks(simulation, {}, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
@@ -167,6 +171,7 @@ public:
         balance_.on_step(report);
         const auto start = clock::now();
         by_first_rank([&] { tell_step(simulation, report, seconds); });
+        if (!measured_) simulation_.release_probe_rows();  // what is measured at the end looks at all of them
         spent_.writing += seconds_since(start);
     }
     void on_frame(const Simulation& simulation) override {
@@ -245,6 +250,7 @@ private:
         written_ = clock::now();
         write_time_ = written_ - start;
     }
+    Simulation& simulation_;
     std::size_t checkpoint_;
     sim::Balance balance_;
     TimeSpent spent_;
@@ -350,9 +356,10 @@ int simulate(const RunArguments& arguments) {
     if (!arguments.quiet) std::fputs(space.c_str(), stdout);
 
     std::optional<Measured> measured = measured_of(arguments, simulation);
-    const std::string run =
-        restarted > 0 ? own_as_continued(folder, simulation.scene(), continued) : own_as_new(folder, simulation.scene(), arguments.quiet);
-    Recorder recorder(simulation, folder, run, restarted, arguments.quiet);
+    const std::string run = restarted > 0 ? own_as_continued(folder, simulation.scene(), continued, simulation.steps())
+                                          : own_as_new(folder, simulation.scene(), arguments.quiet);
+    const std::filesystem::path earlier = restarted > 0 ? find_checkpoint(arguments.restart).parent_path() : "";
+    Recorder recorder(simulation, folder, run, restarted, holds_run(earlier, continued) ? earlier : "", arguments.quiet);
     if (measured) recorder.measure(*measured);
     catch_interrupts(slabs().several());
     sim::LoopOptions options;

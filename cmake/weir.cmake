@@ -6,6 +6,9 @@ target_compile_options(weir_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -W
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(weir_flags INTERFACE -Wno-restrict)  # false alarm on "text" + std::string (GCC bug 105651)
 endif()
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  target_compile_options(weir_flags INTERFACE -Wno-pass-failed)  # a loop that clang cannot vectorise is slower, not wrong
+endif()
 if(WEIR_NATIVE)
   target_compile_options(weir_flags INTERFACE -march=native)
 endif()

@@ -4,6 +4,8 @@
 #include "app/view/display.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "output/atomic_file.hpp"
+#include "output/folder_lock.hpp"
 #include "sim/registry.hpp"
 
 #include <cstdio>
@@ -40,7 +42,10 @@ int live(Arguments arguments) {
     if (arguments.scene.empty())
         throw weir::BadInput("weir live needs a scene (a file, a folder with a scene.toml, or the name of a case)");
     const auto scene = weir::live::endless(arguments.scene, overrides);
-    weir::live::Session session(scene, folder_of(arguments, scene));
+    const auto folder = folder_of(arguments, scene);
+    weir::output::require_writable(folder);
+    const weir::output::FolderLock lock(folder);
+    weir::live::Session session(scene, folder);
     weir::live::Window window(session, arguments.window);
     window.interact();
     window.stop();

@@ -24,13 +24,13 @@ void Canvas::paste(const Canvas& other, int x, int y) {
         for (int i = 0; i < other.width_ && x + i < width_; ++i) at(x + i, y + j) = other.at(i, j);
 }
 
-void Canvas::write(const std::filesystem::path& png) const {
+void Canvas::write(const std::filesystem::path& png, const std::string& made_as) const {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(3 * pixels_.size());
     for (const auto& pixel : pixels_)
         for (int c = 0; c < 3; ++c)
             bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * std::pow(std::clamp(pixel[c], 0.0, 1.0), 1 / 2.2))));
-    output::write_png(png, width_, height_, bytes);
+    output::write_png(png, width_, height_, bytes, made_as);
 }
 
 Colour colour_of(std::string_view map, real s) {

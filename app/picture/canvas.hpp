@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,7 +40,8 @@ public:
     /// Every block of factor x factor pixels becomes one: smooth edges for what was drawn larger.
     Canvas smaller(int factor) const;
     void paste(const Canvas& other, int x, int y);
-    void write(const std::filesystem::path& png) const;
+    /// made_as: see output::write_png().
+    void write(const std::filesystem::path& png, const std::string& made_as = {}) const;
 
 private:
     int width_, height_;

@@ -57,7 +57,7 @@ class Checkpoint::File {
 public:
     enum Fault : int { none, missing, foreign, altered };  // the worst last
 
-    explicit File(const std::filesystem::path& path) : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    explicit File(const std::filesystem::path& path) : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
         struct stat status {};
         if (descriptor_ >= 0 && fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode))
             size_ = static_cast<std::uint64_t>(status.st_size);

@@ -10,8 +10,10 @@
 #include <cstdint>
 #include <cstring>
 #include <new>
+#include <vector>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -62,16 +64,52 @@ std::string read_all(int file, const std::string& name, std::size_t size, std::s
     }
 }
 
+/// Throws BadInput where the file is not there, is a folder, or is neither a regular file nor, with `pipes`, a pipe.
+struct stat status_of(const Descriptor& file, const std::string& name, bool pipes) {
+    struct stat status {};
+    if (file.number() < 0 || fstat(file.number(), &status) != 0) throw BadInput(name + ": cannot be read: " + std::strerror(errno));
+    if (S_ISDIR(status.st_mode)) throw BadInput(name + ": this is a folder, not a file");
+    if (S_ISREG(status.st_mode) || (pipes && S_ISFIFO(status.st_mode))) return status;
+    throw BadInput(name + (pipes ? ": this is a device or a socket; regular files and pipes are read"
+                                 : ": this is a device or a pipe; only regular files are read, which have an end"));
+}
+
+/// Until there are bytes, or the other end is closed.
+void wait_for_bytes(int file) {
+    pollfd wanted{file, POLLIN, 0};
+    while (poll(&wanted, 1, -1) < 0 && errno == EINTR) {
+    }
+}
+
 }  // namespace
+
+std::string first_bytes_of(const std::filesystem::path& path, std::size_t most) {
+    const std::string name = path.string();
+    const Descriptor file(path);
+    const bool pipe = S_ISFIFO(status_of(file, name, true).st_mode);
+    std::string all;
+    std::vector<char> block(std::size_t{1} << 16);
+    bool waited = false;
+    while (all.size() < most) {
+        const ssize_t got = read(file.number(), block.data(), std::min(block.size(), most - all.size()));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0 && errno == EAGAIN) {  // a program has the other end, and has not written yet
+            waited = true, wait_for_bytes(file.number());
+            continue;
+        }
+        if (got < 0) throw BadInput(name + ": cannot be read to its end: " + std::strerror(errno));
+        if (got == 0 && pipe && all.empty() && !waited) throw BadInput(name + ": this is a pipe that no program writes to");
+        if (got == 0) break;
+        all.append(block.data(), static_cast<std::size_t>(got));
+    }
+    return all;
+}
 
 std::string bytes_of(const std::filesystem::path& path, std::size_t most) {
     const std::string name = path.string();
     if (name.empty()) throw BadInput("an empty text names no file");
     const Descriptor file(path);
-    struct stat status {};
-    if (file.number() < 0 || fstat(file.number(), &status) != 0) throw BadInput(name + ": cannot be read: " + std::strerror(errno));
-    if (S_ISDIR(status.st_mode)) throw BadInput(name + ": this is a folder, not a file");
-    if (!S_ISREG(status.st_mode)) throw BadInput(name + ": this is a device or a pipe; only regular files are read, which have an end");
+    const struct stat status = status_of(file, name, false);
     const auto size = static_cast<std::uintmax_t>(status.st_size);
     if (size > most) refuse_long(name, size, most);
     try {

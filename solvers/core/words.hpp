@@ -12,6 +12,10 @@ namespace weir {
 /// bytes; a million triangles take a fifth of the gibibyte as text.
 std::string bytes_of(const std::filesystem::path& file, std::size_t most = std::size_t{1} << 30);
 
+/// Up to `most` bytes of a regular file, or of a pipe that a program writes to, which is waited for. Throws BadInput as bytes_of does, and
+/// where nothing has the other end of a pipe open.
+std::string first_bytes_of(const std::filesystem::path& file, std::size_t most);
+
 class Words {
 public:
     /// The text must outlive it.

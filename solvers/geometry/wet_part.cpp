@@ -85,11 +85,11 @@ std::vector<PlaneOfLiquid> liquid_in_planes(const scene::Scene& scene, real besi
     const wet_part::Look<D> look(scene, D == 2 ? 4096 : 64);
     std::vector<PlaneOfLiquid> planes(static_cast<std::size_t>(look.planes()));
     for (int plane = 0; plane < look.planes(); ++plane) {
-        auto& [wet, near] = planes[static_cast<std::size_t>(plane)];
+        PlaneOfLiquid& of_plane = planes[static_cast<std::size_t>(plane)];
         look.for_each_of_plane(plane, [&](const Vec<D>& x) {
             if (look.in_solids(x)) return;
-            if (look.in_liquid(x)) wet += look.each();
-            if (look.near_surface(x, beside)) near += look.each();
+            if (look.in_liquid(x)) of_plane.wet += look.each();
+            if (look.near_surface(x, beside)) of_plane.near += look.each();
         });
     }
     return planes;

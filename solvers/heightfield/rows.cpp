@@ -9,6 +9,13 @@
 #include <stdexcept>
 #include <utility>
 
+// Iterations of the next loop depend on none of the others.
+#ifdef __clang__
+#define WEIR_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define WEIR_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
 namespace weir::heightfield {
 
 namespace {
@@ -160,7 +167,7 @@ private:
         real* __restrict depth = to.h, * __restrict surface = to.surface, * __restrict u = to.across, * __restrict w = to.along;
         const real dry = s_.dry;
         const int n = n_;
-#pragma GCC ivdep
+        WEIR_INDEPENDENT
         for (int i = 0; i < n; ++i) {
             const real d = h[i], held = d > dry ? d : dry, wet = d > dry ? 1.0 : 0.0, over = wet / held;
             depth[i] = d;
@@ -221,7 +228,7 @@ private:
         const Values low = edges(k - 1)[1], high = edges(k)[0];
         const Fluxes to = below(k);
         const real g = s_.g;
-#pragma GCC ivdep
+        WEIR_INDEPENDENT
         for (int i = 0; i < n_; ++i) face(low, i, high, i, to, i, g);
     }
 
@@ -231,7 +238,7 @@ private:
         const Values l = left_, r = right_;
         const Fluxes fx = across_x_;
         const real g = s_.g;
-#pragma GCC ivdep
+        WEIR_INDEPENDENT
         for (int i = 0; i <= n_; ++i) face(r, i - 1, l, i, fx, i, g);
         if (second_)
             update<true>(k);
@@ -248,7 +255,7 @@ private:
         const Fluxes fx = across_x_, f0 = below(k), f1 = below(k + 1);
         const real ax = dt_ / s_.plane.dx, az = dt_ / s_.plane.dz, half_g = 0.5 * s_.g, dry = s_.dry, g = s_.g;
         const real rx = 1 / s_.plane.dx, rz = 1 / s_.plane.dz;
-#pragma GCC ivdep
+        WEIR_INDEPENDENT
         for (int i = 0; i < n_; ++i) {
             real dh = ax * (fx.h[i + 1] - fx.h[i]);
             const real bed_x = (r.surface[i] - r.h[i]) - (l.surface[i] - l.h[i]);

@@ -239,9 +239,9 @@ VtkFile surface_of(const SurfaceMesh& mesh, real t, const FrameOptions& options)
     data.push_back(
         real_array(options, "thickness", 1, all, [&mesh, first = mesh.first](std::size_t i, int) { return mesh.thickness[i - first]; }));
     const auto cells = [&](const auto& list) {
-        const std::size_t corners = std::tuple_size_v<typename std::decay_t<decltype(list)>::value_type>;
+        constexpr std::size_t corners = std::tuple_size_v<typename std::decay_t<decltype(list)>::value_type>;
         const Parts part = parts(list);
-        return cells_of(part, corners, [&list, corners, first = part.begin(slabs().rank())](std::size_t at) {
+        return cells_of(part, corners, [&list, first = part.begin(slabs().rank())](std::size_t at) {
             return static_cast<std::int64_t>(list[at / corners - first][at % corners]);
         });
     };

@@ -60,23 +60,36 @@ Frames::Frames(std::filesystem::path folder, FrameOptions options) : Frames(std:
     });
 }
 
-Frames Frames::resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept) {
+Frames Frames::resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept, real t) {
     Frames frames(std::move(folder), std::move(options), Resume{});
-    by_first_rank([&] { frames.take_up(kept); });
+    by_first_rank([&] { frames.take_up(kept, t); });
     return frames;
 }
 
-void Frames::take_up(std::int64_t kept) {
+namespace {
+
+/// How many of a series are kept. One that begins later than the run is of a branch: it has the frames from there on.
+std::int64_t kept_of(const std::filesystem::path& pvd, std::int64_t kept, real t) {
+    const auto entries = read_series(pvd);
+    if (!entries.empty() && entries[0].time > 0)
+        return std::count_if(entries.begin(), entries.end(), [&](const SeriesEntry& entry) { return entry.time <= t; });
+    if (static_cast<std::int64_t>(entries.size()) < kept)
+        throw BadInput(pvd.string() + " has " + std::to_string(entries.size()) + " frames, and the checkpoint was taken after " +
+                       std::to_string(kept) + ": continue in the folder of the first run, or in a new one");
+    return kept;
+}
+
+}  // namespace
+
+void Frames::take_up(std::int64_t kept, real t) {
     require_writable(folder_ / frame_folder);
-    for (const auto& name : series_in(folder_)) {
-        const auto entries = truncate_series(folder_ / name, kept);
-        if (static_cast<std::int64_t>(entries.size()) != kept)
-            throw BadInput((folder_ / name).string() + " has " + std::to_string(entries.size()) +
-                           " frames, and the checkpoint was taken after " + std::to_string(kept) +
-                           ": continue in the folder of the first run, or in a new one");
+    std::map<std::filesystem::path, std::int64_t> frames;  // before any is removed
+    for (const auto& name : series_in(folder_)) frames[name] = kept_of(folder_ / name, kept, t);
+    for (const auto& [name, count] : frames) {
+        const auto entries = truncate_series(folder_ / name, count);
         times_.clear();
         for (const auto& entry : entries) times_.push_back(entry.time);
-        pieces_[name.stem().string()] = std::filesystem::path(entries.empty() ? "" : entries[0].file).extension().string();
+        if (!entries.empty()) pieces_[name.stem().string()] = std::filesystem::path(entries[0].file).extension().string();
     }
 }
 

@@ -44,8 +44,9 @@ class Frames {
 public:
     /// A new series in `folder` (which must be writable); files of an older series of ours there are removed.
     Frames(std::filesystem::path folder, FrameOptions options);
-    /// Continues the series in `folder` with frame number `kept`; later frames there are removed.
-    static Frames resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept);
+    /// Continues the series in `folder` after time t [s] with frame number `kept` of the run; later frames there are removed. A series of a
+    /// branch, which began within the run, has fewer. Throws BadInput where frames are missing.
+    static Frames resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept, real t);
 
     /// Writes frame `count()` at time t [s]. Throws OutputError; earlier frames stay readable then.
     void write(const FieldSet& fields, real t);
@@ -56,7 +57,7 @@ public:
 private:
     struct Resume {};
     Frames(std::filesystem::path folder, FrameOptions options, Resume) : folder_(std::move(folder)), options_(std::move(options)) {}
-    void take_up(std::int64_t kept);
+    void take_up(std::int64_t kept, real t);
     void write_piece(const std::string& name, const char* extension, const VtkFile& file);
     void write_series() const;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 namespace weir::output {
 
@@ -18,12 +19,12 @@ std::string exact(real value) {
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// The value of `name="..."` at or after `at` within one tag.
-std::string attribute(const std::string& text, const std::string& name, std::size_t at) {
-    const std::size_t begin = text.find(name + "=\"", at);
-    if (begin == std::string::npos) return "";
-    const std::size_t value = begin + name.size() + 2, end = text.find('"', value);
-    return end == std::string::npos ? "" : text.substr(value, end - value);
+/// The value of `name="..."` in a tag.
+std::string attribute(std::string_view tag, const std::string& name) {
+    const std::size_t begin = tag.find(name + "=\"");
+    if (begin == std::string_view::npos) return "";
+    const std::size_t value = begin + name.size() + 2, end = tag.find('"', value);
+    return end == std::string_view::npos ? "" : std::string(tag.substr(value, end - value));
 }
 
 }  // namespace
@@ -41,9 +42,11 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& pvd) {
     if (text.find("type=\"Collection\"") == std::string::npos || text.find("</VTKFile>") == std::string::npos)
         throw BadInput(pvd.string() + ": not a .pvd series");
     std::vector<SeriesEntry> entries;
-    for (std::size_t at = text.find("<DataSet"); at != std::string::npos; at = text.find("<DataSet", at + 1)) {
-        const std::string time = attribute(text, "timestep", at);
-        SeriesEntry entry{0, attribute(text, "file", at)};
+    for (std::size_t at = text.find("<DataSet"), end = at; at != std::string::npos; at = text.find("<DataSet", end)) {
+        end = std::min(text.find('>', at), text.size());
+        const auto tag = std::string_view(text).substr(at, end - at);
+        const std::string time = attribute(tag, "timestep");
+        SeriesEntry entry{0, attribute(tag, "file")};
         const auto parsed = std::from_chars(time.data(), time.data() + time.size(), entry.time);
         if (entry.file.empty() || parsed.ec != std::errc() || !std::isfinite(entry.time))
             throw BadInput(pvd.string() + ": a series entry lacks its time or its file");

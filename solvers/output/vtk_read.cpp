@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/words.hpp"
+#include "output/silent_vtk.hpp"
 #include "output/xml_tags.hpp"
 
 #include <algorithm>
@@ -11,25 +12,12 @@
 
 #include <vtkLZ4DataCompressor.h>
 #include <vtkNew.h>
-#include <vtkObject.h>
 #include <vtkSmartPointer.h>
 #include <vtkZLibDataCompressor.h>
 
 namespace weir::output {
 
 namespace {
-
-/// VTK prints what it cannot decompress; the message that names the file is ours.
-class SilentVtk {
-public:
-    SilentVtk() : before_(vtkObject::GetGlobalWarningDisplay()) { vtkObject::SetGlobalWarningDisplay(0); }
-    ~SilentVtk() { vtkObject::SetGlobalWarningDisplay(before_); }
-    SilentVtk(const SilentVtk&) = delete;
-    SilentVtk& operator=(const SilentVtk&) = delete;
-
-private:
-    int before_;
-};
 
 constexpr std::size_t most_bytes = std::size_t{1} << 38;
 constexpr std::uint64_t most_tuples = std::uint64_t{1} << 40;

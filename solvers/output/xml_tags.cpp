@@ -53,15 +53,15 @@ std::string XmlTag::text(const std::string& attribute) const {
 
 XmlTag next_tag(const std::filesystem::path& file, std::string_view text, std::size_t& at) {
     XmlTag tag;
-    tag.begin = text.find('<', at);
-    if (tag.begin == std::string_view::npos) refuse(file, at, "a tag is expected");
-    at = tag.begin + 1;
-    if (at < text.size() && text[at] == '/') tag.kind = XmlTag::closes, ++at;
-    if (at < text.size() && text[at] == '?') {  // <?xml ...?>
-        at = text.find('>', at);
+    for (;;) {
+        tag.begin = text.find('<', at);
+        if (tag.begin == std::string_view::npos) refuse(file, at, "a tag is expected");
+        at = tag.begin + 1;
+        if (at >= text.size() || text[at] != '?') break;
+        at = text.find('>', at);  // <?xml ...?>
         if (at == std::string_view::npos) refuse(file, tag.begin, "a tag has no end");
-        return next_tag(file, text, at);
     }
+    if (at < text.size() && text[at] == '/') tag.kind = XmlTag::closes, ++at;
     tag.name = name_at(text, at);
     if (tag.name.empty()) refuse(file, at, "the name of a tag is expected");
     for (skip_space(text, at); at < text.size() && text[at] != '>' && text[at] != '/'; skip_space(text, at))

@@ -1,6 +1,7 @@
 // From a file to a checked scene: text, tree, overrides, schema, rules; every problem found on the way is reported at once.
 #include "scene/scene.hpp"
 
+#include "core/words.hpp"
 #include "scene/document.hpp"
 #include "scene/names.hpp"
 #include "scene/reader.hpp"
@@ -11,9 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 
 namespace weir::scene {
@@ -108,20 +107,11 @@ Table parse_table(std::string_view source, const std::string& file, const std::v
 
 std::string read_text(const std::filesystem::path& path) {
     const std::string name = path.string();
-    std::error_code failed, ignored;
+    std::error_code failed;
     if (!std::filesystem::exists(path, failed))
         throw BadInput(failed ? fmt::format("{}: cannot be read: {}", name, failed.message())
                               : fmt::format("{}: there is no such file", name));
-    if (std::filesystem::is_directory(path, ignored)) throw BadInput(fmt::format("{}: this is a folder, not a file", name));
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw BadInput(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));
-    std::string text;
-    std::vector<char> block(std::size_t{1} << 16);
-    while (in && text.size() <= max_source_bytes) {  // a device may never end
-        in.read(block.data(), static_cast<std::streamsize>(block.size()));
-        text.append(block.data(), static_cast<std::size_t>(in.gcount()));
-    }
-    if (in.bad()) throw BadInput(fmt::format("{}: cannot be read to its end", name));
+    const std::string text = first_bytes_of(path, max_source_bytes + 1);  // one more, to see that it is too long
     if (text.empty()) throw BadInput(fmt::format("{}: the file is empty", name));
     return text;
 }

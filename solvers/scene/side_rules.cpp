@@ -49,7 +49,7 @@ void check_periodic(Table& root, int dim, const Report& report) {
         }
         if (by_list || (kinds[0] == "periodic" && kinds[1] == "periodic")) periodic.push_back(axis_name(axis));
     }
-    if (grid) grid->set("periodic", periodic, grid->place("periodic"));
+    if (grid && (grid->has("periodic") || !periodic.empty())) grid->set("periodic", periodic, grid->place("periodic"));
 }
 
 /// A wall that moved through its own plane would squeeze the domain.

@@ -39,21 +39,57 @@ std::string rows(const ProbeSeries& probe, std::size_t from) {
     return text;
 }
 
+void append(const std::filesystem::path& path, const std::string& text, std::ios::openmode mode) {
+    std::ofstream file(path, std::ios::binary | mode);
+    file << text;
+    if (!file.flush()) throw OutputError("cannot write " + path.string() + ": " + std::strerror(errno));
+}
+
+/// The bytes of the head and so many rows; 0 where the file is of another probe or has fewer. A row that a killed run left half is none.
+std::uintmax_t bytes_of_rows(const std::filesystem::path& path, const std::string& head, std::int64_t count) {
+    std::ifstream file(path, std::ios::binary);
+    std::string there(head.size(), '\0');
+    if (!file.read(there.data(), static_cast<std::streamsize>(there.size())) || there != head) return 0;
+    std::uintmax_t bytes = head.size();
+    std::string line;
+    for (; count > 0 && std::getline(file, line) && !file.eof(); --count) bytes += line.size() + 1;
+    return count > 0 ? 0 : bytes;
+}
+
 }  // namespace
 
-void ProbeFiles::update(const std::vector<ProbeSeries>& probes) {
+/// Whether the file has the rows that the series has released, and no other.
+bool ProbeFiles::keeps_released(const ProbeSeries& probe, const std::filesystem::path& earlier) const {
+    if (probe.released == 0) return false;
+    const auto own = file_of(probe), other = earlier / own.filename();
+    std::uintmax_t bytes = bytes_of_rows(own, head(probe), probe.released);
+    std::error_code failed;
+    if (bytes == 0 && !earlier.empty() && (bytes = bytes_of_rows(other, head(probe), probe.released)) > 0)
+        std::filesystem::copy_file(other, own, std::filesystem::copy_options::overwrite_existing, failed);
+    if (bytes == 0) return false;
+    if (!failed) std::filesystem::resize_file(own, bytes, failed);
+    if (failed) throw OutputError("cannot write " + own.string() + ": " + failed.message());
+    return true;
+}
+
+void ProbeFiles::begin(const std::vector<ProbeSeries>& probes, const std::filesystem::path& earlier) {
     if (probes.empty()) return;
-    const bool first = written_.empty();
-    written_.resize(probes.size(), 0);
     std::error_code ignored;
     std::filesystem::create_directories(folder_, ignored);
+    written_.clear();
+    for (const ProbeSeries& probe : probes) {
+        if (!keeps_released(probe, earlier)) append(file_of(probe), head(probe), std::ios::trunc);
+        written_.push_back(probe.released);
+    }
+}
+
+void ProbeFiles::update(const std::vector<ProbeSeries>& probes) {
+    if (written_.size() != probes.size()) begin(probes);
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (!first && written_[i] == probes[i].times.size()) continue;
-        const auto path = folder_ / (probes[i].name + ".csv");
-        std::ofstream file(path, std::ios::binary | (first ? std::ios::trunc : std::ios::app));
-        file << (first ? head(probes[i]) : "") << rows(probes[i], written_[i]);
-        if (!file.flush()) throw OutputError("cannot write " + path.string() + ": " + std::strerror(errno));
-        written_[i] = probes[i].times.size();
+        const std::int64_t all = probes[i].released + static_cast<std::int64_t>(probes[i].times.size());
+        if (written_[i] == all) continue;
+        append(file_of(probes[i]), rows(probes[i], static_cast<std::size_t>(written_[i] - probes[i].released)), std::ios::app);
+        written_[i] = all;
     }
 }
 

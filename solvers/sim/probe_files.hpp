@@ -2,6 +2,7 @@
 #pragma once
 #include "sim/probes.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -10,12 +11,18 @@ namespace weir::sim {
 class ProbeFiles {
 public:
     explicit ProbeFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    /// Appends what was measured since the last call; the first call begins new files. Throws OutputError.
+    /// New files. Of a run that goes on, rows that the series have released are kept from the file that is there, or taken from the one in
+    /// folder `earlier`; where neither has them, the new file begins with the rows after them. Throws OutputError.
+    void begin(const std::vector<ProbeSeries>& probes, const std::filesystem::path& earlier = {});
+    /// Appends what was measured since the last call. Throws OutputError.
     void update(const std::vector<ProbeSeries>& probes);
 
 private:
+    std::filesystem::path file_of(const ProbeSeries& probe) const { return folder_ / (probe.name + ".csv"); }
+    bool keeps_released(const ProbeSeries& probe, const std::filesystem::path& earlier) const;
+
     std::filesystem::path folder_;
-    std::vector<std::size_t> written_;  // rows of each probe
+    std::vector<std::int64_t> written_;  // rows of each probe
 };
 
 }  // namespace weir::sim

@@ -146,12 +146,21 @@ const ProbeSeries& Probes::series(std::string_view name) const {
     throw BadInput("the scene has no probe \"" + std::string(name) + "\"");
 }
 
+void Probes::release_rows() {
+    for (ProbeSeries& series : series_) {
+        series.released += static_cast<std::int64_t>(series.times.size());
+        series.times.clear();
+        series.values.clear();
+    }
+}
+
 void Probes::save(Checkpoint& to, const Solver& solver) const {
     FieldSet fields;
     for (std::size_t i = 0; i < series_.size(); ++i) {
         const std::string key = "probe." + series_[i].name + '.';
         std::vector<real> rows;
         for (const auto& row : series_[i].values) rows.insert(rows.end(), row.begin(), row.end());
+        if (series_[i].released > 0) to.put_value(key + "released", series_[i].released);
         to.put(key + "times", series_[i].times);
         to.put(key + "values", rows);
         if (clocks_[i].every == 0) continue;
@@ -166,6 +175,8 @@ void Probes::restore(const Checkpoint& from) {
         const std::string key = "probe." + series.name + '.';
         series.times.clear();
         series.values.clear();
+        series.released = from.has(key + "released") ? from.get_value<std::int64_t>(key + "released") : 0;
+        Checkpoint::require_within(key + "released", series.released, 0, std::int64_t{1} << 53);
         clocks_[i].begin.clear();
         clocks_[i].joins = !from.has(key + "row");  // a probe that the first run did not have begins now
         if (!from.has(key + "times")) continue;

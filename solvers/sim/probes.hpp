@@ -22,6 +22,7 @@ struct ProbeSeries {
     std::vector<Vec<3>> positions;     // of each column's sample where it has one (points, lines, gauges) [m]
     std::vector<real> times;
     std::vector<std::vector<real>> values;
+    std::int64_t released = 0;  // rows before these, which were written to a file and are no longer in memory
 
     /// One column over all times, by its name with or without the unit. Throws BadInput naming the columns there are.
     std::vector<real> column(std::string_view wanted) const;
@@ -57,6 +58,8 @@ public:
     std::vector<std::string> remarks() const;
     const std::vector<ProbeSeries>& series() const { return series_; }
     const ProbeSeries& series(std::string_view name) const;
+    /// All rows up to now are in files: memory and checkpoints keep how many they are.
+    void release_rows();
     void save(Checkpoint& to, const Solver& solver) const;
     void restore(const Checkpoint& from);
 

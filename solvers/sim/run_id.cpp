@@ -25,6 +25,11 @@ std::uint64_t digest(std::string_view text) {
 
 std::string run_id(const scene::Scene& scene) { return fmt::format("{:016x}", digest(scene::to_json(scene.root()))); }
 
+std::string branch_id(const scene::Scene& scene, const std::string& continued, std::int64_t steps) {
+    const std::string own = run_id(scene);
+    return own == continued ? own : fmt::format("{:016x}", digest(fmt::format("{} of {} after {} steps", own, continued, steps)));
+}
+
 void put_run_id(Checkpoint& to, const std::string& run) { to.put(block, std::span<const char>(run)); }
 
 std::string run_id_of(const Checkpoint& checkpoint) {

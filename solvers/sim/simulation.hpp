@@ -128,6 +128,8 @@ public:
     /// What the scene's probes have measured so far.
     const std::vector<ProbeSeries>& probes() const { return probes_.series(); }
     const ProbeSeries& probe_series(std::string_view name) const { return probes_.series(name); }
+    /// For runs whose probes are written as they come (sim/probe_files.hpp): rows up to now leave the memory, and later checkpoints.
+    void release_probe_rows() { probes_.release_rows(); }
 
     /// Everything that the next step depends on, the scene included.
     void save(Checkpoint& to) const;

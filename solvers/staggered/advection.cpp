@@ -86,8 +86,8 @@ void CharacteristicAdvection<D>::advect(const std::vector<Carried<D>>& quantitie
     const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(quantities[0].source->extent()[D - 1]);
     prepare(motion, hi - lo);
     predict(motion, lo);
-    for (const auto& [values, boundary] : predicted_)
-        for_each_plane(0, values->extent()[D - 1], [&](int plane) { fill_plane_ghosts(*values, *boundary, plane); });
+    for (const auto& one : predicted_)
+        for_each_plane(0, one.values->extent()[D - 1], [&](int plane) { fill_plane_ghosts(*one.values, *one.boundary, plane); });
     fill_end_planes(predicted_);
     correct(motion, lo);
 }

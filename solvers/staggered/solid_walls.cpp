@@ -110,7 +110,8 @@ template <int D>
 void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& placement, int a) {
     const auto at = static_cast<std::size_t>(a);
     const geometry::Solids<D>& solids = placement.solids();
-    const auto &mask = takes_part_[at], &open = s.solid.open[at];
+    const auto& mask = takes_part_[at];
+    const auto& open = s.solid.open[at];
     Nodes<D> free = free_faces(s.u, s.sides, a);
     free.lo[D - 1] = detail::own_share.lower(free.lo[D - 1]), free.hi[D - 1] = detail::own_share.upper(free.hi[D - 1]);
     nodes_[at].clear(), walls_[at].clear(), held_[at].clear();

@@ -1,6 +1,7 @@
 // Files and names of strangers: nothing that a case file, a folder's name or a damaged file holds is run, leaves --out, removes what is
 // the user's, or crashes.
 #include "app/process.hpp"
+#include "output/folder_lock.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
@@ -123,6 +124,27 @@ TEST("a film removes nothing of the user's, and takes its name whatever it begin
     EXPECT_NE(blocked.text.find("poster.png: this is a folder"), std::string::npos) << blocked.text;
     EXPECT_EQ(names_here(), (std::vector<std::string>{"-f.mp4", "-f.png", "100%d 'q'", "a 'run' 50% %d \"x\"", "poster.png", "user.mp4",
                                                       "user.mp4.frames", "user.png"}));
+}
+
+TEST("the poster of a film replaces the poster of an earlier film, and no other file: that is refused before anything is drawn") {
+    if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    const auto movie = [](const std::string& out) { return weir_says({"movie", tiny_run(), "--size", "32", "--quiet", "--out", out}); };
+    EXPECT_EQ(weir_says({"picture", tiny_run(), "--size", "32", "--out", "picture.png"}).code, 0);
+    write("holiday.png", "mine");
+    fs::create_symlink("holiday.png", "link.png");
+    const std::string picture = text_of("picture.png");
+    for (const std::string name : {"holiday", "picture", "link"}) {
+        const Answer answer = movie(name + ".mp4");
+        EXPECT_EQ(answer.code, 2) << answer.text;
+        EXPECT_NE(answer.text.find(name + ".png: the poster of " + name + ".mp4 would replace this file"), std::string::npos)
+            << answer.text;
+    }
+    EXPECT_EQ(text_of("holiday.png"), "mine");
+    EXPECT_EQ(text_of("picture.png"), picture);
+    EXPECT_EQ(names_here(), (std::vector<std::string>{"holiday.png", "link.png", "picture.png"}));
+    for (int again = 0; again < 2; ++again) EXPECT_EQ(movie("new.mp4").code, 0) << again;
 }
 
 TEST("a damaged frame is named with exit 2, by pictures and films alike, and no file is left of them") {
@@ -260,3 +282,53 @@ TEST("meshes and terrain that are nothing, a looped link, a pipe or without end 
 }
 
 }  // namespace
+
+namespace {
+
+/// What the executable says within ten seconds; code 124 where it does not end.
+Answer says_in_time(const std::string& words) {
+    const int status = std::system(("timeout -k 1 10 " WEIR_EXECUTABLE " " + words + " > log 2>&1").c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of("log")};
+}
+
+}  // namespace
+
+TEST("scenes, cases and checkpoints that are pipes which no program writes to, or devices, are refused at once; other pipes are read") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    ASSERT_EQ(mkfifo("pipe.toml", 0600), 0);
+    fs::create_directory("case");
+    write("case/scene.toml", tiny_scene);
+    ASSERT_EQ(mkfifo("case/case.toml", 0600), 0);
+    for (const auto& [words, message] :
+         {std::pair{"run pipe.toml --out out", "pipe.toml: this is a pipe that no program writes to"},
+          {"validate case/ --out out", "case.toml: this is a pipe that no program writes to"},
+          {"run --restart pipe.toml --out out", "pipe.toml: cannot read checkpoint"},
+          {"run /dev/zero --out out", "/dev/zero: this is a device or a socket; regular files and pipes are read"},
+          {"run /dev/null --out out", "/dev/null: this is a device or a socket; regular files and pipes are read"}}) {
+        const Answer answer = says_in_time(words);
+        EXPECT_EQ(answer.code, 2) << words << ": " << answer.text;
+        EXPECT_NE(answer.text.find(message), std::string::npos) << answer.text;
+    }
+    EXPECT_FALSE(fs::exists("out"));
+    write("a.toml", tiny_scene);
+    EXPECT_EQ(std::system("(sleep 0.3; cat a.toml) | timeout 10 " WEIR_EXECUTABLE " run /dev/stdin --out late --threads 1 > log 2>&1"), 0)
+        << text_of("log");
+    EXPECT_TRUE(fs::exists("late/run.json"));
+}
+
+TEST("two programs do not write verdicts into one folder: weir validate ends with 2 where another has the folder, and writes nothing") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    write("small/scene.toml", tiny_scene), write("small/case.toml", tiny_case);
+    fs::create_directory("out");
+    {
+        const weir::output::FolderLock lock("out");
+        const Answer answer = weir_says({"validate", "small/", "--out", "out", "--threads", "1"});
+        EXPECT_EQ(answer.code, 2);
+        EXPECT_NE(answer.text.find("out: another run writes into this folder (process "), std::string::npos) << answer.text;
+        EXPECT_FALSE(fs::exists("out/csv") || fs::exists("out/verdicts.json"));
+    }
+    EXPECT_EQ(weir_says({"validate", "small/", "--out", "out", "--threads", "1"}).code, 0);
+    EXPECT_FALSE(fs::exists("out/.weir_lock"));
+}

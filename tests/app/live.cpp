@@ -3,6 +3,7 @@
 #include "app/live/window.hpp"
 #include "app/process.hpp"
 #include "core/error.hpp"
+#include "output/folder_lock.hpp"
 #include "sim/registry.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
@@ -527,6 +528,19 @@ TEST("without a display, and without a scene, it says so and exits with 2") {
     setenv("DISPLAY", display.c_str(), 1);
     EXPECT_EQ(code, 2);
     EXPECT_NE(blind.said().find("no display to draw on: DISPLAY is not set"), std::string::npos) << blind.said();
+}
+
+TEST("a session does not share its folder: where another program writes, it ends with 2 before a window opens") {
+    TemporaryFolder folder;
+    const auto out = folder.path() / "out";
+    fs::create_directory(out);
+    const output::FolderLock lock(out);
+    Process second({"live", written(folder.path() / "scene.toml", smoke), "--out", out}, folder.path() / "log");
+    for (int i = 0; i < 300 && second.running(); ++i) usleep(50000);  // a session ends when its window closes
+    ASSERT_FALSE(second.running()) << second.said();
+    EXPECT_EQ(second.wait(), 2);
+    EXPECT_NE(second.said().find("another run writes into this folder"), std::string::npos) << second.said();
+    EXPECT_FALSE(fs::exists(out / "session.toml"));
 }
 
 TEST("--bench measures a scene for so long and tells what a frame spends; the report's scenes stand beside the cases") {

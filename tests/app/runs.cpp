@@ -251,6 +251,52 @@ TEST("a checkpoint continues no other run: a new run in its folder gives it anot
         folder.path() / "log5");
 }
 
+TEST(
+    "a branch into a folder of its own is run again there, to the same bytes; a branch of another scene or time, and a run from the start "
+    "of the same scene, are others") {
+    TemporaryFolder folder;
+    const auto first = folder.path() / "first", branch = folder.path() / "branch", log = folder.path() / "log";
+    run({"run", scene("water"), "--out", first, "--threads", "1", "--checkpoint-every", "5"}, log);
+    const auto words = [&](const fs::path& from, const fs::path& to, const std::string& gravity) {
+        return std::vector<std::string>{"run",
+                                        "--restart",
+                                        from,
+                                        "--out",
+                                        to,
+                                        "--threads",
+                                        "1",
+                                        "--set",
+                                        "time.end=0.5",
+                                        "--set",
+                                        "effects.gravity.g=[0.0," + gravity + "]"};
+    };
+    run(words(first, branch, "-5.0"), log);
+    fs::copy(branch, folder.path() / "kept", fs::copy_options::recursive);
+    run(words(first, branch, "-5.0"), log);
+    EXPECT_EQ(weir::test::first_difference(folder.path() / "kept", branch), "");
+    const auto refused = [&](const std::vector<std::string>& arguments) {
+        Process process(arguments, log);
+        EXPECT_EQ(process.wait(), 2) << process.said();
+        EXPECT_NE(process.said().find("the files there are of run "), std::string::npos) << process.said();
+    };
+    refused(words(first, branch, "-4.0"));
+    run({"run", "--restart", first, "--threads", "1", "--set", "time.end=0.45", "--checkpoint-every", "1"}, log);  // goes on: a later one
+    refused(words(first, branch, "-5.0"));
+    EXPECT_EQ(weir::test::first_difference(folder.path() / "kept", branch), "");
+    // ended early and continued, it is the branch that had the later end from its start
+    const auto early = folder.path() / "early";
+    auto until = words(first, early, "-5.0");
+    until[8] = "time.end=0.45", until.insert(until.end(), {"--checkpoint-every", "1"});
+    fs::remove_all(first), run({"run", scene("water"), "--out", first, "--threads", "1", "--checkpoint-every", "5"}, log);
+    run(until, log);
+    run({"run", "--restart", early, "--threads", "1", "--set", "time.end=0.5"}, log);
+    EXPECT_EQ(weir::test::first_difference(folder.path() / "kept", early), "");
+    // the scene of the branch from its start is no branch: its frames before the checkpoint are others
+    const auto whole = folder.path() / "whole";
+    run({"run", scene("water"), "--out", whole, "--threads", "1", "--set", "time.end=0.5", "--set", "effects.gravity.g=[0.0,-5.0]"}, log);
+    refused(words(first, whole, "-5.0"));
+}
+
 TEST("a run ended at any moment of its start, in a folder of another, leaves either run to continue, and never a mixture") {
     TemporaryFolder folder;
     const auto first = folder.path() / "first", out = folder.path() / "out";
@@ -325,6 +371,34 @@ TEST("neither memory nor run.json grows with the number of steps") {
                 many.first / 1e6, many.second);
     EXPECT_LT(many.first - few.first, 2e6);      // pages of the allocator; rows in memory were 1.6 kB per step, 15 MB
     EXPECT_LT(many.second - few.second, 200.0);  // digits of the summary; 392 bytes per step, 3.5 MB
+}
+
+TEST(
+    "memory and checkpoints do not grow with the rows of probes; a run that goes on, in its folder or another, has all rows in its files") {
+    TemporaryFolder folder;
+    const auto log = folder.path() / "log";
+    std::ofstream(folder.path() / "line.toml")
+        << "solver = \"mac\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 1.0, dt = 0.001 }\n"
+           "initial.velocity = { name = \"random\", speed = 0.1 }\noutput = { every = 100.0 }\n"
+           "probes = [ { name = \"l\", kind = \"line\", field = \"pressure\", from = [0.1, 0.1], to = [0.9, 0.9], count = 200 } ]\n";
+    const auto taken = [&](const std::string& end) {
+        const auto out = folder.path() / end;
+        Process process({"run", folder.path() / "line.toml", "--out", out, "--threads", "1", "--quiet", "--checkpoint-every", "500",
+                         "--set", "time.end=" + end},
+                        log);
+        EXPECT_EQ(process.wait(), 0) << process.said();
+        return std::pair{process.most_memory(), static_cast<double>(fs::file_size(out / "checkpoint.weir"))};
+    };
+    const auto few = taken("0.5"), many = taken("4.0");
+    std::printf("500 rows: %.1f MB, checkpoint %.0f bytes; 4000 rows: %.1f MB, checkpoint %.0f bytes\n", few.first / 1e6, few.second,
+                many.first / 1e6, many.second);
+    EXPECT_LT(many.first - few.first, 2e6);      // pages of the allocator; 3500 rows of 200 numbers are 5.6 MB, and checkpoints as much
+    EXPECT_LT(many.second - few.second, 200.0);  // digits of the end; 5.6 MB
+    run({"run", "--restart", folder.path() / "0.5", "--out", folder.path() / "other", "--threads", "1", "--quiet", "--set", "time.end=4.0"},
+        log);
+    run({"run", "--restart", folder.path() / "0.5", "--threads", "1", "--quiet", "--set", "time.end=4.0"}, log);
+    for (const char* name : {"0.5", "other"})
+        EXPECT_TRUE(text_of(folder.path() / name / "probes/l.csv") == text_of(folder.path() / "4.0/probes/l.csv")) << name;
 }
 
 TEST("a disk that fills is a clear error with exit 2, and the earlier frames stay readable") {

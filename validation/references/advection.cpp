@@ -8,10 +8,10 @@
 namespace weir::validation {
 namespace {
 
-constexpr real R = 0.15, half_slot = 0.025, slot_top = 0.85;
+constexpr real disk_radius = 0.15, half_slot = 0.025, slot_top = 0.85;
 constexpr Vec<2> centre{{{0.5, 0.75}}};
 
-real disk(const Vec<2>& x) { return norm(x - centre) - R; }
+real disk(const Vec<2>& x) { return norm(x - centre) - disk_radius; }
 
 /// Distance from x to the segment a - b.
 real to_segment(const Vec<2>& x, const Vec<2>& a, const Vec<2>& b) {
@@ -22,7 +22,7 @@ real to_segment(const Vec<2>& x, const Vec<2>& a, const Vec<2>& b) {
 }  // namespace
 
 real slotted_disk(const Vec<2>& x) {
-    const real mouth = centre[1] - std::sqrt(R * R - half_slot * half_slot);  // where the slot's walls meet the circle
+    const real mouth = centre[1] - std::sqrt(disk_radius * disk_radius - half_slot * half_slot);  // where the slot's walls meet the circle
     const Vec<2> left{0.5 - half_slot, mouth}, right{0.5 + half_slot, mouth};
     const Vec<2> top_left{0.5 - half_slot, slot_top}, top_right{0.5 + half_slot, slot_top};
     const bool in_slot = std::abs(x[0] - 0.5) < half_slot && x[1] < slot_top;
@@ -31,8 +31,8 @@ real slotted_disk(const Vec<2>& x) {
     // The circle is part of the boundary except below the slot, where its nearest point is an end of the arc (already an end of a wall).
     const Vec<2> r = x - centre;
     const real length = norm(r);
-    const bool nearest_in_mouth = length == 0 || (r[1] < 0 && std::abs(r[0]) * R < half_slot * length);
-    if (!nearest_in_mouth) d = std::min(d, std::abs(length - R));
+    const bool nearest_in_mouth = length == 0 || (r[1] < 0 && std::abs(r[0]) * disk_radius < half_slot * length);
+    if (!nearest_in_mouth) d = std::min(d, std::abs(length - disk_radius));
     return inside ? -d : d;
 }
 
@@ -53,12 +53,13 @@ Vec<2> unturned(const Vec<2>& x, real turns) {
     return {0.5 + c * r[0] + s * r[1], 0.5 - s * r[0] + c * r[1]};
 }
 
-real vortex_disk_area() { return pi * R * R; }
+real vortex_disk_area() { return pi * disk_radius * disk_radius; }
 
 real slotted_disk_area() {
     // The slot below y = slot_top inside the circle: a rectangle down to the centre's height and what hangs below it.
-    const real below = half_slot * std::sqrt(R * R - half_slot * half_slot) + R * R * std::asin(half_slot / R);
-    return pi * R * R - (2 * half_slot * (slot_top - centre[1]) + below);
+    const real below = half_slot * std::sqrt(disk_radius * disk_radius - half_slot * half_slot) +
+                       disk_radius * disk_radius * std::asin(half_slot / disk_radius);
+    return pi * disk_radius * disk_radius - (2 * half_slot * (slot_top - centre[1]) + below);
 }
 
 }  // namespace weir::validation

@@ -3,6 +3,7 @@
 
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
+#include "output/folder_lock.hpp"
 #include "scene/names.hpp"
 #include "validation/harness/runner.hpp"
 #include "validation/page/page.hpp"
@@ -187,6 +188,7 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
     if (options.list) return list_cases(cases);
     check_comparable(options);
     output::require_writable(options.out);
+    const output::FolderLock lock(options.out);
     std::filesystem::create_directories(options.out / "csv");
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
     const Progress progress = [&](const std::string& what) {

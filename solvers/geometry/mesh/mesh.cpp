@@ -3,6 +3,8 @@
 #include "core/error.hpp"
 #include "geometry/mesh/sample.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,7 +13,29 @@
 
 namespace weir::geometry {
 
+namespace {
+
+/// Distances are kept in single precision, and moments are fifth powers of lengths: both are numbers within these [file's unit].
+constexpr real largest = 1e30, smallest = 1e-30;
+
+void require_size(const Triangles& mesh, const std::string& name) {
+    real longest = 0;
+    for (int a = 0; a < 3; ++a) {
+        real least = infinity, most = -infinity;
+        for (const Vec<3>& x : mesh.points) least = std::min(least, x[a]), most = std::max(most, x[a]);
+        if (least < -largest || most > largest)
+            throw BadInput(fmt::format("{}: it reaches from {:.4g} to {:.4g} along {}; at most {:g} either way is read", name, least, most,
+                                       "xyz"[a], largest));
+        longest = std::max(longest, most - least);
+    }
+    if (longest < smallest && !mesh.points.empty())
+        throw BadInput(fmt::format("{}: its longest side is {:.4g}; at least {:g} is read", name, longest, smallest));
+}
+
+}  // namespace
+
 Mesh::Mesh(Triangles triangles, int resolution, const std::string& name) : triangles_(std::move(triangles)) {
+    require_size(triangles_, name);
     weld(triangles_);
     require_closed(triangles_, name);
     min_ = Vec<3>::constant(infinity), max_ = Vec<3>::constant(-infinity);

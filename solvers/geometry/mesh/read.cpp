@@ -236,6 +236,11 @@ private:
             if (element.count > 0 && element.properties.empty())
                 throw BadInput(name_ + ": the header announces " + std::to_string(element.count) + " elements \"" +
                                Words::shown(element.name) + "\" without a property");
+        for (const Element& element : elements_)
+            for (const char* axis : {"x", "y", "z"})
+                if (element.name == "vertex" && std::none_of(element.properties.begin(), element.properties.end(),
+                                                             [&](const Property& p) { return p.name == axis && p.count.empty(); }))
+                    throw BadInput(name_ + ": the header announces vertices without a property \"" + axis + '"');
     }
 
     real number(const std::string& type) {

@@ -25,10 +25,10 @@ Triangles read_triangles(const std::filesystem::path& file);
 
 /// Points in the same place become one, and triangles without area go.
 void weld(Triangles& mesh);
-/// Throws BadInput, with `name` in front, where the surface does not bound a region: open, not manifold, or turned over somewhere.
+/// Throws BadInput, with `name` in front, where the surface does not bound a region: open, not manifold, or turned over somewhere, flat.
 /// One that is inside out as a whole is turned.
 void require_closed(Triangles& mesh, const std::string& name);
-/// Six times the volume of the region inside.
-real six_volumes(const Triangles& mesh);
+/// Six times the volume of the region inside; `products`, where it is given, becomes the sum of what was summed without signs.
+real six_volumes(const Triangles& mesh, real* products = nullptr);
 
 }  // namespace weir::geometry

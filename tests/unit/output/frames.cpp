@@ -254,13 +254,34 @@ TEST("a resumed series keeps the frames up to the checkpoint and goes on from th
         Frames frames(folder, {});
         for (int k = 0; k < 5; ++k) frames.write(simulation.fields(), 0.1 * k);
     }
-    auto frames = Frames::resume(folder, {}, 3);
+    auto frames = Frames::resume(folder, {}, 3, 0.25);
     EXPECT_FALSE(fs::exists(folder.path() / "frames/grid_000003.vti"));
     frames.write(simulation.fields(), 0.7);
     const auto entries = weir::output::read_series(folder.path() / "grid.pvd");
     ASSERT_EQ(entries.size(), 4u);
     EXPECT_EQ(entries[3].time, 0.7);
     EXPECT_EQ(weir::test::read_whole_series(folder.path() / "markers.pvd"), 4);
+}
+
+TEST("the series of a branch goes on by its times, whatever the numbers of its frames; frames that are missing are told before any goes") {
+    TemporaryFolder folder;
+    auto simulation = fake_simulation("time = { end = 1.0 }");
+    {
+        Frames frames(folder, {});
+        for (const double t : {0.5, 0.6, 0.7}) frames.write(simulation.fields(), t);
+    }
+    {
+        auto frames = Frames::resume(folder, {}, 7, 0.6);  // frames 5 and 6 of the run
+        EXPECT_EQ(frames.count(), 2);
+        frames.write(simulation.fields(), 0.8);
+        EXPECT_EQ(weir::output::read_series(folder.path() / "grid.pvd")[2].time, 0.8);
+    }
+    EXPECT_EQ(Frames::resume(folder, {}, 5, 0.45).count(), 0);  // the branch from its beginning
+    Frames whole(folder, {});
+    for (const double t : {0.0, 0.1, 0.2}) whole.write(simulation.fields(), t);
+    std::ofstream(folder.path() / "markers.pvd") << weir::output::series_text({{0, "frames/markers_000000.vtp"}});
+    EXPECT_THROW(Frames::resume(folder, {}, 2, 0.15), weir::BadInput);
+    EXPECT_EQ(weir::output::read_series(folder.path() / "grid.pvd").size(), 3u);
 }
 
 /// The largest file that this process may write, while it lives; writes beyond fail as on a full disk (EFBIG, not ENOSPC).

@@ -1,10 +1,12 @@
 #include "output/image_file.hpp"
 
+#include "output/png_read.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include <vtkImageData.h>
 #include <vtkJPEGReader.h>
@@ -51,6 +53,30 @@ TEST("a picture as JPEG is the picture, right way up, to what quality 88 allows,
             }
     // 40 dB is where differences stop being seen (root mean square 255/100); upside down it would be some 100.
     EXPECT_LT(std::sqrt(squares / (3 * width * height)), 2.55);
+}
+
+TEST("a PNG reads back as it was written; cut off anywhere, or with any byte changed, it is none") {
+    weir::test::TemporaryFolder folder;
+    const fs::path png = folder.path() / "sea.png", bad = folder.path() / "bad.png";
+    const auto rgb = landscape();
+    weir::output::write_png(png, width, height, rgb, "a test");
+    EXPECT_TRUE(weir::output::was_made_as(png, "a test"));
+    EXPECT_FALSE(weir::output::was_made_as(png, "another"));
+    const auto read = weir::output::read_png(png);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->width, width);
+    EXPECT_TRUE(read->rgb == rgb);
+    std::ostringstream text;
+    text << std::ifstream(png, std::ios::binary).rdbuf();
+    const std::string whole = text.str();
+    for (std::size_t at = 0; at < whole.size(); at += at < 200 ? 1 : 37) {
+        std::ofstream(bad, std::ios::binary) << whole.substr(0, at);
+        EXPECT_FALSE(weir::output::read_png(bad)) << "cut off at " << at;
+        std::string changed = whole;
+        changed[at] = static_cast<char>(changed[at] ^ 0x55);
+        std::ofstream(bad, std::ios::binary) << changed;
+        EXPECT_FALSE(weir::output::read_png(bad)) << "byte " << at;
+    }
 }
 
 TEST("what is no picture gives no JPEG") {

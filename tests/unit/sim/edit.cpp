@@ -295,15 +295,15 @@ TEST("while a field is edited the simulation neither steps nor changes otherwise
         {"particles are removed", [&] { simulation.remove_particles("particles", which); }},
         {"from a checkpoint", [&] { simulation.restore(saved); }},
     };
-    for (const auto& [what, change] : changes) {
+    for (const auto& one : changes) {
         const std::string told = refusal([&] {
             simulation.edit("velocity", [&](FieldEdit& u) {
                 fill(u, {1, 0});
-                change();
+                one.second();
             });
         });
         expect_in(told, "\"particles.velocity\" is being edited");
-        expect_in(told, what);
+        expect_in(told, one.first);
         EXPECT_EQ(state_of(simulation), before) << what;
     }
     EXPECT_EQ(simulation.steps(), 0);
