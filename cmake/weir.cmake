@@ -64,6 +64,7 @@ function(weir_test_program kind name)
   target_include_directories(${kind}_${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${kind}_${name} PRIVATE weir_flags weir_test_main ${arg_LINKS})
   target_compile_options(${kind}_${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is optimised; what tests it need not be
+  set_property(GLOBAL APPEND PROPERTY WEIR_${kind}_PROGRAMS ${kind}_${name})
   target_compile_definitions(${kind}_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WEIR_BINARY_DIR="${PROJECT_BINARY_DIR}")
 endfunction()
 

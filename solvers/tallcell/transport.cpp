@@ -188,7 +188,10 @@ void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
                 runs[l] = mesh.runs_up(a, c0 + i), foot[l] = layout.foot(c0 + i);
             }
             const auto one = [&](std::size_t i) { changes[runs[i].index()] = move_run(a, foot[i], runs[i].run(), dt); };
-            bool together = layout.axes[0] == 0 && count == row_lanes && foot[0][0] + row_lanes <= frame_.cells[0];
+            Index<D> taken = layout.foot(c0);
+            bool together = layout.axes[0] == 0 && count == row_lanes && fits_eight(taken[0]);
+            const int shift = inward(taken[0]);
+            taken[0] += shift;
             while (together) {
                 bool alike = true;
                 const auto ahead = [&](std::size_t i) { return runs[i].ahead() && runs[i].any_faces(); };
@@ -200,11 +203,11 @@ void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
                         alike && (!runs[i].any_faces() || (ahead(i) && runs[i].run().row == run.row && runs[i].run().count == run.count));
                 if (!alike) break;
                 std::array<Eight, 2> change;
-                const bool moved = move_run_of_eight(a, foot[0], run, dt, change);
+                const bool moved = move_run_of_eight(a, taken, run, dt, change);
                 for (std::size_t i = 0; i < row_lanes; ++i) {
                     if (!runs[i].any_faces()) continue;
                     if (moved && inner(foot[i], 0))
-                        changes[runs[i].index()] = {change[0][static_cast<int>(i)], change[1][static_cast<int>(i)]};
+                        changes[runs[i].index()] = {change[0][static_cast<int>(i) - shift], change[1][static_cast<int>(i) - shift]};
                     else
                         one(i);
                     runs[i].reaches(run.row + run.count);
@@ -382,7 +385,9 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                     to[a][face] = before_[a][face] + by;
                 });
             };
-            const bool beside = layout.axes[0] == 0 && count == row_lanes && columns[0].foot[0] + row_lanes <= frame_.cells[0];
+            const Index<D> foot = layout.foot(c0);
+            const bool beside = layout.axes[0] == 0 && count == row_lanes && fits_eight(foot[0]);
+            const int shift = inward(foot[0]);
             for (int row = first; row < last;) {
                 int until = last, moving = 0;
                 for (int i = 0; i < count; ++i) {
@@ -403,8 +408,8 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                     if (!column.moves && all_faces) to[a][face] = before_[a][face];
                 }
                 if (moving > 0) {
-                    Index<D> I = columns[0].foot;
-                    I[up] = row;
+                    Index<D> I = foot;
+                    I[0] += shift, I[up] = row;
                     bool inner = beside;
                     for (int d = 1; d < D; ++d) inner = inner && this->inner(I, d);
                     Eight value;
@@ -416,7 +421,7 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                         I[up] = row;
                         real& u = to[a][column.face + static_cast<std::size_t>(row) * face_stride];
                         if (together && this->inner(I, 0))
-                            u = value[i];
+                            u = value[i - shift];
                         else if constexpr (Correct)
                             u = corrected(a, face_place(a, I), before_[a](I), dt);
                         else

@@ -33,6 +33,10 @@ private:
               MacVelocity<D>& to) const;
     void keep_sides(MacVelocity<D>& to) const;
     bool inner(const Index<D>& I, int axis) const { return I[axis] >= 1 && I[axis] + 1 < frame_.cells[axis]; }
+    /// Whether the eight columns from x = `first` on can be moved together, and by how much farther in those that are taken for it start:
+    /// one at an end of the row has nothing beside it in the row, and at an end of memory nothing at all. It is moved by itself.
+    bool fits_eight(int first) const { return first + row_lanes <= frame_.cells[0] && frame_.cells[0] >= row_lanes + 2; }
+    int inward(int first) const { return first == 0 ? 1 : first + row_lanes == frame_.cells[0] ? -1 : 0; }
     template <bool Correct>
     bool move_eight(int a, const Index<D>& I, real dt, Eight& to) const;
     real at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const;
