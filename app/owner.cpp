@@ -2,12 +2,12 @@
 
 #include "core/error.hpp"
 #include "core/slabs.hpp"
+#include "core/words.hpp"
 #include "output/atomic_file.hpp"
 #include "sim/loop.hpp"
 #include "sim/run_id.hpp"
 
 #include <cstdio>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
 
@@ -17,8 +17,12 @@ namespace {
 
 /// The id in run.json; empty where there is none, as in folders of weir before it had ids.
 std::string run_in(const std::filesystem::path& folder) {
-    std::ifstream file(folder / "run.json");
-    const auto j = nlohmann::json::parse(file, nullptr, false);
+    nlohmann::json j;
+    try {
+        j = nlohmann::json::parse(bytes_of(folder / "run.json"), nullptr, false);
+    } catch (const BadInput&) {
+        return "";
+    }
     return j.is_object() && j.contains("run") && j["run"].is_string() ? j["run"].get<std::string>() : "";
 }
 

@@ -14,18 +14,17 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILD = ROOT / "build/clang"
 GENERATED = ["solvers/particles/kernel_text.cpp", "solvers/output/build_info.cpp"]
 
 
-def configure(unity):
+def configure(build, unity):
     options = ["-DCMAKE_BUILD_TYPE=Debug", "-DWEIR_TESTS=ON", "-DWEIR_BENCHMARKS=ON", "-DWEIR_PYTHON=ON", f"-DWEIR_UNITY={'ON' if unity else 'OFF'}"]
     compilers = ["-DCMAKE_CXX_COMPILER=clang++-14", "-DCMAKE_C_COMPILER=clang-14"]
-    subprocess.run(["cmake", "-G", "Ninja", "-S", ROOT, "-B", BUILD, *compilers, *options], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "-G", "Ninja", "-S", ROOT, "-B", build, *compilers, *options], check=True, stdout=subprocess.DEVNULL)
     for source in GENERATED:  # alone: ninja would build the libraries below first
-        command = subprocess.run(["ninja", "-C", BUILD, "--quiet", "-t", "commands", "-s", source], check=True, capture_output=True, text=True)
-        subprocess.run(command.stdout, shell=True, cwd=BUILD, check=True, stdout=subprocess.DEVNULL)
-    return json.loads((BUILD / "compile_commands.json").read_text())
+        command = subprocess.run(["ninja", "-C", build, "--quiet", "-t", "commands", "-s", source], check=True, capture_output=True, text=True)
+        subprocess.run(command.stdout, shell=True, cwd=build, check=True, stdout=subprocess.DEVNULL)
+    return json.loads((build / "compile_commands.json").read_text())
 
 
 def arguments(entry, extra):
@@ -45,7 +44,7 @@ def warnings_of(entry):
 
 
 def tidy_of(entry):
-    command = ["clang-tidy-14", "--quiet", "-p", BUILD, f"--header-filter={ROOT}/(solvers|app|validation)/.*", entry["file"]]
+    command = ["clang-tidy-14", "--quiet", "-p", entry["directory"], f"--header-filter={ROOT}/(solvers|app|validation)/.*", entry["file"]]
     done = subprocess.run(command, capture_output=True, text=True)
     return done.stdout + (done.stderr if done.returncode else "")
 
@@ -57,7 +56,7 @@ def main():
     parser.add_argument("-j", type=int, default=1, help="how many beside each other")
     given = parser.parse_args()
     tidy = given.what == "tidy"
-    entries = configure(unity=not tidy)
+    entries = configure(ROOT / "build" / ("tidy" if tidy else "clang"), unity=not tidy)
     if tidy:
         entries = [e for e in entries if Path(e["file"]).relative_to(ROOT).parts[0] in ("solvers", "app", "validation")]
     entries = [e for e in entries if re.search(given.regex, e["file"])]

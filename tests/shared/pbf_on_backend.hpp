@@ -36,12 +36,15 @@ real support(const Pbf<D>& solver) {
     return solver.options().support / 8;  // spacing of the scenes: 1/8 m
 }
 
-const char* centred(int dim) { return dim == 2 ? "[0.5, 0.75]" : "[0.5, 0.75, 0.5]"; }
+template <int D>
+const char* centred() {
+    return D == 2 ? "[0.5, 0.75]" : "[0.5, 0.75, 0.5]";
+}
 
 /// Each effect, and all together.
 template <int D>
 std::vector<std::string> effects() {
-    const std::string pull = fmt::format("effects.central_force = {{ omega = 5.0, centre = {} }}", centred(D));
+    const std::string pull = fmt::format("effects.central_force = {{ omega = 5.0, centre = {} }}", centred<D>());
     const std::string smooth = "effects.xsph = { c = 0.2 }", whirl = "effects.vorticity = { epsilon = 0.2 }";
     const std::string apart = "effects.artificial_pressure = { k = 0.01 }";
     return {pull, smooth, whirl, apart, pull + "\n" + smooth + "\n" + whirl + "\n" + apart};

@@ -41,8 +41,8 @@ struct Far final : Backtrace<D> {
 const char* const boxes[] = {
     "",
     "sides = { x_min = { kind = \"open\" }, y_max = { kind = \"open\" } }\n",
-    "sides = { x_min = { kind = \"periodic\" }, x_max = { kind = \"periodic\" }, y_min = { kind = \"periodic\" }, y_max = { kind = "
-    "\"periodic\" } }\n",
+    R"(sides = { x_min = { kind = "periodic" }, x_max = { kind = "periodic" }, y_min = { kind = "periodic" }, y_max = { kind = "periodic" } }
+)",
 };
 
 }  // namespace
