@@ -58,7 +58,8 @@ Numbers ci_numbers(const Study& study, CostOptions options, const Solvers& solve
 int compare_studies(const std::vector<Study>& studies, const CostOptions& options, const Solvers& solvers) {
     bool same = true;
     for (const Study& study : studies) {
-        const Comparison c = compare_numbers(ci_numbers(study, options, solvers), json_of(pins_file(options.compare, study.name)));
+        const json pins = json_of(pins_file(options.compare, study.name));
+        const Comparison c = compare_numbers(pins.is_object() ? ci_numbers(study, options, solvers) : Numbers{}, pins);
         const std::string command = fmt::format("weir cost {} --size full --publish", study.name);
         std::fputs(comparison_text(study.name + ", cost", command, c).c_str(), stderr);
         same = same && c.moved.empty();
