@@ -43,7 +43,7 @@ struct Verdict {
     /// "<= 1e-08", "in [0.9, 1.1]", ">= 1.8"
     std::string bound() const;
     /// A claim must hold. What is listed as not reached must have been measured and fall short: once it is met the list is wrong.
-    bool as_said() const { return not_reached.empty() ? pass : !pass && note.empty(); }
+    bool as_said() const { return not_reached.empty() ? pass : !pass && !std::isnan(measured); }
     /// "pass", "FAIL", "asked" (and not reached, as the case says).
     const char* word() const { return !as_said() ? "FAIL" : pass ? "pass" : "asked"; }
 };
