@@ -42,14 +42,14 @@ cases() {
     for folder in "$root"/cases/*/; do
         name="$(basename "$folder")"
         if [ -e "$folder/case.toml" ]; then
-            printf 'case.%s\t%q validate %q --steps %s --threads %s --quiet --out %q\n' "$name" "$build/weir" "$folder" "$steps" "$threads" "$out/files/$name"
+            printf 'case.%s\texec %q validate %q --steps %s --threads %s --quiet --out %q\n' "$name" "$build/weir" "$folder" "$steps" "$threads" "$out/files/$name"
         elif [ -e "$folder/stability.toml" ]; then
-            printf 'stability.%s\t%q stability %q --floors --steps %s --threads %s --quiet --out %q\n' "$name" "$build/weir" "$folder" "$steps" "$threads" "$out/files/$name"
+            printf 'stability.%s\texec %q stability %q --floors --steps %s --threads %s --quiet --out %q\n' "$name" "$build/weir" "$folder" "$steps" "$threads" "$out/files/$name"
         fi
     done
     while read -r file end; do # scenes of studies, which no case runs
         name="${file%.toml}" && name="${name//\//.}"
-        printf 'scene.%s\t%q run %q --set time.end=%s --threads %s --quiet --out %q\n' "$name" "$build/weir" "$root/cases/$file" "$end" "$threads" "$out/files/$name"
+        printf 'scene.%s\texec %q run %q --set time.end=%s --threads %s --quiet --out %q\n' "$name" "$build/weir" "$root/cases/$file" "$end" "$threads" "$out/files/$name"
     done < <(sed '/^#/d' "$here/scenes.txt")
 }
 units() {
@@ -57,7 +57,7 @@ units() {
     for program in "$build"/unit_*; do
         { [ -f "$program" ] && [ -x "$program" ]; } || continue
         for suite in $("$program" --gtest_list_tests | sed -n 's/^\([^ ].*\)\.$/\1/p'); do
-            printf '%s.%s\tcd %q && %q --gtest_filter=%s.* --gtest_brief=1\n' "$(basename "$program")" "$suite" "$build" "$program" "$suite"
+            printf '%s.%s\tcd %q && exec %q --gtest_filter=%s.* --gtest_brief=1\n' "$(basename "$program")" "$suite" "$build" "$program" "$suite"
         done
     done
 }
@@ -79,7 +79,7 @@ export TSAN_OPTIONS="exitcode=99:halt_on_error=1:second_deadlock_stack=1:ignore_
 
 run_job() { # "NAME<tab>COMMAND"
     local name="${1%%$'\t'*}" command="${1#*$'\t'}" code=0 start=$SECONDS
-    timeout -k 5 "$limit" bash -c "$command" >"$out/$name.log" 2>&1 || code=$?
+    timeout --foreground -k 5 "$limit" bash -c "$command" >"$out/$name.log" 2>&1 || code=$?
     grep -qE "runtime error:|ERROR: (Address|Leak)Sanitizer|WARNING: ThreadSanitizer" "$out/$name.log" && code=99
     printf '%s\t%s\t%s\n' "$code" "$((SECONDS - start))" "$name" >>"$out/ended.txt"
 }
