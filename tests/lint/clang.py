@@ -54,7 +54,7 @@ def main():
     parser.add_argument("what", choices=["warnings", "tidy"])
     parser.add_argument("regex", nargs="?", default="")
     parser.add_argument("-j", type=int, default=1, help="how many beside each other")
-    given = parser.parse_args()
+    given = parser.parse_intermixed_args()
     tidy = given.what == "tidy"
     entries = configure(ROOT / "build" / ("tidy" if tidy else "clang"), unity=not tidy)
     if tidy:
