@@ -304,7 +304,7 @@ TEST("while a field is edited the simulation neither steps nor changes otherwise
         });
         expect_in(told, "\"particles.velocity\" is being edited");
         expect_in(told, one.first);
-        EXPECT_EQ(state_of(simulation), before) << what;
+        EXPECT_EQ(state_of(simulation), before) << one.first;
     }
     EXPECT_EQ(simulation.steps(), 0);
     simulation.edit("velocity", [](FieldEdit& u) { fill(u, {0.25, 0}); });
