@@ -66,7 +66,8 @@ real grain_of(const Variant& method) {
     for (std::size_t a = 0; a < cells.size(); ++a)
         if (std::find(sweep.keep.begin(), sweep.keep.end(), static_cast<int>(a)) == sweep.keep.end())
             common = std::gcd(common, static_cast<std::int64_t>(cells[a]));
-    return static_cast<real>(along / common);
+    const std::int64_t least = along / common;  // common divides it
+    return static_cast<real>(least);
 }
 
 real by_power(real x, real x0, real x1, real y0, real y1) { return y0 * std::pow(y1 / y0, std::log(x / x0) / std::log(x1 / x0)); }
