@@ -2,7 +2,6 @@
 // any scene.
 #pragma once
 #include "core/error.hpp"
-#include "core/solver.hpp"
 #include "scene/scene.hpp"
 
 #include <stdexcept>
@@ -16,12 +15,6 @@ namespace weir::validation {
 inline const scene::Table& needed_effect(const scene::Scene& scene, std::string_view name) {
     if (const scene::Table* effect = scene.effect(name)) return *effect;
     throw BadInput("the scene has no effect \"" + std::string(name) + "\"");
-}
-
-/// A field that the solver has to show.
-inline const FieldView& needed_field(const FieldSet& fields, std::string_view set, std::string_view name) {
-    if (const FieldView* field = fields.find(set, name)) return *field;
-    throw BadInput("the solver shows no field \"" + std::string(name) + "\" of " + std::string(set));
 }
 
 /// f() of what is named `what`. A key that the scene lacks, or a list that is shorter than f reads, is bad input here.

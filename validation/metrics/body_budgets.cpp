@@ -1,8 +1,8 @@
 // What bodies and the fluid that carries them hold together: momentum, which walls alone may change where no weight acts; angular momentum
 // of particles, whose walls are far; and energy, which nothing puts in.
 #include "rigid/bodies.hpp"
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
 

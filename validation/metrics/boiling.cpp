@@ -2,8 +2,8 @@
 #include "matter/ambient.hpp"
 #include "matter/substance.hpp"
 #include "thermo/substance.hpp"
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Cavities: velocity on the centrelines against tables, heat through the walls against single numbers.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Claims that hold to round-off or to a solver's tolerance: discrete Poisson errors, the identity of the projection, rest, mirrors.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
 

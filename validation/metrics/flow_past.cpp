@@ -1,6 +1,6 @@
 // Flow past solids that it sticks to: drag, shedding and recirculation behind a cylinder, where flow behind a step reattaches.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
 

@@ -1,6 +1,7 @@
 // Columns of water: discharge along a river, where it jumps, crests and run-up.
 #include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
 

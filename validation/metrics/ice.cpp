@@ -1,6 +1,6 @@
 // Ice afloat among particles: how deep it lies, and where the water stands before, while and after it melts.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 
 #include <algorithm>
 #include <cmath>

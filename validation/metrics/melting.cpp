@@ -1,6 +1,6 @@
 // Melting and freezing: fronts, what ice and water come to, and the balance of heat.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Melting with natural convection: how much has melted, where the front stands, how many rolls turn in the melt.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 
 #include <algorithm>
 #include <cmath>

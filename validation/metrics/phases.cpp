@@ -1,6 +1,6 @@
 // Particles between two states of rest: what a minute at rest changes, and a liquid that becomes a gas and a liquid again.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 
 #include <algorithm>
 #include <cmath>

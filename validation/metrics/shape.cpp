@@ -1,7 +1,7 @@
 // What advection did to a shape: area and symmetric difference of a level set by 8 x 8 points a cell, and the peak of a hill; each can be
 // compared with the error that an independent implementation of the same scheme makes on the same grid.
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 #include "reconstruction/measure.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "reconstruction/triangle.hpp"
-#include "validation/harness/fitting.hpp"
 #include "validation/metrics/lists.hpp"
+#include "validation/metrics/needed_field.hpp"
 
 #include <algorithm>
 #include <cmath>
