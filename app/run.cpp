@@ -153,7 +153,6 @@ public:
           log_(folder / "run.json", simulation.scene(), run),
           progress_(simulation.time(), simulation.end_time(), quiet) {
         frames_ = open_frames(simulation, folder, checkpoint > 0);  // where that refuses the folder, all stays as it is
-        by_first_rank([&] { probes_.begin(simulation.probes(), earlier.empty() ? earlier : earlier / "probes"); });
         tell_ranks(simulation, {}, {});
         log_.set_solver_bytes(simulation.solver().bytes());
         log_.set_warnings(simulation.warnings());
@@ -161,6 +160,7 @@ public:
         by_first_rank([&] {
             checkpoint > 0 ? log_.steps().resume(simulation.steps()) : log_.steps().begin();
             write_log("running");  // where the disk fills later, there is a file that can still say so
+            probes_.begin(simulation.probes(), earlier.empty() ? earlier : earlier / "probes");
         });
     }
     /// What is to be measured of the run: told in run.json at its end.
