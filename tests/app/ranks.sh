@@ -610,7 +610,7 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
                 # checkpoint beside it (4 numbers a column, each), a page at both ends of less than 32 arrays; and of a frame the own part
                 # of its array, a number a column, and what the first rank puts into the file at once.
                 more_held=$(peak_beyond tiny-$ranks $model-$ranks $rank)
-                at_most $more_held $((held + (2 * 4 + 1) * 8 * 512 * rows + 32 * 2 * 4096 + handed)) "$model peak, rank $rank of $ranks"
+                at_most $more_held $((held + (2 * 4 + 1) * 8 * 512 * rows + 32 * 2 * 4096 + handed + 2 * huge_page)) "$model peak, rank $rank of $ranks"
             done
         done
         continued_by_others $model $model 0 0 0.09
@@ -646,11 +646,11 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
                 waves=$(((points / 2 + 1) * 512)) more_columns=$(((5 * 16 + 2 * 8) * 512))
                 [ $name != basin ] || waves=$((points * 512 / 2)) more_columns=0
                 at_most "$held" $((one * (rows + 3) / 512 + more_columns + 2 * 16 * (waves / ranks + 512))) "$name, rank $rank of $ranks"
-                # As the system sees it, at any time of the run: that, a page at both ends of less than 32 arrays; and of a frame the own part of
-                # its largest array, 3 numbers a cell or 4 corners between points, and what the first rank puts into the file at once.
+                # As the system sees it, at any time of the run: that, a page at both ends of less than 32 arrays, two pages of 2 MiB, which
+                # the system may give for smaller ones; and of a frame the own part of its largest array, 3 numbers a cell or 4 corners between points, and what the first rank puts into the file at once.
                 more_held=$(peak_beyond tiny-$ranks $name-$ranks $rank)
                 array=$((3 * cells > 4 * points ? 3 * cells : 4 * points))
-                at_most $more_held $((held + 8 * array * rows + 32 * 2 * 4096 + handed)) "$name peak, rank $rank of $ranks"
+                at_most $more_held $((held + 8 * array * rows + 32 * 2 * 4096 + handed + 2 * huge_page)) "$name peak, rank $rank of $ranks"
             done
         done
     done
