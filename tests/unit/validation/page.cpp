@@ -124,6 +124,13 @@ TEST("texts are quoted, every claim carries its reason and blind spot, and the p
     EXPECT_EQ(page.find("href=\"http"), std::string::npos);
 }
 
+TEST("the README says of the results what they are: `weir report --readme README.md` was run after the last publication") {
+    const fs::path source = WEIR_SOURCE_DIR;
+    const std::string said = bytes_of(source / "README.md"), part = readme_part(source / "results", "results");
+    ASSERT_GT(part.size(), 1000u);
+    EXPECT_NE(said.find(part), std::string::npos) << "the results say:\n" << part;
+}
+
 TEST("what effects cost stands on the page where it is published: one row an effect, a failure marked") {
     const weir::test::TemporaryFolder folder;
     fs::create_directories(folder.path() / "cost");
