@@ -57,7 +57,9 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
 }
 
 /// Which sizes pins are of, and which scenes the published results.
-void check_comparable(const ValidateOptions& options) {
+void check_publishable(const ValidateOptions& options) {
+    if (!options.publish.empty() && !options.backend.empty())
+        throw BadInput("--publish takes the scenes as they are, without --backend: the tests compare them so");
     if (options.compare.empty()) return;
     if (options.size != Size::ci) throw BadInput("--compare takes the ci size, whose numbers are published beside those of full size");
     if (options.steps > 0) throw BadInput("--compare takes runs to their end, without --steps");
@@ -184,9 +186,9 @@ std::vector<std::filesystem::path> chosen_folders(const std::string& command, co
 int validate_command(const ValidateOptions& options, const Solvers& solvers) {
     if (options.steps > 0 && !options.publish.empty())
         throw BadInput("--steps judges nothing, so there is nothing to publish: weir validate takes --steps or --publish, not both");
+    check_publishable(options);
     const std::vector<Case> cases = read_all(options, solvers);
     if (options.list) return list_cases(cases);
-    check_comparable(options);
     output::require_writable(options.out);
     const output::FolderLock lock(options.out);
     std::filesystem::create_directories(options.out / "csv");

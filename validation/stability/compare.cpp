@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <optional>
 
 namespace weir::validation {
 namespace {
@@ -17,13 +18,13 @@ std::string place_of(const Stress& s) { return (s.method.empty() ? s.name : s.na
 
 constexpr auto stable_end = "last stable", unstable_end = "first unstable";
 
-/// Either end of an axis as it was found, to the last digit: what breaks depends on it.
-Limit at_published_ends(const Stress& s, const json& study, const Solvers& solvers) {
+/// Either end of an axis as it was found, to the last digit: what breaks depends on it. Nothing where the axis is not published.
+std::optional<Limit> at_published_ends(const Stress& s, const json& study, const Solvers& solvers) {
     if (const auto limits = study.find("limits"); limits != study.end() && limits->is_array())
         for (const json& l : *limits)
             if (text_at(l, "axis") == s.name && text_at(l, "method") == s.method)
                 return recheck(s, number_at(l, "last_stable"), number_at(l, "first_unstable"), solvers);
-    return Limit{.stress = s};
+    return std::nullopt;
 }
 
 }  // namespace
@@ -48,15 +49,19 @@ int compare_limits(const std::vector<StressStudy>& studies, const std::filesyste
         const json pins = json_of(pins_file(published, study.name)), study_as_published = json_of(published / (study.name + ".json"));
         const bool comparable = pins.is_object() && study_as_published.is_object() && rounds_otherwise(pins).empty();
         std::vector<Limit> limits;
+        std::vector<std::string> unpublished;
         for (const Stress& s : study.stresses) {
-            if (comparable)
-                limits.push_back(at_published_ends(s, study_as_published, solvers));
+            const auto there = comparable ? at_published_ends(s, study_as_published, solvers) : std::nullopt;
+            if (comparable && !there) unpublished.push_back(place_of(s) + "its limit is not published");
+            if (there)
+                limits.push_back(*there), sound = sound && there->guarded();
             else if (s.floor)
                 limits.push_back(check_floor(s, solvers)), sound = sound && limits.back().passes();
         }
         fmt::print("{}\n", limits_table(study, limits));
         std::fflush(stdout);
-        const Comparison c = compare_numbers(numbers_of(limits), pins);
+        Comparison c = compare_numbers(numbers_of(limits), pins);
+        c.moved.insert(c.moved.begin(), unpublished.begin(), unpublished.end());
         const std::string command = fmt::format("weir stability {} --size full --publish", study.name);
         std::fputs(comparison_text(study.name + ", limits", command, c).c_str(), stderr);
         sound = sound && c.moved.empty();

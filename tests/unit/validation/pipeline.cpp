@@ -165,8 +165,19 @@ TEST("a claim whose bound is another than the published one is older than the co
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_NE(said.find("the claim is not published: velocity.max at_most <= 9"), std::string::npos) << said;
     EXPECT_NE(said.find("the claim is published and no longer made: velocity.max at_most <= 10"), std::string::npos) << said;
-    comparing.size = Size::full;
-    EXPECT_THROW(validate_command(comparing, test::fake_kinds()), BadInput);
+    const auto refusal = [](const ValidateOptions& options) {
+        try {
+            validate_command(options, test::fake_kinds());
+        } catch (const BadInput& refused) {
+            return std::string(refused.what());
+        }
+        return std::string();
+    };
+    auto other = comparing;
+    other.size = Size::full;
+    EXPECT_NE(refusal(other).find("--compare takes the ci size"), std::string::npos);
+    other = folder.options({tank}), other.backend = "opencl";
+    EXPECT_NE(refusal(other).find("--publish takes the scenes as they are"), std::string::npos);
 }
 
 TEST("a numerical failure and an exceeded time limit fail every claim of the run with their message; other cases go on") {

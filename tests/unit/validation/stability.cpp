@@ -159,7 +159,7 @@ TEST("published limits are compared with the code by a run at either end: one th
     std::ifstream stream(file);
     const auto pins = nlohmann::json::parse(stream);
     int ends = 0;
-    for (const auto& [name, value] : pins["numbers"].items()) {  // each end moved beyond the other: the run there says otherwise
+    for (const auto& [name, value] : pins["numbers"].items()) {  // each end as if it had been found elsewhere
         auto moved = pins;
         if (name.ends_with("last stable"))
             moved["numbers"][name] = 10 * value.get<double>(), ++ends;
@@ -173,6 +173,11 @@ TEST("published limits are compared with the code by a run at either end: one th
         EXPECT_NE(testing::internal::GetCapturedStderr().find(name), std::string::npos);
     }
     EXPECT_GE(ends, 2);
+    std::ofstream(file) << pins.dump();
+    std::ofstream(folder.path() / "page/study.json") << R"({"limits": []})";
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_claim_failed);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("its limit is not published"), std::string::npos);
 }
 
 TEST("a run that fails is a break, with its step and time") {
