@@ -27,17 +27,18 @@ bool at_contact(const geometry::Shape<D>& liquid, const geometry::Solids<D>& sol
     return !solids.empty() && solids.distance(boundary) < touching && dot(solids.normal(boundary, eps), n) < -0.99;
 }
 
-/// Where liquid is asked for at a centre: there, but where the centre lies inside a solid, on whose surface the nearest part of the
-/// liquid's boundary is, at the end of that solid: liquid that touches a solid fills the cells that the solid cuts.
+/// Where liquid is asked for at a centre: there, but where the centre lies inside a solid or on its surface, and the nearest part of the
+/// liquid's boundary on that surface, just outside that solid: liquid that touches a solid fills the cells that the solid cuts.
 template <int D>
 Vec<D> sample_point(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, const Vec<D>& x, real d) {
-    if (solids.empty() || solids.distance(x) >= 0) return x;
-    const real h = frame.h_min(), eps = 1e-4 * h;
+    const real h = frame.h_min(), eps = 1e-4 * h, touching = 1e-6 * h;
+    if (solids.empty() || solids.distance(x) >= touching) return x;
     Vec<D> boundary = x, outside = x;
     for (int a = 0; a < D; ++a)
         boundary[a] -= d * (liquid.distance(x + eps * Vec<D>::unit(a)) - liquid.distance(x - eps * Vec<D>::unit(a))) / (2 * eps);
-    if (std::abs(solids.distance(boundary)) > 1e-6 * h) return x;
-    for (int step = 0; step < 8 && solids.distance(outside) < 0; ++step)  // in a corner, where solids meet, each goes a part of the way
+    if (std::abs(solids.distance(boundary)) > touching) return x;
+    for (int step = 0; step < 8 && solids.distance(outside) < touching;
+         ++step)  // in a corner, where solids meet, each goes a part of the way
         outside = solids.push_out(outside, 1e-3 * h, eps);
     return outside;
 }

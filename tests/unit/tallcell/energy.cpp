@@ -39,5 +39,34 @@ effects.gravity.g = [0.0, -9.81]
     EXPECT_LT(most, start + 0.02 * total);
 }
 
+/// As of mac_water (tests/unit/water/energy.cpp): a cup with its floor on a grid line and a hundredth of a cell above it; the slack is of
+/// the two cells where walls meet.
+TEST("the potential energy of water in a cup on tall cells is of the water alone") {
+    static const std::vector<scene::SolverSchema> schemas{tallcell::kind().schema};
+    for (const real up : {0.0, 0.000625}) {
+        const std::string floor = std::to_string(0.25 + up), low = std::to_string(0.125 + up), top = std::to_string(0.5 + up);
+        const tallcell::TallCells<2> water(scene::parse(R"(solver = "tallcell"
+dim = 2
+grid = { cells = [16, 16], size = [1.0, 1.0] }
+time = { end = 1.0 }
+fluid = { density = 1000.0 }
+effects.gravity.g = [0.0, -9.81]
+liquid = [ { shape = "box", min = [0.25, )" + floor + R"(], max = [0.75, )" +
+                                                            top + R"(] } ]
+solids = [ { shape = "box", min = [0.125, )" + low + R"(], max = [0.875, )" +
+                                                            floor + R"(] },
+           { shape = "box", min = [0.125, )" + low + R"(], max = [0.25, 0.75] }, { shape = "box", min = [0.75, )" +
+                                                            low + R"(], max = [0.875, 0.75] } ]
+)",
+                                                        "cup.toml", schemas, {}));
+        real volume = 0, energy = 0;
+        for (const auto& value : water.integrals()) {
+            if (value.name == "volume") volume = value.value;
+            if (value.name == "potential_energy") energy = value.value;
+        }
+        EXPECT_NEAR(energy, 1000 * 9.81 * volume * (0.25 + up + volume), 1000 * 9.81 * volume * 2 * 2 / 16 / 16 / 4);
+    }
+}
+
 }  // namespace
 }  // namespace weir::test
