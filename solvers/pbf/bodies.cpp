@@ -24,21 +24,22 @@ bool push_ahead(BodiesInLiquid<D>& bodies, Fluid<D>& fluid, std::type_identity_t
 }
 
 template <int D>
-void carry(BodiesInLiquid<D>& bodies, Domain<D>& domain, float* four, float* multiplier, real give, real dt) {
+void carry(BodiesInLiquid<D>& bodies, Domain<D>& domain, const Multipliers& all, real give, real dt) {
     auto& meetings = bodies.meetings();
     for (auto& m : meetings) {
         if (m.body < 0) continue;
-        const real lambda = static_cast<real>(four[4 * m.particle + 3]);
-        const real sum = multiplier ? static_cast<real>(multiplier[m.particle]) : lambda;
+        const real lambda = static_cast<real>(all.four[4 * m.particle + 3]);
+        const real sum = all.sum ? static_cast<real>(all.sum[m.particle]) : lambda;
+        const float excess = all.density ? all.density[m.particle] - (all.rest ? all.rest[m.particle] : 1.0f) : 0.0f;
         m.given = lambda / dt * m.pull;
-        m.stiff = sum < 0 ? give : 0;  // a liquid is pushed, never pulled
+        m.stiff = sum < 0 ? stiffness(lambda, static_cast<real>(excess), give) : 0;  // a liquid is pushed, never pulled
     }
     bodies.exchange(domain, dt, false);
     for (const auto& m : meetings) {
         if (m.body < 0 || m.stiff == 0) continue;
         const auto change = static_cast<float>(dt * m.stiff * bodies.closing(m));
-        four[4 * m.particle + 3] += change;
-        if (multiplier) multiplier[m.particle] += change;
+        all.four[4 * m.particle + 3] += change;
+        if (all.sum) all.sum[m.particle] += change;
     }
 }
 
@@ -66,7 +67,7 @@ bool push_on(BodiesInLiquid<D>& bodies, Domain<D>& domain, const std::vector<int
 
 #define WEIR_INSTANTIATE(D)                                                                                                 \
     template bool push_ahead(BodiesInLiquid<D>&, Fluid<D>&, std::type_identity_t<std::array<std::vector<real>, D>>&, real); \
-    template void carry(BodiesInLiquid<D>&, Domain<D>&, float*, float*, real, real);                                        \
+    template void carry(BodiesInLiquid<D>&, Domain<D>&, const Multipliers&, real, real);                                    \
     template bool push_on(BodiesInLiquid<D>&, Domain<D>&, const std::vector<int>&, const float*, float*, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

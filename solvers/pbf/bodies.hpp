@@ -3,7 +3,9 @@
 #pragma once
 #include "particles/bodies_in_liquid.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -14,10 +16,25 @@ template <int D>
 bool push_ahead(particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid,
                 std::type_identity_t<std::array<std::vector<real>, D>>& x_star, real dt);
 
-/// In one iteration bodies go as far as the multipliers of the particles that they meet push, which change by what they give way (a
-/// `give` of their closing). multiplier: the sums over the step, where they are kept; else null.
+/// An iteration of all particles, each an entry.
+struct Multipliers {
+    float* four = nullptr;           // x, y, z, and what the multiplier changes by
+    float* sum = nullptr;            // over the step, where it is kept; else null
+    const float* density = nullptr;  // over the rest density; null in a warm start, where it is not known yet
+    const float* rest = nullptr;     // density that each is to have, over the rest density; null: 1
+};
+
+/// What a multiplier λ = −C/(Σ|∇C|² + ε) that pushes changes by as C does. A particle between a body and a wall has few neighbours, and
+/// gradients that cancel: the sum is far below what it is in a liquid, and a body that is thought to meet a liquid there is thrown. At
+/// least `give`, which a particle beside a wall has: λ/C says nothing where C is round-off.
+inline real stiffness(real lambda, real constraint, real give) {
+    return std::abs(constraint) > 1e-5 ? std::max(give, -lambda / constraint) : give;
+}
+
+/// In one iteration bodies go as far as the multipliers of the particles that they meet push, which change by what they give way (by the
+/// stiffness of their closing). give: of a particle beside a wall [m^2].
 template <int D>
-void carry(particles::BodiesInLiquid<D>& bodies, particles::Domain<D>& domain, float* four, float* multiplier, real give, real dt);
+void carry(particles::BodiesInLiquid<D>& bodies, particles::Domain<D>& domain, const Multipliers& all, real give, real dt);
 
 /// Particles `near`, which stood at `before` (D numbers each) and have been put out of bodies, push them on, and give way with them. False
 /// where none does.

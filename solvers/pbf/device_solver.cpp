@@ -57,7 +57,7 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && find_compression().sum <= options_.tolerance * fluid_.count()) break;
-        if (bodies_) carry_bodies();
+        if (bodies_) carry_bodies(true);
         correct();  // 12-19
     }
     const real slow = std::max(dt, last_dt_);
@@ -95,7 +95,7 @@ void DevicePbfSolver<D>::warm_start(real dt) {
     if (options_.warm_start == 0) return;
     const auto& f = fluid_;
     fluid_.run("start_multipliers", {f.count(), options_.warm_start * dt * dt, f.order, f.carried, f.a, f.b, multiplier_});
-    if (carried_dt_ > 0) carry_bodies();
+    if (carried_dt_ > 0) carry_bodies(false);
     correct();
 }
 
@@ -137,12 +137,17 @@ void DevicePbfSolver<D>::push_bodies_ahead() {
 }
 
 template <int D>
-void DevicePbfSolver<D>::carry_bodies() {
+void DevicePbfSolver<D>::carry_bodies(bool iterates) {
     const auto timed = passes_.time("bodies");
     const bool keeps = options_.warm_start > 0;
     std::vector<float>& four = beside_->meet(fluid_.b);
     if (keeps) fluid_.read(multiplier_, multipliers_);
-    carry(*bodies_, fluid_.domain(), four.data(), keeps ? multipliers_.data() : nullptr, give_, carried_dt_);
+    if (iterates) fluid_.read(density_, densities_);
+    if (iterates && fluid_.rests.bytes > 0) fluid_.read(fluid_.rests, rests_);
+    carry(*bodies_, fluid_.domain(),
+          {four.data(), keeps ? multipliers_.data() : nullptr, iterates ? densities_.data() : nullptr,
+           iterates && fluid_.rests.bytes > 0 ? rests_.data() : nullptr},
+          give_, carried_dt_);
     fluid_.write(four, fluid_.b);
     if (keeps) fluid_.write(multipliers_, multiplier_);
 }

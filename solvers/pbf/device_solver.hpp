@@ -26,7 +26,7 @@ private:
     void correct();
     void start_bodies(real dt);
     void push_bodies_ahead();
-    void carry_bodies();
+    void carry_bodies(bool iterates);
     void push_bodies();
     void update(real dt, real slow) override;
     /// On the device, of the sorted particles; and on the host, of the state.
@@ -36,7 +36,7 @@ private:
 
     real give_ = 0, carried_dt_ = 0;  // where there are bodies, with what they read on the host: see PbfSolver
     std::array<std::vector<real>, D> predicted_;
-    std::vector<float> four_, multipliers_;
+    std::vector<float> four_, multipliers_, densities_, rests_;
     Memory density_, multiplier_;  // of sorted particles: rho / rho0; sum of lambda over this step, with warm start
 };
 

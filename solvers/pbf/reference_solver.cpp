@@ -1,5 +1,7 @@
 #include "pbf/reference_solver.hpp"
 
+#include "pbf/bodies.hpp"
+
 #include <algorithm>
 
 namespace weir::pbf {
@@ -49,7 +51,7 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
     for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && compression().mean <= options_.tolerance) break;
-        if (bodies_) carry_bodies();
+        if (bodies_) carry_bodies(true);
         correct();  // 12-19
     }
     const real slow = std::max(dt, last_dt_);
@@ -106,7 +108,7 @@ void ReferencePbfSolver<D>::warm_start(real dt) {
     for (const real before : fluid_.carried) multiplier_.push_back(options_.warm_start * dt * dt * before);
     add_solids(reference_, fluid_.domain, x_star_);
     lambda_ = multiplier_;
-    if (carried_dt_ > 0) carry_bodies();
+    if (carried_dt_ > 0) carry_bodies(false);
     correct();
 }
 
@@ -115,7 +117,7 @@ template <int D>
 void ReferencePbfSolver<D>::find_lambdas() {
     const auto timed = passes_.time("lambda");
     add_solids(reference_, fluid_.domain, x_star_);
-    if (options_.tolerance > 0) density_ = reference_.densities(x_star_);
+    if (options_.tolerance > 0 || bodies_) density_ = reference_.densities(x_star_);
     lambda_ = reference_.lambdas(x_star_, options_.warm_start > 0 ? &multiplier_ : nullptr);
 }
 
@@ -159,13 +161,14 @@ void ReferencePbfSolver<D>::push_bodies_ahead() {
 
 /// As far as the multipliers push bodies in this iteration: see PbfSolver.
 template <int D>
-void ReferencePbfSolver<D>::carry_bodies() {
+void ReferencePbfSolver<D>::carry_bodies(bool iterates) {
     auto& meetings = bodies_->meetings();
     meet_bodies(reference_, fluid_.domain, x_star_, meetings);
     for (auto& m : meetings) {
         const auto i = static_cast<std::size_t>(m.particle);
         m.given = lambda_[i] / carried_dt_ * m.pull;
-        m.stiff = (options_.warm_start > 0 ? multiplier_[i] : lambda_[i]) < 0 ? give_ : 0;
+        const real excess = iterates ? density_[i] - (reference_.rest.empty() ? 1 : reference_.rest[i]) : 0;
+        m.stiff = (options_.warm_start > 0 ? multiplier_[i] : lambda_[i]) < 0 ? stiffness(lambda_[i], excess, give_) : 0;
     }
     bodies_->exchange(fluid_.domain, carried_dt_, false);
     for (const auto& m : meetings) {

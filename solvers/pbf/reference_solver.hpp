@@ -28,7 +28,7 @@ private:
     void correct();
     void start_bodies(real dt);
     void push_bodies_ahead();
-    void carry_bodies();
+    void carry_bodies(bool iterates);
     void push_bodies();
     void update(real dt, real slow) override;
     Compression compression() const override;

@@ -33,7 +33,7 @@ StepReport PbfSolver<D>::step(real dt) {
     for (; iterations < this->most_iterations(); ++iterations) {
         find_lambdas();  //  9-11
         if (options_.tolerance > 0 && compression().mean <= options_.tolerance) break;
-        if (bodies_) carry_bodies();
+        if (bodies_) carry_bodies(density_.data());
         correct();  // 12-15
         collide();  // 16-19
     }
@@ -130,7 +130,7 @@ void PbfSolver<D>::warm_start(real dt) {
         x[4 * k + 3] = before;
     });
     solids_.at(pairs_, x);
-    if (carried_dt_ > 0) carry_bodies();
+    if (carried_dt_ > 0) carry_bodies(nullptr);
     correct();
     collide();
 }
@@ -217,10 +217,11 @@ void PbfSolver<D>::push_bodies_ahead() {
 }
 
 template <int D>
-void PbfSolver<D>::carry_bodies() {
+void PbfSolver<D>::carry_bodies(const float* density) {
     const auto timed = passes_.time("bodies");
     solids_.meet(pairs_.b(), bodies_->meetings());
-    carry(*bodies_, fluid_.domain, pairs_.b(), options_.warm_start > 0 ? multiplier_.data() : nullptr, give_, carried_dt_);
+    carry(*bodies_, fluid_.domain, {pairs_.b(), options_.warm_start > 0 ? multiplier_.data() : nullptr, density, this->rest()}, give_,
+          carried_dt_);
 }
 
 /// Bodies to where they go, and particles out of them, which pushes them on.

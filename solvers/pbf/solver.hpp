@@ -32,7 +32,7 @@ private:
     void hold_places();
     void start_bodies(real dt);
     void push_bodies_ahead();
-    void carry_bodies();
+    void carry_bodies(const float* density);
     void push_bodies();
     void end_bodies(real dt, real slow);
     void update(real dt, real slow) override;

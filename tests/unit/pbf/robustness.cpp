@@ -158,6 +158,23 @@ TEST_IN_2D_AND_3D("a ball in the way is not entered") {
     stays_inside(*solver, 150, 0.008);
 }
 
+/// Motion of all, and of the bodies; at the start the water's 613 J/m over the floor, and the discs' 25 above it.
+TEST("a particle between a wall and a floating disc does not throw the disc") {
+    for (const char* at : {"0.7", "0.702", "0.704"}) {
+        const std::string bodies = fmt::format(R"(bodies = [ {{ shape = "sphere", centre = [{0}, 0.09], radius = 0.09, density = 500 }},
+            {{ shape = "sphere", centre = [{0}, 0.24], radius = 0.06, density = 500 }} ])",
+                                               at);
+        auto solver = test::pbf_solver<2>(
+            test::pbf_scene<2>("{ shape = \"box\", min = [0, 0], max = [0.5, 0.5] }", "iterations = 8", bodies, "[32, 32]", "[1, 1]"));
+        real most = 0;
+        for (int s = 0; s < 1000; ++s) {
+            solver->step(0.002);
+            most = std::max(most, integral(*solver, "kinetic_energy") + integral(*solver, "bodies_kinetic_energy"));
+        }
+        EXPECT_LT(most, 613 + 25) << at;
+    }
+}
+
 TEST_IN_2D_AND_3D("a liquid at rest on a periodic floor is the same everywhere along it") {
     auto solver = test::pbf_solver<D>(
         test::pbf_scene<D>(test::box<D>(1, 0.5, 1), "", "sides = { x_min = { kind = \"periodic\" }, x_max = { kind = \"periodic\" } }"));
