@@ -168,7 +168,7 @@ public:
     void on_step(const Simulation& simulation, const StepReport& report, double seconds) override {
         if (measured_) measured_->on_step(report, seconds);
         spent_.stepping += seconds;
-        balance_.on_step(report);
+        balance_.on_step(simulation, report);
         const auto start = clock::now();
         by_first_rank([&] { tell_step(simulation, report, seconds); });
         if (!measured_) simulation_.release_probe_rows();  // what is measured at the end looks at all of them

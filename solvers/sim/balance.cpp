@@ -200,7 +200,8 @@ Balance::Balance(const Simulation& simulation) : from_(simulation.time()), start
     if (const auto energy = total_energy(start_)) highest_energy_ = *energy;
 }
 
-void Balance::on_step(const StepReport& report) {
+void Balance::on_step(const Simulation& simulation, const StepReport& report) {
+    if (++steps_ % steps_between == 0) on_frame(simulation);
     if (std::isnan(report.max_divergence)) return;
     divergence_ = std::fmax(divergence_, report.max_divergence);
     cell_change_ = std::fmax(cell_change_, report.max_divergence * report.dt);

@@ -1,5 +1,5 @@
 // The balance of a run: what the solver's integrals were at its start and are at its end, and what of the change came in or went out. What
-// neither accounts for is the run's error. Integrals are taken at the start, at frames and at the end.
+// neither accounts for is the run's error. Integrals are taken at the start, in every 16th step, at frames and at the end.
 #pragma once
 #include "core/solver.hpp"
 #include "sim/simulation.hpp"
@@ -17,8 +17,8 @@ struct Balanced {
     std::optional<real> inflow;       // net, what sources, sides and evaporation account for; not known: nothing counts it
     std::optional<real> unexplained;  // part of `scale` that the end has beyond the start and the inflow
     real scale = 0;                   // what 100% are
-    std::optional<real> highest;      // of the start, all frames and the end
-    std::optional<real> furthest;     // unexplained part of any frame or the end
+    std::optional<real> highest;      // of all that were taken
+    std::optional<real> furthest;     // unexplained part of any that was taken
 };
 
 /// Numbers of a run that tell how far to trust it.
@@ -32,16 +32,19 @@ struct BalanceOfRun {
     std::vector<std::string> warnings;               // what is beyond 1%
 };
 
-/// Takes a run's balance. All ranks call its functions together, but for on_step.
+/// Takes a run's balance. All ranks call its functions together.
 class Balance {
 public:
     explicit Balance(const Simulation& simulation);
-    void on_step(const StepReport& report);
+    void on_step(const Simulation& simulation, const StepReport& report);
     void on_frame(const Simulation& simulation);
     BalanceOfRun of_run(const Simulation& simulation) const;
 
 private:
+    static constexpr std::int64_t steps_between = 16;  // what is thrown stays fast for longer; integrals cost less than a tenth of a step
+
     real from_;
+    std::int64_t steps_ = 0;
     std::vector<Integral> start_;
     real highest_energy_ = -infinity, furthest_drift_ = 0;
     real divergence_ = not_applicable, cell_change_ = not_applicable;

@@ -29,16 +29,17 @@ struct Stated final : weir::test::FakeSolver {
 };
 
 /// Of a run of 1 s with frames every 0.1 s, from `begin` on.
-BalanceOfRun balance(const Integrals& integrals, const std::string& more = "", int begin = 0) {
+BalanceOfRun balance(const Integrals& integrals, const std::string& more = "", int begin = 0, const std::string& every = "0.1") {
     auto kinds = weir::test::fake_kinds();
     kinds[0].make = [&](const weir::scene::Scene& scene) { return std::make_unique<Stated>(scene, integrals); };
     const std::string text =
-        "solver = \"fake\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 1 }\noutput.every = 0.1\n" + more;
+        "solver = \"fake\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 1 }\noutput.every = " + every + "\n" + more;
     weir::Simulation simulation(weir::scene::parse(text, "fake.toml", {kinds[0].schema}), kinds);
     while (simulation.steps() < begin) simulation.step();
     weir::sim::Balance taken(simulation);
     while (!simulation.finished()) {
-        taken.on_step(simulation.step());
+        const auto report = simulation.step();
+        taken.on_step(simulation, report);
         if (simulation.at_frame()) taken.on_frame(simulation);
     }
     return taken.of_run(simulation);
@@ -118,6 +119,17 @@ TEST("energy above its start is warned of in a closed scene, at its highest fram
           "sides = { y_max = \"outflow\" }\n"})
         EXPECT_TRUE(balance(grows, works).warnings.empty()) << works;
     EXPECT_EQ(balance(grows, "sides = { x_min = \"wall\" }\n").warnings.size(), 1u);
+}
+
+TEST("energy that comes and goes between two frames is seen if it stays for 16 steps") {
+    int steps = 0;
+    const Integrals thrown = [&](real t) {
+        return ++steps, std::vector<Integral>{{"kinetic_energy", "J/m", t > 0.3 && t < 0.6 ? 2.0 : 1.0}};
+    };
+    const BalanceOfRun run = balance(thrown, "", 0, "1");
+    EXPECT_EQ(*run.quantities[0].highest, 2);
+    EXPECT_EQ(run.warnings.size(), 1u);
+    EXPECT_LT(steps, 12);  // of about a hundred steps
 }
 
 TEST("heat is balanced against what was added to it") {
