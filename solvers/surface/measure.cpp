@@ -1,5 +1,7 @@
 #include "surface/measure.hpp"
 
+#include "surface/plane_cut.hpp"
+
 namespace weir::surface {
 
 /// Sum over faces of the liquid volume that a face stands for (half of either cell's) times f.
@@ -26,19 +28,26 @@ Vec<D> Measure<D>::momentum(const MacVelocity<D>& u, real rho) const {
     return sum;
 }
 
-/// The liquid of a cell weighs at the middle of what the level set holds there, or at the cell's centre where that is nothing.
-/// A solid that cuts a cell full of liquid moves its middle by less than half a cell: an error of second order, at rest while the solid is.
+/// The liquid's middle in a cell, from its centre, by cell. Of liquid below a surface as the level set has it; of a full cell that a solid
+/// cuts, the middle of what the solid leaves: above a plane with the slope of the open parts.
+template <int D>
+Vec<D> Measure<D>::middle(const Index<D>& I) const {
+    const real fraction = surface_.fraction(I), open = surface_.open_part(I);
+    if (fraction > 0 && fraction < 1) return surface_.moment(I) / fraction;
+    if (fraction == 0 || open <= 0 || open == 1) return {};
+    Vec<D> slope;
+    for (int d = 0; d < D; ++d) slope[d] = surface_.open_part(frame_.near(I, d, -1)) - surface_.open_part(frame_.near(I, d, 1));
+    return norm(slope) > 0 ? moment_below_plane(plane_with_fraction(open, slope), slope) / open : Vec<D>{};
+}
+
 template <int D>
 real Measure<D>::potential_energy(const Vec<D>& gravity, real rho) const {
     return -rho * frame_.cell_volume() * sum_over(frame_.cells, [&](const Index<D>& I) {
         const real part = liquid_part(I);
         if (part <= 0) return 0.0;
         Vec<D> from_origin = frame_.centre(I) - frame_.origin;
-        const real fraction = surface_.fraction(I);
-        if (fraction > 0) {
-            const Vec<D> moment = surface_.moment(I);
-            for (int d = 0; d < D; ++d) from_origin[d] += frame_.h[d] * moment[d] / fraction;
-        }
+        const Vec<D> from_centre = middle(I);
+        for (int d = 0; d < D; ++d) from_origin[d] += frame_.h[d] * from_centre[d];
         return part * dot(gravity, from_origin);
     });
 }

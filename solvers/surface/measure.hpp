@@ -29,6 +29,7 @@ private:
         if (part_) return (*part_)(I);
         return !closed_.empty() && closed_(I) ? 0 : surface_.open_part(I) * surface_.fraction(I);
     }
+    Vec<D> middle(const Index<D>& I) const;
     real crossing(const Index<D>& I, int axis) const;
     template <class F>
     real sum_over_faces(int a, F&& f) const;
