@@ -31,7 +31,8 @@ bool is_still_there(int descriptor, const std::filesystem::path& path) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder) : folder_(folder), path_(folder / file_name) {
+FolderLock::FolderLock(const std::filesystem::path& folder, IfTaken if_taken)
+    : folder_(folder), path_(folder / file_name), if_taken_(if_taken) {
     while (!try_once()) {
     }
 }
@@ -40,7 +41,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) : folder_(folder), p
 bool FolderLock::try_once() {
     descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor_ < 0) throw OutputError("cannot write " + path_.string() + ": " + std::strerror(errno));
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (flock(descriptor_, if_taken_ == IfTaken::wait ? LOCK_EX : LOCK_EX | LOCK_NB) != 0) {
         if (errno == EINTR) return close(descriptor_), false;
         if (errno == EWOULDBLOCK) refuse();
         unlocked_ = std::strerror(errno);

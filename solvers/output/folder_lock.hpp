@@ -9,9 +9,11 @@ class FolderLock {
 public:
     static constexpr const char* file_name = ".weir_lock";
 
-    /// Takes the lock. Throws BadInput, with the process that has it, where another one has it. Where the file system has no locks the
-    /// folder is used without one, and unlocked() says why.
-    explicit FolderLock(const std::filesystem::path& folder);
+    enum class IfTaken { refuse, wait };
+
+    /// Takes the lock, or waits until another process releases it. Throws BadInput, with the process that has it, where it may not wait.
+    /// Where the file system has no locks the folder is used without one, and unlocked() says why.
+    explicit FolderLock(const std::filesystem::path& folder, IfTaken if_taken = IfTaken::refuse);
     /// Removes the file and releases the lock.
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;
@@ -25,6 +27,7 @@ private:
     [[noreturn]] void refuse() const;
 
     std::filesystem::path folder_, path_;
+    IfTaken if_taken_;
     int descriptor_ = -1;
     std::string unlocked_;
 };

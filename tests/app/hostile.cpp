@@ -332,3 +332,21 @@ TEST("two programs do not write verdicts into one folder: weir validate ends wit
     EXPECT_EQ(weir_says({"validate", "small/", "--out", "out", "--threads", "1"}).code, 0);
     EXPECT_FALSE(fs::exists("out/.weir_lock"));
 }
+
+TEST("nor tables of limits and of cost") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    fs::create_directory("out");
+    const weir::output::FolderLock lock("out");
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"stability", "taylor_green", "--floors"},
+                                                  {"cost", "cavity"},
+                                                  {"cost", "--report-table"},
+                                                  {"cost", "--effects"}}) {
+        std::vector<std::string> all = words;
+        all.insert(all.end(), {"--out", "out", "--threads", "1"});
+        const Answer answer = weir_says(all);
+        EXPECT_EQ(answer.code, 2) << words[0];
+        EXPECT_NE(answer.text.find("out: another run writes into this folder (process "), std::string::npos) << answer.text;
+        EXPECT_EQ(std::distance(fs::directory_iterator("out"), fs::directory_iterator()), 1) << words[0];
+    }
+}

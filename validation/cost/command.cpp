@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
+#include "output/folder_lock.hpp"
 #include "output/machine.hpp"
 #include "scene/names.hpp"
 #include "validation/cost/report_table.hpp"
@@ -10,6 +11,7 @@
 #include "validation/page/text.hpp"
 #include "validation/report/command.hpp"
 #include "validation/report/pins.hpp"
+#include "validation/report/publish.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -76,6 +78,7 @@ json read_json(const std::filesystem::path& file) {
 /// Copies what was written into the published folder and writes its page anew, with the studies that were there before.
 void publish_studies(const std::vector<json>& studies, const std::filesystem::path& out, const std::filesystem::path& folder) {
     for (const auto* kind : {"csv", "svg", "json"}) std::filesystem::create_directories(folder / kind);
+    const auto lock = lock_published(folder, out);
     for (const json& study : studies)
         for (const auto* kind : {"csv", "svg", "json"}) {
             const std::string name = study["study"].get<std::string>() + "." + kind;
@@ -99,6 +102,7 @@ int report_table_command(const CostOptions& options, const Solvers& solvers) {
     if (options.all || !options.names.empty()) throw BadInput("weir cost --report-table takes neither names nor --all");
     const ReportTable table = read_report_table(case_root() / "report_table");
     output::require_writable(options.out);
+    const output::FolderLock lock(options.out);
     const json measured = measure_report_table(table, solvers, options.drawn);
     fmt::print("{}", report_table_text(measured));
     output::write_file(options.out / "report_table.json", measured.dump(1) + "\n");
@@ -128,6 +132,7 @@ int cost_command(const CostOptions& options, const Solvers& solvers) {
     }
     if (!options.compare.empty()) return compare_studies(studies, options, solvers);
     output::require_writable(options.out);
+    const output::FolderLock lock(options.out);
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
     const output::Machine machine = output::this_machine();
     std::vector<json> done;

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "output/atomic_file.hpp"
+#include "output/folder_lock.hpp"
 #include "output/machine.hpp"
 #include "validation/cost/effect_scene.hpp"
 #include "validation/cost/load.hpp"
@@ -113,6 +114,7 @@ std::string effects_markdown(const std::vector<EffectCost>& list, const std::str
 
 int effects_command(const EffectCostOptions& options, const std::vector<std::filesystem::path>& folders, bool quiet) {
     for (const auto& folder : folders) output::require_writable(folder);
+    const output::FolderLock lock(folders.at(0));
     const bool talk = !quiet && isatty(STDERR_FILENO);
     const auto list = measure_effects(sim::registry(), options, [&](const std::string& what) {
         if (talk) std::fprintf(stderr, "\r\033[K%s", what.c_str());

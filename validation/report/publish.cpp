@@ -124,8 +124,15 @@ std::string index_markdown(const json& verdicts) {
     return s + fmt::format("---\nWritten by weir {} (commit {}) on {}.\n", m.version, m.commit, machine_text(m));
 }
 
+std::unique_ptr<output::FolderLock> lock_published(const std::filesystem::path& folder, const std::filesystem::path& out) {
+    if (std::filesystem::exists(out) && std::filesystem::equivalent(folder, out)) return nullptr;
+    return std::make_unique<output::FolderLock>(folder, output::FolderLock::IfTaken::wait);
+}
+
 void publish(const std::vector<CaseResult>& results, const std::vector<json>& pins, const std::filesystem::path& out,
              const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    const auto lock = lock_published(folder, out);
     const output::Machine machine = output::this_machine();
     std::set<std::string> measured;
     json entries = json::array();

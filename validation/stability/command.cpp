@@ -2,10 +2,12 @@
 
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
+#include "output/folder_lock.hpp"
 #include "output/machine.hpp"
 #include "scene/names.hpp"
 #include "validation/page/sections.hpp"
 #include "validation/report/command.hpp"
+#include "validation/report/publish.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -64,8 +66,9 @@ std::vector<StressStudy> prepared(const StabilityOptions& options, const Solvers
 }
 
 /// Writes the page anew, with the studies that were there before.
-void publish_limits(const std::vector<json>& studies, const std::filesystem::path& folder) {
+void publish_limits(const std::vector<json>& studies, const std::filesystem::path& out, const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder / "svg");
+    const auto lock = lock_published(folder, out);
     for (const json& study : studies) {
         output::write_file(folder / (study["study"].get<std::string>() + ".json"), study.dump(1) + "\n");
         for (const json& map : study["maps"])
@@ -101,6 +104,7 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
     }
     if (!options.compare.empty()) return compare_limits(studies, options.compare, solvers);
     output::require_writable(options.out);
+    const output::FolderLock lock(options.out);
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
     const output::Machine machine = output::this_machine();
     std::vector<json> done;
@@ -133,7 +137,7 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
         for (const Limit& l : limits) seconds += l.seconds;
         write_pins(pins_json(numbers_of(limits), seconds), options.publish, study.name);
     }
-    if (!options.publish.empty()) publish_limits(done, options.publish);
+    if (!options.publish.empty()) publish_limits(done, options.out, options.publish);
     return sound || options.steps > 0 ? exit_success : exit_claim_failed;
 }
 

@@ -4,7 +4,11 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <memory>
+#include <thread>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -41,6 +45,21 @@ TEST("a lock ends with its process, whose file is no obstacle") {
     waitpid(child, nullptr, 0);
     EXPECT_TRUE(std::filesystem::exists(folder.path() / FolderLock::file_name));
     EXPECT_EQ(FolderLock(folder.path()).unlocked(), "");
+}
+
+TEST("a lock that may wait is taken when the other one is released") {
+    weir::test::TemporaryFolder folder;
+    auto first = std::make_unique<FolderLock>(folder.path());
+    std::atomic<bool> released = false;
+    std::thread other([&] {
+        const FolderLock second(folder.path(), FolderLock::IfTaken::wait);
+        EXPECT_TRUE(released);
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    released = true;
+    first.reset();
+    other.join();
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / FolderLock::file_name));
 }
 
 TEST("no link leads the lock to another file") {
