@@ -24,11 +24,13 @@ struct Multipliers {
     const float* rest = nullptr;     // density that each is to have, over the rest density; null: 1
 };
 
-/// What a multiplier λ = −C/(Σ|∇C|² + ε) that pushes changes by as C does. A particle between a body and a wall has few neighbours, and
-/// gradients that cancel: the sum is far below what it is in a liquid, and a body that is thought to meet a liquid there is thrown. At
-/// least `give`, which a particle beside a wall has: λ/C says nothing where C is round-off.
+/// Change of a pushing multiplier λ = −C/(Σ|∇C|² + ε) per change of C. `give`, which a particle beside a wall has, is right within a factor
+/// of 2 in a liquid, and iterations that answer a constraint up to twice as strongly as it is still converge. A particle between a body and
+/// a wall has few neighbours, and gradients that cancel: λ is many times as stiff, and iterations with `give` throw the body. There it is
+/// λ's own. (λ/C is meaningless where C is round-off.)
 inline real stiffness(real lambda, real constraint, real give) {
-    return std::abs(constraint) > 1e-5 ? std::max(give, -lambda / constraint) : give;
+    const real own = std::abs(constraint) > 1e-5 ? -lambda / constraint : give;
+    return own > 2 * give ? own : give;
 }
 
 /// In one iteration bodies go as far as the multipliers of the particles that they meet push, which change by what they give way (by the
