@@ -71,7 +71,8 @@ PROBLEMS = []  # of the list, told all at once
 
 def known_tests():
     """Names of ctest entries, by the files that make them."""
-    names = {"stability.floors", "cost.studies"}
+    names = {"cost.studies"}
+    names |= {f"stability.limits.{study.parent.name}" for study in SOURCE.glob("cases/*/stability.toml")}
     names |= {f"validate.{case.parent.name}" for case in SOURCE.glob("cases/*/case.toml")}
     for file in SOURCE.glob("tests/**/CMakeLists.txt"):
         for kind, name, rest in re.findall(r"weir_test\((\w+) (\w+)\s+SOURCES ([^)]*)\)", file.read_text()):
