@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace weir {
@@ -17,6 +19,7 @@ namespace weir {
 /// projection).
 enum class Stage { source, force, carried, implicit, finish };
 inline constexpr int stage_count = 5;
+inline constexpr std::array<const char*, stage_count> stage_names{"source", "force", "carried", "implicit", "finish"};
 
 /// The fields that effects asked for, by name. Two effects that need the same field share it.
 class FieldPlan {
@@ -70,7 +73,12 @@ struct Effect {
 template <class State>
 class Effects {
 public:
+    /// `runs`: the stages of the solver's step. An effect of another stage would never act.
+    Effects(std::string_view solver, std::vector<Stage> runs) : solver_(solver), runs_(std::move(runs)) {}
+
+    /// Throws std::logic_error for an effect whose stage the solver does not run.
     void add(std::string_view name, std::unique_ptr<Effect<State>> effect) {
+        if (std::find(runs_.begin(), runs_.end(), effect->stage()) == runs_.end()) refuse(name, effect->stage());
         auto& list = at_[static_cast<std::size_t>(effect->stage())];
         list.push_back({std::string(name), effect_pass(name), std::move(effect)});
     }
@@ -133,6 +141,14 @@ private:
         for (const auto& list : at_)
             for (const Entry& e : list) f(e);
     }
+    [[noreturn]] void refuse(std::string_view name, Stage stage) const {
+        std::string list;
+        for (const Stage s : runs_) list += (list.empty() ? "" : ", ") + std::string(stage_names[static_cast<std::size_t>(s)]);
+        throw std::logic_error("effect \"" + std::string(name) + "\" acts at stage \"" + stage_names[static_cast<std::size_t>(stage)] +
+                               "\", which solver \"" + solver_ + "\" does not run; its stages: " + list);
+    }
+    std::string solver_;
+    std::vector<Stage> runs_;
     std::array<std::vector<Entry>, stage_count> at_;
     std::vector<EffectPlan> declared_;
 };

@@ -156,7 +156,7 @@ std::vector<scene::Variant> effect_schemas() {
 }
 
 Effects<State> make_effects(const scene::Scene& scene, const State& state, const char* moved_in) {
-    Effects<State> effects;
+    Effects<State> effects(scene.solver(), {Stage::source, Stage::force, Stage::implicit});
     if (scene.effect("gravity")) {
         if (state.push[0] != 0 || state.push[1] != 0)
             effects.add("gravity", std::make_unique<Slope>());

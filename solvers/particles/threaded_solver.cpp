@@ -19,7 +19,8 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
       walls_(wall_params<single::WallParams>(scheme, fluid_.domain)),
       pairs_(passes_for(scheme.backend.isa), fluid_.domain.frame()),
       solids_(fluid_.domain, wall_params<plain::WallParams>(scheme, fluid_.domain)),
-      flow_{fluid_, pairs_, kernels_, {}, {}, scheme.kernel()} {
+      flow_{fluid_, pairs_, kernels_, {}, {}, scheme.kernel()},
+      effects_(scene.solver(), {Stage::force, Stage::finish}) {
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
     this->take_heat(scene);

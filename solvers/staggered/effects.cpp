@@ -1,5 +1,7 @@
 #include "staggered/effects.hpp"
 
+#include <utility>
+
 namespace weir::staggered {
 
 std::vector<scene::Variant> schemas_of(const EffectKinds& kinds) {
@@ -9,8 +11,8 @@ std::vector<scene::Variant> schemas_of(const EffectKinds& kinds) {
 }
 
 template <int D>
-Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& scene) {
-    Effects<MacState<D>> effects;
+Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& scene, std::vector<Stage> runs) {
+    Effects<MacState<D>> effects(scene.solver(), std::move(runs));
     for (const auto& kind : kinds) {
         const scene::Table* table = scene.effect(kind.schema.name);
         if (!table) continue;
@@ -22,7 +24,7 @@ Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& 
     return effects;
 }
 
-template Effects<MacState<2>> make_effects(const EffectKinds&, const scene::Scene&);
-template Effects<MacState<3>> make_effects(const EffectKinds&, const scene::Scene&);
+template Effects<MacState<2>> make_effects(const EffectKinds&, const scene::Scene&, std::vector<Stage>);
+template Effects<MacState<3>> make_effects(const EffectKinds&, const scene::Scene&, std::vector<Stage>);
 
 }  // namespace weir::staggered

@@ -27,9 +27,9 @@ using EffectKinds = std::vector<EffectKind>;
 /// Their schemas, in registry order: the order in which effects act in a stage.
 std::vector<scene::Variant> schemas_of(const EffectKinds& kinds);
 
-/// Those of the kinds that the scene names.
+/// Those of the kinds that the scene names, for a solver that runs these stages.
 template <int D>
-Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& scene);
+Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& scene, std::vector<Stage> runs);
 
 /// du/dt = g: acts on every fluid.
 EffectKind gravity();

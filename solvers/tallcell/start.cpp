@@ -27,7 +27,7 @@ TallCells<D>::TallCells(const scene::Scene& scene)
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),
-      effects_(make_effects<D>(body_forces(), scene)),
+      effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
       pressure_(frame_, up_, options_.poisson),

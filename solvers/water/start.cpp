@@ -28,7 +28,7 @@ Water<D>::Water(const scene::Scene& scene)
       frame_(state_.u, state_.sides),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
-      effects_(make_effects<D>(body_forces(), scene)),
+      effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
       hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {

@@ -20,7 +20,7 @@ real some_value(const Index<D>& I, real phase) {
 
 TEST_IN_2D_AND_3D("buoyancy pushes every inner face along y by the mean of its two cells: warmth upwards, smoke downwards") {
     const auto scene = test::mac_scene(test::unit_box(D, 7, "effects = { buoyancy = { alpha = 0.3, beta = 0.7, ambient = 1.5 } }\n"));
-    auto effects = make_effects<D>(effect_kinds(), scene);
+    auto effects = make_effects<D>(effect_kinds(), scene, stages);
     MacState<D> state(scene, effects.plan());
     auto &T = state["temperature"], &smoke = state["smoke"];
     for_each_cell(state.extent(), [&](const Index<D>& I) { T(I) = some_value<D>(I, 0), smoke(I) = some_value<D>(I, 1); });
@@ -38,7 +38,7 @@ TEST_IN_2D_AND_3D("along paths cooling and decay leave exp(-rate dt) of what fie
     const auto scene = test::mac_scene(test::unit_box(
         D, 7,
         "effects = { cooling = { rate = 0.7, ambient = 1.2 }, decay = { rate = 0.4 } }\nscheme = { advection = \"semi_lagrangian\" }\n"));
-    auto effects = make_effects<D>(effect_kinds(), scene);
+    auto effects = make_effects<D>(effect_kinds(), scene, stages);
     MacState<D> state(scene, effects.plan());
     auto &T = state["temperature"], &smoke = state["smoke"];
     for_each_cell(state.extent(), [&](const Index<D>& I) { T(I) = some_value<D>(I, 0), smoke(I) = some_value<D>(I, 1); });
@@ -48,6 +48,22 @@ TEST_IN_2D_AND_3D("along paths cooling and decay leave exp(-rate dt) of what fie
         ASSERT_NEAR(T(I), 1.2 + std::exp(-0.35) * (some_value<D>(I, 0) - 1.2), 1e-15);
         ASSERT_NEAR(smoke(I), std::exp(-0.2) * some_value<D>(I, 1), 1e-15);
     });
+}
+
+TEST("an effect whose stage a solver does not run is refused by name when it is registered") {
+    struct Late : MacEffect<2> {
+        Stage stage() const override { return Stage::finish; }
+        void apply(MacState<2>&, real) override {}
+    };
+    Effects<MacState<2>> effects("mac_water", {Stage::source, Stage::force});
+    try {
+        effects.add("drag", std::make_unique<Late>());
+        ADD_FAILURE() << "it would never act";
+    } catch (const std::logic_error& wrong) {
+        EXPECT_STREQ(wrong.what(),
+                     "effect \"drag\" acts at stage \"finish\", which solver \"mac_water\" does not run; its stages: source, force");
+    }
+    EXPECT_TRUE(effects.plans().empty());
 }
 
 TEST_IN_2D_AND_3D("an emitter gives the faces inside it its velocity along their own axis, and no others") {
