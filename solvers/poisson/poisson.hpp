@@ -77,18 +77,23 @@ public:
     virtual bool shares_planes() const { return false; }
 };
 
-/// A method of the registry. `iterative`: its error can be studied against its iteration count.
+/// A method of the registry: its makers, and what callers decide by.
 struct Method {
     std::string name;
     std::string doc;
-    bool iterative = true;
-    bool whole_box_only = false;  // needs every cell fluid, uniform weights and closed sides (dct)
-    bool needs_petsc = false;     // see has_petsc()
+    std::unique_ptr<Solver<2>> (*make_2d)(const Options&);
+    std::unique_ptr<Solver<3>> (*make_3d)(const Options&);
+    bool iterative = true;            // its error can be studied against its iteration count
+    bool whole_box_only = false;      // requires every cell fluid, uniform weights and closed sides (dct)
+    bool needs_petsc = false;         // see has_petsc()
+    bool distributed_levels = false;  // in parallel (MPI) ranks share the planes of its levels: see multigrid_shares()
 };
 
 /// multigrid, cg_mic0, cg_jacobi, cg, eigen_iccg, cholmod, red_black, jacobi, dct, and PETSc's petsc_gamg, petsc_boomeramg, petsc_icc:
 /// always in this order, whatever this weir was built with.
 const std::vector<Method>& methods();
+/// Throws BadInput for an unknown name, and names the known ones.
+const Method& method_named(std::string_view name);
 /// Can PETSc's methods be made here? Loads its library at the first question.
 bool has_petsc();
 

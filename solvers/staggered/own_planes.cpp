@@ -7,11 +7,17 @@
 
 namespace weir::staggered {
 
+namespace {
+
+const poisson::Method& method_of(const scene::Scene& scene) { return poisson::method_named(scene.root().text("scheme.poisson.method")); }
+
+}  // namespace
+
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut) { return !slabs().holds_whole() && could_hold_own_planes(scene, cut); }
 
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
     if (cut.empty()) return false;
-    if (scene.root().text("scheme.poisson.method") != "multigrid") return false;
+    if (!method_of(scene).distributed_levels) return false;
     const auto shares = [&]<int D>() {
         const Lattice<D> lattice(scene);
         const geometry::Sides<D> sides(scene);
@@ -28,9 +34,8 @@ bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
 
 std::string pressure_by_all(const scene::Scene& scene, const Cut& cut) {
     if (could_hold_own_planes(scene, cut)) return "the levels of the pressure of fewer than 20,000 cells";
-    const std::string method = scene.root().text("scheme.poisson.method");
-    if (method == "multigrid") return "the levels of the pressure, all of them";
-    return method.starts_with("petsc") ? "the matrix of the pressure" : "the pressure";
+    if (method_of(scene).distributed_levels) return "the levels of the pressure, all of them";
+    return method_of(scene).needs_petsc ? "the matrix of the pressure" : "the pressure";
 }
 
 template <int D>

@@ -19,7 +19,7 @@ std::vector<std::string> not_counted(const scene::Scene& scene) {
         if (lists(list)) keys.emplace_back(list);
     if (scene.effect("volume_control")) keys.emplace_back("effects.volume_control");
     if (scene.root().number_or("time.stop_when_steady", 0) > 0) keys.emplace_back("time.stop_when_steady");
-    if (scene.text("scheme.poisson.method").starts_with("petsc")) keys.emplace_back("scheme.poisson.method");
+    if (poisson::method_named(scene.text("scheme.poisson.method")).needs_petsc) keys.emplace_back("scheme.poisson.method");
     return keys;
 }
 
