@@ -33,7 +33,7 @@ struct Problem {
     std::string hint{};     // "known: ...", shown behind the underline; may be empty
 };
 
-/// All problems of one scene at once. what() is the whole report, as a user sees it (STYLE: file:line:column: message, line, underline).
+/// All problems of one scene at once. what() is the whole report, as a user sees it (file:line:column: message, line, underline).
 struct BadScene : BadInput {
     BadScene(std::vector<Problem> problems, std::string_view source);
     std::vector<Problem> problems;
