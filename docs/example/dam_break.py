@@ -1,4 +1,4 @@
-"""A column of water collapses: three ways to carry velocity between markers and grid, beside the experiment of Martin & Moyce (1952).
+"""A column of water collapses: three transfers of velocity between markers and grid, compared with Martin & Moyce (1952).
 
     PYTHONPATH=build/release/python /usr/bin/python3 docs/example/dam_break.py fronts.png
 """

@@ -1,4 +1,4 @@
-// Runs a scene and reads a field at the end: the greatest pressure, or the fastest particle where there is no pressure.
+// Runs a scene and reads a field at the end: the largest pressure, or the largest particle speed if the solver has no pressure.
 #include <weir/sim/simulation.hpp>
 
 #include <algorithm>
@@ -10,7 +10,7 @@ int main(int argc, char** argv) try {
     while (!simulation.finished()) simulation.step();
     std::printf("t = %g s, %lld steps, ", simulation.time(), static_cast<long long>(simulation.steps()));
     const weir::FieldSet fields = simulation.fields();
-    if (const auto* pressure = fields.find("pressure")) {  // every field is asked for by name; nullptr: this solver does not have it
+    if (const auto* pressure = fields.find("pressure")) {  // nullptr: the solver has no field of this name
         std::printf("max p = %g Pa\n", *std::max_element(pressure->data[0].begin(), pressure->data[0].end()));
     } else if (const auto* velocity = fields.find(weir::particle_set_name, "velocity")) {
         double fastest = 0;
@@ -21,7 +21,7 @@ int main(int argc, char** argv) try {
         }
         std::printf("max |u| = %g m/s of %zu particles\n", fastest, velocity->data[0].size());
     }
-} catch (const weir::BadInput& error) {  // a scene that says what cannot be: with its line, and what is allowed
+} catch (const weir::BadInput& error) {  // an error in the scene: the message has the line and the allowed values
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
 }

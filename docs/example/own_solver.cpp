@@ -1,5 +1,5 @@
-// A solver and an effect of one's own, from outside weir: heat that spreads on a grid, and a heater. Registering them is all; scenes,
-// messages, probes, checkpoints, --set and the rest of weir then know them.
+// A user-defined solver and effect outside the tree of weir: heat conduction on a grid, and a heater. Registration is sufficient: scenes,
+// messages, probes, checkpoints, --set and the other parts of weir then support them.
 //
 //   dT/dt = alpha (d2T/dx2 + d2T/dy2) + heating        explicit Euler, stable for dt <= h^2 / (4 alpha)
 #include <weir/core/effects.hpp>
@@ -13,10 +13,10 @@ namespace {
 
 using weir::real;
 
-/// What the solver carries from step to step, and what its effects act on.
+/// The state of the solver, on which its effects act.
 struct Plate {
     weir::GridView grid;
-    std::vector<real> temperature;  // at cells' centres, x fastest [K]
+    std::vector<real> temperature;  // at cell centres, x fastest [K]
     real time = 0;                  // [s]
 };
 
@@ -55,7 +55,7 @@ public:
         const auto timed = passes_.time("spread");
         const int nx = plate_.grid.cells[0], ny = plate_.grid.cells[1];
         const std::vector<real> old = plate_.temperature;
-        const auto at = [&](int x, int y) {  // walls keep their heat
+        const auto at = [&](int x, int y) {  // adiabatic walls
             return old[static_cast<std::size_t>(std::clamp(y, 0, ny - 1) * nx + std::clamp(x, 0, nx - 1))];
         };
         const real h = plate_.grid.spacing[0], k = plate_.grid.spacing[1];
@@ -100,7 +100,7 @@ private:
     weir::Passes passes_;
 };
 
-/// How it joins: what a scene may tell it, and its maker.
+/// The registration: the schema of its keys and effects, and the factory function.
 weir::scene::SolverKind spreading() {
     using weir::scene::Type;
     weir::scene::SolverKind kind;
@@ -138,14 +138,14 @@ int main() try {
     const auto schemas = weir::scene::schemas_of(kinds);
     weir::Simulation simulation(weir::scene::parse(text, "plate.toml", schemas), kinds);
     simulation.run_until(1.0);
-    simulation.set("alpha", 0.02);  // marked as steerable above
+    simulation.set("alpha", 0.02);  // steerable, see the schema
     simulation.run_until(2.0);
     const auto temperature = simulation.fields().find("temperature")->data[0];
     double mean = 0;
     for (const double t : temperature) mean += t / static_cast<double>(temperature.size());
     std::printf("t = %g s, %lld steps, mean T = %.6f K, corner T = %.3f K\n", simulation.time(), static_cast<long long>(simulation.steps()),
                 mean, simulation.probe_series("corner").column("temperature").back());
-    try {  // as any solver's scene: what is misspelt is refused, with the name that was meant
+    try {  // as for every solver: a misspelt key is refused with a suggestion
         weir::scene::parse(std::string(text) + "alhpa = 1\n", "plate.toml", schemas);
     } catch (const weir::BadInput& why) {
         std::printf("%s\n", why.what());

@@ -1,5 +1,5 @@
-// Steers a run: a scene made in code, observers at frames and every few steps, a key that changes, a field and markers that are edited
-// in place, and a probe read as an array.
+// Steers a run: builds a scene in code, observes frames and every fifth step, changes a key, edits a field and markers, and reads a probe
+// as an array.
 #include <weir/sim/registry.hpp>
 #include <weir/sim/simulation.hpp>
 
@@ -11,7 +11,7 @@
 using weir::scene::Builder;
 
 int main() try {
-    // A pond, as a scene file would say it, checked by the same schema.
+    // A pond, equivalent to a scene file and checked by the same schema.
     Builder scene;
     scene.set("solver", "mac_water").set("dim", std::int64_t{2}).set("grid.cells", {48, 48}).set("grid.size", {1, 1}).set("time.end", 0.6);
     scene.set("effects.gravity.g", {0, -9.81}).set("output.every", 0.1);
@@ -19,7 +19,7 @@ int main() try {
     scene.add("probes", Builder().set("name", "level").set("kind", "gauge").set("at", {0.5, 0}));
     weir::Simulation simulation(scene.scene(weir::sim::schemas()));
 
-    // Looks on at frames, and acts in the run: first a drop, then a push to the right, then the moon.
+    // At frame 1 adds a drop, at frame 2 accelerates the water to the right, at frame 3 sets the gravity of the moon.
     simulation.observe_frames([](weir::Simulation& run, const weir::StepReport& last) {
         std::printf("t = %.1f s, step %lld, dt = %.2g s\n", run.time(), static_cast<long long>(run.steps()), last.dt);
         if (run.frame() == 1) {

@@ -1,4 +1,4 @@
-"""Of mkdocs: the search index as a script, since a page that was opened from a disk may load scripts and nothing else."""
+"""Hook of mkdocs: writes the search index as a script, because a page opened from disk may load scripts but no JSON."""
 import pathlib
 
 

@@ -1,8 +1,7 @@
 """The book as one static site: python3 make.py FOLDER [--pages-only]
 
-Gathers the pages of docs/ into FOLDER/source/pages, puts what comes from results/ in its place (between the marks `<!-- from results: NAME -->`
-and `<!-- end -->`), copies the pictures, mathematics and files that pages point to, and lets mkdocs write FOLDER/site. The site
-asks the network for nothing and opens from a disk.
+Copies the pages of docs/ into FOLDER/source/pages. Inserts the tables from results/ between the marks `<!-- from results: NAME -->` and
+`<!-- end -->`. Copies the pictures, KaTeX and the files to which pages link. mkdocs then writes FOLDER/site. The site opens from disk and needs no network.
 """
 import json
 import os
@@ -20,14 +19,14 @@ code = re.compile(r"^```.*?^```[ \t]*$|`(?:[^`\n]|\n(?!\n))*`", re.M | re.S)
 marked = re.compile(r"(<!-- from results: (\w+) -->\n).*?(<!-- end -->)", re.S)
 
 
-# ---- what comes from results/
+# ---- tables from results/
 
 def cell(text):
     return str(text).replace("|", "\\|").replace("\n", " ")
 
 
 def choosing(results):
-    """Every published study of cost: its question, what to take, the settings that no other beats."""
+    """Every published cost study: its question, the recommendation, the configurations of the Pareto front."""
     text = []
     for path in sorted((results / "cost/json").glob("*.json")):
         study = json.loads(path.read_text())
@@ -35,7 +34,7 @@ def choosing(results):
         text += [f"- {line}" for line in study["advice"]]
         front = [p for p in study["points"] if p["front"]]
         text += ["", "No other setting is both cheaper and more accurate than one of these:", "",
-                 f"| setting | {study['error']} | {price(study)} | ms a step | MB |", "|---|---|---|---|---|"]
+                 f"| configuration | {study['error']} | {price(study)} | ms per step | MB |", "|---|---|---|---|---|"]
         text += [f"| {cell(p['name'])} | {p['error']:.4g} | {p['seconds_per_second']:.4g} | {p['ms_per_step']:.4g} | {p['bytes'] / 1e6:.3g} |" for p in front]
         text += ["", f"{study['machine']}, {study['threads']} thread(s), {study['size']} size, commit {study['commit']}."]
         if study["source"]:
@@ -45,11 +44,11 @@ def choosing(results):
 
 
 def price(study):
-    return "s a step" if study["price"] == "step" else "s per simulated s"
+    return "s per step" if study["price"] == "step" else "s per simulated s"
 
 
 def limits(results):
-    """Every published limit, solver by solver: a row for each thing that is pushed, with the methods that end alike together."""
+    """Every published limit by solver: one row per axis; methods with the same limit share a row."""
     rows = {}
     for path in sorted((results / "stability").glob("*.json")):
         study = json.loads(path.read_text())
@@ -60,10 +59,10 @@ def limits(results):
     text = []
     for solver in sorted(rows):
         text += [f"### {solver}", ""]
-        for kind, title in (("limit", "Pushed until something breaks"), ("guard", "A guard takes over, or refuses"), ("units", "The same scene in other units")):
+        for kind, title in (("limit", "Raised until an invariant fails"), ("guard", "Guards: a substitute method, or a refusal"), ("units", "The same scene in other units")):
             if kind not in rows[solver]:
                 continue
-            text += [f"**{title}**", "", "| what is pushed | last good | what broke first |", "|---|---|---|"]
+            text += [f"**{title}**", "", "| axis | last stable value | first failure |", "|---|---|---|"]
             for (study, axis, why), ends in rows[solver][kind].items():
                 what = f"**{cell(axis)}** ({study}): {cell(why)}"
                 for (last, broke), methods in ends.items():
@@ -76,7 +75,7 @@ def limits(results):
 
 def last_good(limit):
     more = [f"theory {limit['theory']:g}"] if limit.get("theory") else []
-    more += [f"tests hold {limit['floor']:g}"] if limit["guarded"] else []
+    more += [f"tests guarantee {limit['floor']:g}"] if limit["guarded"] else []
     return limit["last_stable_text"] + (f" ({', '.join(more)})" if more else "")
 
 
@@ -92,11 +91,11 @@ def with_results(text, results):
 # ---- the pages
 
 class Pages:
-    """The pages of docs/ and what they point to, copied so that every link stays inside the site."""
+    """The pages of docs/ and the files to which they link, copied so that every link stays inside the site."""
 
     def __init__(self, into):
         self.into = into
-        self.more = {}  # files outside docs/ that pages of the book show, by their place in the site
+        self.more = {}  # files outside docs/ to which pages link, by their path in the site
 
     def write(self):
         for source in sorted((root / "docs").rglob("*")):
@@ -119,7 +118,7 @@ class Pages:
     def page(self, source, target, follow):
         text = with_results(source.read_text(), root / "results")
         parts, at = [], 0
-        for block in code.finditer(text):  # what stands in code is no link
+        for block in code.finditer(text):  # no links in code
             parts += [self.links(text[at:block.start()], source, target, follow), block[0]]
             at = block.end()
         return "".join(parts + [self.links(text[at:], source, target, follow)])
@@ -132,7 +131,7 @@ class Pages:
                 return match[0]
             file = (source.parent / path).resolve()
             if not file.exists():
-                raise SystemExit(f"{source.relative_to(root)}: there is no {to}")
+                raise SystemExit(f"{source.relative_to(root)}: link to a missing file: {to}")
             moved = self.moved(file, mark == "!", follow)
             if moved is None:
                 return label if mark else f"{label} (`{file.relative_to(root)}`)"
@@ -142,7 +141,7 @@ class Pages:
         return link.sub(place, text)
 
     def moved(self, file, is_picture, follow):
-        """Where the site has a file; None: nowhere."""
+        """The path of a file in the site; None: it is not in the site."""
         inside = file.relative_to(root)
         if inside.parts[:1] == ("docs",) and inside.parts[1:2] not in (("example",), ("site",)):
             return self.into / pathlib.PurePath(*inside.parts[1:])
@@ -151,7 +150,7 @@ class Pages:
             place.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, place)
             return place
-        if inside.parts[0] == "results":  # its pages are one file, which has everything
+        if inside.parts[0] == "results":  # one file contains all its pages
             return self.moved(root / "results/index.html", False, follow)
         if not follow or file.is_dir():
             return None
@@ -179,7 +178,7 @@ def make(folder):
             shutil.copyfile(katex / name, math / name)
         shutil.copytree(katex / "fonts", math / "fonts", ignore=lambda _, names: [n for n in names if not n.endswith(".woff2")])
     else:
-        print("no libjs-katex here: formulas stay as they are written", file=sys.stderr)
+        print("libjs-katex is not installed: formulas stay as TeX source", file=sys.stderr)
     return source
 
 
