@@ -50,6 +50,25 @@ TEST("down a slope water gains its depth times the slope's part of gravity, alon
     }
 }
 
+/// dq/dt = −g n² |q| q / h^(7/3) (Manning) or −c |q| q / h², taken at the end of the step: what is left solves q1 (1 + dt k |q1|/h²) = q.
+TEST("friction of the bed follows Manning's law and the quadratic law, at the end of the step, along the flow") {
+    for (const bool manning : {true, false}) {
+        const auto scene = waves(manning ? "effects.friction = { law = \"manning\", n = 0.08 }\n"
+                                         : "effects.friction = { law = \"quadratic\", c = 0.3 }\n");
+        const real dt = 0.5;
+        const State before(scene), now = after(scene, Stage::implicit, dt);
+        real most = 0;
+        for (std::size_t c = 0; c < before.plane.count(); ++c) {
+            const real h = before.h[c], q = std::hypot(before.qx[c], before.qz[c]), left = std::hypot(now.qx[c], now.qz[c]);
+            const real k = manning ? 9.81 * 0.08 * 0.08 / std::pow(h, 1.0 / 3) : 0.3;
+            ASSERT_NEAR(left * (1 + dt * k * left / (h * h)), q, 1e-15);  // round-off of some tenths
+            ASSERT_NEAR(now.qx[c] * before.qz[c], now.qz[c] * before.qx[c], 1e-16);
+            most = std::max(most, 1 - left / q);
+        }
+        EXPECT_GT(most, 0.1);  // it does something
+    }
+}
+
 TEST("damping leaves exp(-rate dt) of the discharge") {
     const auto scene = waves("effects.damping.rate = 0.7\n");
     const State before(scene), now = after(scene, Stage::implicit, 0.5);

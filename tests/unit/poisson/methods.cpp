@@ -7,6 +7,9 @@
 
 #include <Eigen/Dense>
 
+#include <cmath>
+#include <numbers>
+
 using namespace weir;
 using namespace weir::test;
 
@@ -255,4 +258,52 @@ TEST_IN_2D_AND_3D("PETSc, an independent referee, agrees with the multigrid on w
         // Residuals of 1e-12 times the condition number, which is below 1e5 for some 200 cells across.
         EXPECT_LT(largest_difference(ours, theirs), 1e-7 * largest(ours)) << name << ", " << report.iterations << " iterations";
     }
+}
+
+namespace {
+
+/// n × n cells of fluid in a ring of air, p = 0 at its cells' centres.
+Operator<2> in_air(int n) {
+    Operator<2> A;
+    A.cells = Grid<Cell, 2>(Index<2>::constant(n + 2), Cell::fluid);
+    for_each_cell<2>(A.cells.extent(), [&](const Index<2>& I) {
+        for (int a = 0; a < 2; ++a)
+            if (I[a] == 0 || I[a] == n + 1) A.cells(I) = Cell::air;
+    });
+    return A;
+}
+
+}  // namespace
+
+/// Young 1971: in natural order and in red-black order Gauss-Seidel leaves μ² of an error per iteration, μ = cos(π/(n + 1)) the largest
+/// eigenvalue of Jacobi's iteration. Overrelaxed it would leave far less, damped more.
+TEST("red-black Gauss-Seidel converges at the rate of theory") {
+    const int n = 16;
+    const auto A = in_air(n);
+    Grid<real, 2> mode(A.cells.extent()), zero(A.cells.extent()), b;
+    const real k = std::numbers::pi / (n + 1);
+    for_each_cell<2>(A.cells.extent(), [&](const Index<2>& I) { mode(I) = std::sin(k * I[0]) * std::sin(k * I[1]); });
+    poisson::residual(A, mode, zero, b);
+    for (auto& v : b.values()) v = -v;
+    const auto error = [&](int iterations) {
+        const auto solver = poisson::make_solver<2>("red_black", {.max_iterations = iterations, .fixed_iterations = true});
+        solver->setup(A);
+        Grid<real, 2> p(A.cells.extent());
+        solver->solve(p, b);
+        return largest_difference(p, mode);
+    };
+    EXPECT_NEAR(std::pow(error(60) / error(40), 1.0 / 20), std::cos(k) * std::cos(k), 1e-3);  // a mode is met from the first iterations on
+}
+
+/// Gustafsson 1978: with what is dropped added to the diagonal, the condition number grows as the cells across, without it as their
+/// square: with four times as many, twice as many iterations and not four times. Between them: 2 √2.
+TEST("modified incomplete Cholesky needs iterations as the root of the cells across") {
+    const auto iterations = [&](int n) {
+        const auto A = in_air(n);
+        const auto solver = poisson::make_solver<2>("cg_mic0", {.tolerance = 1e-8});
+        solver->setup(A);
+        Grid<real, 2> p(A.cells.extent());
+        return static_cast<real>(solver->solve(p, random_values<2>(A.cells.extent(), 3)).iterations);
+    };
+    EXPECT_LT(iterations(160) / iterations(40), 2 * std::numbers::sqrt2);
 }

@@ -41,6 +41,15 @@ TEST_IN_2D_AND_3D("a gauge finds the plane surface exactly, as linear interpolat
     EXPECT_NEAR(simulation.probe_series("p").values.back()[0], FakeSolver::surface(0.3, 0.1), 1e-14);
 }
 
+TEST("a gauge reads the height above the domain's floor, wherever the floor is") {
+    weir::Simulation simulation(
+        weir::scene::parse("solver = \"fake\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1], origin = [0, -0.25] }\n" +
+                               probe("kind = \"gauge\", at = [0.3, 0]"),
+                           "fake.toml", {weir::test::fake_kinds()[0].schema}),
+        weir::test::fake_kinds());
+    EXPECT_NEAR(simulation.probe_series("p").values[0][0], FakeSolver::surface(0.3, 0) + 0.25, 1e-14);
+}
+
 TEST("the front along x is the domain's end, half a cell beyond the last centre, where the outermost cells are liquid") {
     auto simulation = fake_simulation(probe("kind = \"front\", axis = \"x\""));
     EXPECT_NEAR(simulation.probe_series("p").values[0][0], 1.0, 1e-15);

@@ -1,4 +1,5 @@
 #include "sim/simulation.hpp"
+#include "sim/steadiness.hpp"
 
 #include "core/parallel.hpp"
 #include "sim/asked_times.hpp"
@@ -185,6 +186,15 @@ TEST("run_until stops exactly there, between frames as well") {
     EXPECT_DOUBLE_EQ(simulation.time(), 0.25);
     EXPECT_EQ(simulation.frame(), 2);
     EXPECT_FALSE(simulation.at_frame());
+}
+
+TEST("what is steady neither rises nor falls") {
+    auto early = weir::test::fake_simulation("time = { end = 1.0 }"), late = weir::test::fake_simulation("time = { end = 1.0 }");
+    late.run_until(0.2);
+    for (const bool falls : {true, false}) {  // its velocity is that of the start plus t everywhere
+        auto kept = weir::sim::grid_velocity((falls ? late : early).fields());
+        EXPECT_NEAR(weir::sim::change_and_keep((falls ? early : late).fields(), kept), 0.2, 1e-14) << falls;
+    }
 }
 
 TEST("a run that is asked to ends when its flow is steady, with a frame, and goes on from its checkpoint in the same way") {
