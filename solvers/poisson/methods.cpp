@@ -1,4 +1,4 @@
-// The registry of methods: one line each.
+// The registry of methods: one line per method.
 #include "core/error.hpp"
 #include "poisson/factories.hpp"
 
