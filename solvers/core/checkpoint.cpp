@@ -20,16 +20,16 @@ namespace weir {
 namespace {
 
 constexpr char magic[8] = {'w', 'e', 'i', 'r', 'c', 'p', '0', '1'};
-constexpr std::size_t piece = std::size_t{1} << 20;  // bytes of a file that are in memory at once
+constexpr std::size_t piece = std::size_t{1} << 20;  // bytes of a file held in memory at once
 
-/// FNV-1a over 64 bits: finds truncation and altered bytes; no defence against an adversary.
+/// FNV-1a over 64 bits: detects truncation and altered bytes; it does not protect against an adversary.
 constexpr std::uint64_t checksum_of_nothing = 0xcbf29ce484222325ull;
 std::uint64_t checksum(const std::byte* data, std::size_t count, std::uint64_t hash) {
     for (std::size_t i = 0; i < count; ++i) hash = (hash ^ std::to_integer<std::uint64_t>(data[i])) * 0x100000001b3ull;
     return hash;
 }
 
-/// A file with its checksum behind it, as it is written.
+/// A file being written, followed by its checksum.
 class Writer {
 public:
     explicit Writer(const std::filesystem::path& path) : file_(path, std::ios::binary | std::ios::trunc) {}
@@ -37,7 +37,7 @@ public:
         hash_ = checksum(static_cast<const std::byte*>(data), count, hash_);
         file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(count));
     }
-    /// Whether all of it has been written.
+    /// Returns whether every byte was written.
     bool close() {
         const std::uint64_t hash = hash_;
         file_.write(reinterpret_cast<const char*>(&hash), sizeof hash);
@@ -52,7 +52,7 @@ private:
 
 }  // namespace
 
-/// A file that is read in places. It stays what it was while another takes its name.
+/// A file that is read in parts. The open file stays unchanged when another file replaces its name.
 class Checkpoint::File {
 public:
     enum Fault : int { none, missing, foreign, altered };  // the worst last
@@ -70,7 +70,7 @@ public:
     File(const File&) = delete;
     File& operator=(const File&) = delete;
 
-    /// Where the blocks end and the checksum begins.
+    /// Offset at which the blocks end and the checksum begins.
     std::uint64_t end() const { return size_ - sizeof(std::uint64_t); }
     std::size_t bytes_read() const { return bytes_read_; }
 
@@ -91,7 +91,8 @@ public:
         return n;
     }
 
-    /// What is wrong with it as a whole, the same on all ranks. The checksum goes from rank to rank, each goes through a part.
+    /// Checks the file as a whole; the result is the same on all ranks. Each rank sums one part and passes the running checksum to the next
+    /// rank.
     Fault examine() {
         char found[sizeof magic] = {};
         Fault fault = is_file_ ? none : missing;
@@ -113,7 +114,7 @@ public:
     }
 
 private:
-    /// As far as this rank can tell: only the last sees the end of the sum.
+    /// Compares the checksum; only the last rank sees its end, the others return true.
     bool sum_is_right() {
         const auto rank = static_cast<std::uint64_t>(slabs().rank()), ranks = static_cast<std::uint64_t>(slabs().ranks());
         const std::uint64_t last = end() * (rank + 1) / ranks;
@@ -129,7 +130,7 @@ private:
                 read(at, room.data(), count);
                 hash = checksum(room.data(), count, hash);
             }
-        } catch (const BadInput&) {  // the next waits for its part of the sum
+        } catch (const BadInput&) {  // the next rank waits for its part of the checksum
             whole = false;
         }
         if (rank + 1 < ranks) slabs().trade({&to_next, 1});
@@ -218,7 +219,7 @@ Checkpoint Checkpoint::read(const std::filesystem::path& path) {
     return result;
 }
 
-/// Where each block of the file is.
+/// Records the offset of each block in the file.
 void Checkpoint::list_blocks() {
     std::uint64_t at = sizeof magic;
     const auto size_within = [&] {

@@ -1,6 +1,6 @@
-// A checkpoint is a list of named byte blocks. It is written to a temporary name and renamed, carries a checksum, and is refused
-// as a whole when truncated or altered. Of one that is read, blocks stay in the file until somebody asks for them or for a part of them:
-// over ranks each reads what it owns.
+// A checkpoint is a list of named byte blocks. It is written under a temporary name, carries a checksum, and is renamed when complete. A
+// truncated or altered file is rejected as a whole. When a checkpoint is read, blocks stay in the file until all or part of one is
+// requested. In parallel (MPI) each rank reads only what it owns.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -29,25 +29,26 @@ public:
     requires std::is_trivially_copyable_v<T>
     void put_value(const std::string& name, const T& value) { put(name, std::span<const T>(&value, 1)); }
 
-    /// Over ranks: this one's entries of a block of `all`, the first of which is number `begin`. All ranks put theirs; the file holds all.
+    /// In parallel: stores this rank's entries, from number `begin` on, of a block of `all` entries. Every rank stores its part; the file
+    /// holds the whole block.
     template <class T>
     void put_part(const std::string& name, std::span<const T> own, std::size_t begin, std::size_t all) {
         put(name, own);
         Block& block = blocks_[name];
         block.part = true, block.begin = begin * sizeof(T), block.all = all * sizeof(T);
     }
-    /// The same entries of a block that is whole, or of the part that was put.
+    /// Reads the same entries from a whole block, or from the part that was stored.
     template <class T>
     void get_part(const std::string& name, std::span<T> own, std::size_t begin, std::size_t all) const {
         if (find(name).all != all * sizeof(T)) refuse_size(name);
         copy(name, begin * sizeof(T), own.data(), own.size_bytes());
     }
 
-    /// The entries of a block that are here or in the file: all, or the part that was put.
+    /// The entries of a block that are available, in memory or in the file: all, or the part that was stored.
     struct Held {
         std::size_t begin, end, all;
         bool part;
-        /// As many of all as any other rank.
+        /// An equal share of all entries for each rank.
         Held share(int rank, int ranks) const {
             const auto r = static_cast<std::size_t>(rank), n = static_cast<std::size_t>(ranks);
             return {all * r / n, all * (r + 1) / n, all, true};
@@ -59,9 +60,9 @@ public:
         return {block.begin / sizeof(T), (block.begin + block.size()) / sizeof(T), block.all / sizeof(T), block.part};
     }
 
-    /// Of what a file held, before it is used as a place or a time. Throws std::runtime_error naming the block.
+    /// Checks values of a file before they are used as a position or a time. Throws std::runtime_error naming the block.
     static void require_finite(const std::string& name, std::span<const double> values);
-    /// The same of a count or an index.
+    /// The same check for a count or an index.
     static void require_within(const std::string& name, std::int64_t value, std::int64_t least, std::int64_t most);
 
     bool has(const std::string& name) const { return blocks_.count(name) != 0; }
@@ -87,17 +88,17 @@ public:
         return value;
     }
 
-    /// Writes beside `path` and renames; throws OutputError. Over ranks by the first, and all call it together.
+    /// Writes beside `path` and renames; throws OutputError. In parallel the call is collective and rank 0 writes.
     void write(const std::filesystem::path& path) const;
-    /// Throws BadInput when the file is missing, truncated, altered or of another version. Over ranks all call it together, each goes
-    /// through a part of the file for the checksum, and all are of one mind.
+    /// Throws BadInput when the file is missing, truncated, altered or of another version. In parallel the call is collective: each rank
+    /// sums a part of the file for the checksum, and all ranks return or throw alike.
     static Checkpoint read(const std::filesystem::path& path);
-    /// What this process has read of the file so far.
+    /// Bytes of the file that this process has read so far.
     std::size_t bytes_read() const;
 
 private:
     class File;
-    /// Bytes [begin, begin + size()) of a block of `all`: put here, or, all of them, in the file from `at` on.
+    /// Bytes [begin, begin + size()) of a block of `all` bytes: stored in memory, or, as a whole, in the file from `at` on.
     struct Block {
         std::vector<std::byte> bytes{};
         bool part = false;
@@ -107,13 +108,13 @@ private:
         std::size_t size() const { return in_file() ? all : bytes.size(); }
     };
     const Block& find(const std::string& name) const;
-    /// Bytes of a block from `begin` on.
+    /// Copies bytes of a block from `begin` on.
     void copy(const std::string& name, std::size_t begin, void* to, std::size_t count) const;
     [[noreturn]] static void refuse_size(const std::string& name);
     void list_blocks();
 
     std::map<std::string, Block> blocks_;
-    std::shared_ptr<File> file_;  // what was read
+    std::shared_ptr<File> file_;  // the file being read
 };
 
 }  // namespace weir

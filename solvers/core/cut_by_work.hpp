@@ -1,4 +1,4 @@
-// Cuts that give every rank as much to do, where planes are not alike: water that fills the lower half of a tank, a valley between hills.
+// Load balancing where planes differ in work: water that fills the lower half of a tank, a valley between hills.
 #pragma once
 #include "core/halo.hpp"
 #include "core/slabs.hpp"
@@ -12,8 +12,9 @@
 
 namespace weir {
 
-/// Each rank's share of the planes' work as even as cuts at multiples of 8 planes allow (of fewer where the planes are few, as cut_of), at
-/// least one such slab for each. Planes that do nothing still count as the slabs of their owner. One rank gets no cut.
+/// Partitions the planes so that their work is as even as boundaries at multiples of 8 planes allow (of fewer where there are few planes,
+/// as in cut_of). Each rank gets at least one such slab. Planes without work still belong to the slab of their owner. One rank gets no
+/// partition.
 inline Cut cut_by_work(std::span<const std::int64_t> work, int ranks) {
     const int planes = static_cast<int>(work.size());
     Cut cut = cut_of(planes, ranks);
@@ -21,7 +22,7 @@ inline Cut cut_by_work(std::span<const std::int64_t> work, int ranks) {
     int unit = 8;
     while (unit > 1 && planes / unit < ranks) unit /= 2;
     const int units = planes / unit;
-    std::vector<std::int64_t> before{0};  // work before each unit
+    std::vector<std::int64_t> before{0};  // cumulative work before each unit
     for (int u = 0; u < units; ++u) {
         before.push_back(before.back());
         for (int q = u * unit; q < (u + 1 == units ? planes : (u + 1) * unit); ++q) before.back() += work[static_cast<std::size_t>(q)];
@@ -40,7 +41,7 @@ inline Cut cut_by_work(std::span<const std::int64_t> work, int ranks) {
     return cut;
 }
 
-/// What the rank with the most has to do.
+/// The work of the rank that has the most.
 inline std::int64_t largest_share(std::span<const std::int64_t> work, const Cut& cut) {
     std::int64_t most = 0;
     for (int r = 0; r < cut.ranks(); ++r) {
@@ -55,7 +56,7 @@ namespace detail {
 inline const Cut* cut_so = nullptr;
 }
 
-/// While it lives, a solver that is made cuts its planes so: whoever knows what they take has said it, for all that must agree.
+/// Scope in which new solvers use this partition. The caller knows the work of the planes; all ranks must pass the same partition.
 class CutSo {
 public:
     explicit CutSo(const Cut& cut) : before_(detail::cut_so) { detail::cut_so = &cut; }
@@ -67,7 +68,7 @@ private:
     const Cut* before_;
 };
 
-/// As was asked for; else as many planes to each of the ranks there are.
+/// The partition of the scope above; without one, equal numbers of planes for all ranks.
 inline Cut cut_asked_for(int planes) {
     if (detail::cut_so && !detail::cut_so->empty() && detail::cut_so->planes() == planes) return *detail::cut_so;
     return cut_of(planes, slabs().ranks());

@@ -1,4 +1,5 @@
-// Effects: one term of one paper each, chosen by the scene by name. What the scene does not name allocates no field, runs no pass.
+// Effects: each is one term of one paper, selected by name in the scene. An effect that the scene does not name allocates no field and runs
+// no pass.
 #pragma once
 #include "core/passes.hpp"
 #include "core/types.hpp"
@@ -14,19 +15,18 @@
 
 namespace weir {
 
-/// The places in a step where physics may act: source (emitters, heaters), force (explicit rates, u += dt f), carried (what becomes of
-/// fields that the flow carried, before they push it), implicit (linear solves after all explicit rates are in), finish (after the
-/// projection).
+/// The stages of a step at which physics may act: source (emitters, heaters), force (explicit rates, u += dt f), carried (changes of
+/// advected fields before they act on the flow), implicit (linear solves after all explicit rates), finish (after the projection).
 enum class Stage { source, force, carried, implicit, finish };
 inline constexpr int stage_count = 5;
 inline constexpr std::array<const char*, stage_count> stage_names{"source", "force", "carried", "implicit", "finish"};
 
-/// The fields that effects asked for, by name. Two effects that need the same field share it.
+/// The fields that effects request, by name. Two effects that need the same field share it.
 class FieldPlan {
 public:
-    /// A cell field carried by the flow.
+    /// A cell field advected by the flow.
     FieldPlan& advected(std::string_view name) { return add(advected_, name); }
-    /// A cell field that an effect needs as scratch; not carried.
+    /// A cell field that an effect needs as scratch; not advected.
     FieldPlan& scratch(std::string_view name) { return add(scratch_, name); }
     const std::vector<std::string>& advected_fields() const { return advected_; }
     const std::vector<std::string>& scratch_fields() const { return scratch_; }
@@ -39,19 +39,19 @@ private:
     std::vector<std::string> advected_, scratch_;
 };
 
-/// What a solver built for one effect that its scene names.
+/// What a solver built for one effect named by its scene.
 struct EffectPlan {
     std::string name;
-    std::string pass{};  // timed by this name; empty: it is a term of the pass `inside`
+    std::string pass{};  // name under which it is timed; empty: it is a term of the pass `inside`
     std::string inside{};
-    bool at_start = false;  // it changes numbers that are found as the scene is read: a step does the same work with it as without
-    std::vector<std::string> fields{};   // cell fields carried by the flow, shared with every other effect that asks for them
-    std::vector<std::string> scratch{};  // others, shared too
-    std::size_t bytes = 0;               // that it holds for itself alone
-    std::vector<std::string> shown{};    // fields that it makes and shows, and the flow does not carry
+    bool at_start = false;               // it changes values computed when the scene is read: a step costs the same with it as without
+    std::vector<std::string> fields{};   // cell fields advected by the flow, shared with every other effect that requests them
+    std::vector<std::string> scratch{};  // other cell fields, also shared
+    std::size_t bytes = 0;               // that it allocates for itself alone
+    std::vector<std::string> shown{};    // fields that it computes for output; the flow does not advect them
 };
 
-/// The pass by whose name an effect is timed.
+/// The name of the pass under which an effect is timed.
 inline std::string effect_pass(std::string_view name) { return "effect " + std::string(name); }
 
 /// One physical term acting on a solver's State.
@@ -60,13 +60,13 @@ struct Effect {
     virtual ~Effect() = default;
     virtual Stage stage() const = 0;
     virtual void needs(FieldPlan&) const {}     // names fields; allocates nothing
-    virtual void apply(State& s, real dt) = 0;  // one pass: one virtual call a pass, none a cell
-    /// Of a step along paths by the trapezoidal rule, the half (dt of it) that acts where the paths begin. The rest is apply's.
+    virtual void apply(State& s, real dt) = 0;  // one pass: one virtual call per pass, none per cell
+    /// The explicit half (over dt) of a trapezoidal step along trajectories; it acts at the departure points. The other half is apply's.
     virtual void depart(State& s, real dt) {
         if (stage() == Stage::force) apply(s, dt);
     }
     virtual real max_dt(const State&) const { return infinity; }  // its own stability limit [s]
-    virtual std::size_t bytes() const { return 0; }               // that it holds for itself, beyond the fields it needs
+    virtual std::size_t bytes() const { return 0; }               // allocated for itself, beyond the fields it needs
 };
 
 /// The effects of one scene, in registry order, so that the scene's order never matters.
@@ -82,7 +82,7 @@ public:
         auto& list = at_[static_cast<std::size_t>(effect->stage())];
         list.push_back({std::string(name), effect_pass(name), std::move(effect)});
     }
-    /// An effect that the solver applies itself: as a pass of its own, or as a term of one that runs anyway.
+    /// Registers an effect that the solver applies itself: as a pass of its own, or as a term of an existing pass.
     void declare(EffectPlan plan) { declared_.push_back(std::move(plan)); }
 
     FieldPlan plan() const {
@@ -90,7 +90,7 @@ public:
         each([&](const Entry& e) { e.effect->needs(fields); });
         return fields;
     }
-    /// One entry an effect.
+    /// One entry per effect.
     std::vector<EffectPlan> plans() const {
         std::vector<EffectPlan> list = declared_;
         each([&](const Entry& e) {
@@ -110,14 +110,14 @@ public:
         return total;
     }
     bool empty(Stage stage) const { return at_[static_cast<std::size_t>(stage)].empty(); }
-    /// Each effect of the stage, timed by its own name.
+    /// Applies each effect of the stage, timed under its own name.
     void apply(Stage stage, State& s, real dt, Passes& passes) const {
         for (const Entry& e : at_[static_cast<std::size_t>(stage)]) {
             const auto timed = passes.time(e.pass);
             e.effect->apply(s, dt);
         }
     }
-    /// In the reverse order, which makes a step that departs and applies the same from both of its ends.
+    /// Runs in the reverse order: depart followed by apply is then symmetric in time.
     void depart(Stage stage, State& s, real dt, Passes& passes) const {
         const auto& list = at_[static_cast<std::size_t>(stage)];
         for (auto e = list.rbegin(); e != list.rend(); ++e) {

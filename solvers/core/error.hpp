@@ -1,5 +1,5 @@
-// The two ways in which a run ends early. Bad input (exit code 2) is found before anything is written; a numerical
-// failure (exit code 3) stops the run with its step, its quantity, and the last good state saved.
+// The two ways in which a run ends early. Bad input (exit code 2) is detected before anything is written. A numerical failure (exit code 3)
+// stops the run; it reports the step and the quantity, and the last good state is saved.
 #pragma once
 #include "core/types.hpp"
 
@@ -11,7 +11,7 @@ namespace weir {
 
 enum ExitCode : int { exit_success = 0, exit_claim_failed = 1, exit_bad_input = 2, exit_numerical_failure = 3 };
 
-/// The user asked for something that cannot be: exit code 2. The text says what was found and what is allowed.
+/// The input is invalid: exit code 2. The text states what was found and what is allowed.
 struct BadInput : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -1,5 +1,5 @@
-// A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis;
-// sums are taken plane by plane and then in order, so no result depends on the number of threads, nor of ranks (core/slabs.hpp).
+// A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis. Sums are taken per plane
+// and added in the order of the planes, so results do not depend on the number of threads or ranks (core/slabs.hpp).
 #pragma once
 #include "core/parallel.hpp"
 #include "core/plane_store.hpp"
@@ -17,14 +17,14 @@ template <class T, int D>
 class Grid {
 public:
     Grid() { extent_.fill(0); }
-    /// `margin`: so many planes of it stand before the first and after the last of the cells.
+    /// `margin`: number of extra planes before the first and after the last plane of cells.
     explicit Grid(const Index<D>& extent, const T& value = T{}, int margin = 0)
         : extent_(extent), data_(0, plane_of(extent), extent[D - 1] - 2 * margin, margin, value) {}
 
     const Index<D>& extent() const { return extent_; }
     std::size_t size() const { return data_.size(); }
     bool empty() const { return data_.size() == 0; }
-    /// Distance in memory between neighbours along an axis.
+    /// Distance in memory between neighbours along an axis, in entries.
     std::ptrdiff_t stride(int axis) const {
         std::ptrdiff_t s = 1;
         for (int d = 0; d < axis; ++d) s *= extent_[d];
@@ -50,7 +50,7 @@ public:
     std::span<T> values() { return {data_.data(), data_.size()}; }
     void fill(const T& value) { data_.fill(value); }
     std::size_t bytes() const { return data_.bytes(); }
-    /// Which planes this rank holds, and more of them: see PlaneStore.
+    /// The planes in this rank's memory, own and ghost: see PlaneStore.
     const PlaneStore<T>& store() const { return data_; }
     PlaneStore<T>& store() { return data_; }
     void swap(Grid& other) {
@@ -68,14 +68,14 @@ private:
     PlaneStore<T> data_;
 };
 
-/// f(plane) for the planes [lo, hi) that are this rank's, in contiguous blocks, one a thread.
+/// f(plane) for this rank's planes within [lo, hi), in contiguous blocks, one per thread.
 template <class F>
 void for_each_plane(int lo, int hi, F&& f) {
     parallel_for(detail::own_share.lower(lo), detail::own_share.upper(hi), f);
 }
 
 namespace detail {
-/// f of all planes: this rank's own from here, the others' from whoever owns them.
+/// f of all planes: computed here for this rank's planes, received from the owner for the others.
 template <class F>
 const std::vector<real>& parts_of_planes(int planes, F&& f) {
     auto& part = reduction_scratch(static_cast<std::size_t>(planes));
@@ -101,14 +101,14 @@ template <class T, int D>
 Planes planes_of(Grid<T, D>& q) {
     return {q.data(), sizeof(T) * static_cast<std::size_t>(q.stride(D - 1)), q.extent()[D - 1], 0, q.store().held()};
 }
-/// The `deep` planes beyond this rank's cuts, from whoever owns them.
+/// Halo exchange: fills the `deep` ghost planes on both sides of this rank's subdomain.
 template <class T, int D>
 void refresh(Grid<T, D>& q, bool ring, int deep = 1) {
     if (!over_ranks()) return;
     q.store().open(deep, ring);
     slabs().refresh(*detail::own_share.cut, planes_of(q), deep, ring);
 }
-/// All planes, on all ranks.
+/// All-gather: every rank receives all planes.
 template <class T, int D>
 void gather(Grid<T, D>& q) {
     if (!over_ranks()) return;
@@ -133,7 +133,7 @@ void for_each_in(const Index<D>& lo, const Index<D>& hi, F&& f) {
     });
 }
 
-/// The same; of an array that is this rank's alone, in all planes that it holds.
+/// The same; for an array of distributed storage, over all planes that this rank stores.
 template <class T, int D, class F>
 void for_each_held(const Grid<T, D>& q, const Index<D>& lo, const Index<D>& hi, F&& f) {
     if (!q.store().windowed()) return for_each_in(lo, hi, f);
@@ -154,7 +154,7 @@ void for_each_cell(const Index<D>& extent, F&& f) {
     for_each_in(Index<D>::constant(0), extent, f);
 }
 
-/// Sum of f(I) over a box, plane by plane along the slowest axis and then in order: bitwise equal for any thread count.
+/// Sum of f(I) over a box, per plane of the slowest axis and then in the order of the planes: bitwise equal for any thread count.
 template <int D, class F>
 real sum_over(const Index<D>& extent, F&& f) {
     return plane_sum(extent[D - 1], [&](int outer) {

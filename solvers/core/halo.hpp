@@ -1,11 +1,11 @@
-// Which planes are whose, and which must travel: plain arithmetic, known to all ranks alike.
+// Partition of planes among ranks, and the planes that a halo exchange sends. Every rank computes the same result, without communication.
 #pragma once
 #include <algorithm>
 #include <vector>
 
 namespace weir {
 
-/// Where the planes of cells of the slowest axis are cut: rank r owns [at[r], at[r + 1]). Empty: there is one rank.
+/// Partition of the planes of cells along the slowest axis: rank r owns [at[r], at[r + 1]). Empty: there is one rank.
 struct Cut {
     std::vector<int> at{};
 
@@ -13,13 +13,14 @@ struct Cut {
     int ranks() const { return static_cast<int>(at.size()) - 1; }
     int planes() const { return at.back(); }
     int begin(int rank) const { return at[static_cast<std::size_t>(rank)]; }
-    /// Of an array of `count` planes: the last rank owns those beyond the cells, the last plane of faces.
+    /// End of a rank's planes in an array of `count` planes: the last rank also owns those beyond the cells, such as the last plane of
+    /// faces.
     int end(int rank, int count) const { return rank + 1 == ranks() ? count : at[static_cast<std::size_t>(rank) + 1]; }
     bool operator==(const Cut&) const = default;
 };
 
-/// Slabs as equal as multiples of 8 planes allow, so that three coarser levels of a multigrid are cut alike; of fewer where the planes are
-/// few. One rank gets no cut. There must be a plane for each.
+/// Slabs as equal as multiples of 8 planes allow, so that three coarser multigrid levels have matching boundaries; multiples of less where
+/// there are few planes. One rank gets no partition. There must be at least one plane per rank.
 inline Cut cut_of(int planes, int ranks) {
     Cut cut;
     if (ranks == 1) return cut;
@@ -37,8 +38,8 @@ struct PlaneRange {
     bool operator==(const PlaneRange&) const = default;
 };
 
-/// The planes of an array of `count` that rank `to` gets from rank `from`, so that it has `deep` beyond both its cuts; around the ends of
-/// a periodic axis (`ring`), where plane n of faces is plane 0 again.
+/// The planes of an array of `count` planes that rank `to` receives from rank `from` to fill `deep` ghost planes on both sides. `ring`:
+/// also around the ends of a periodic axis, where plane n of faces is plane 0.
 inline std::vector<PlaneRange> halo_from(const Cut& cut, int from, int to, int count, int deep, bool ring) {
     const int n = cut.planes(), begin = cut.begin(to), end = cut.end(to, n);
     std::vector<char> wanted(static_cast<std::size_t>(count), 0);

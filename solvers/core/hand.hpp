@@ -1,13 +1,13 @@
-// The hand: a round brush that pushes the fluid it covers to a velocity, pulls it together, pours, drains or heats it, or takes hold of a
-// body, by keyframes. A keyframe holds until the next, so that what comes later never changes what has been: a hand that is recorded while
-// a run goes on repeats it bit for bit.
+// Interactive forcing: a round brush with keyframes. It drives the fluid that it covers towards a velocity, pulls it together, adds,
+// removes or heats it, or grabs a body. A keyframe applies until the next one, so later keyframes never change the past: replaying a
+// recorded run repeats it bit for bit.
 //
 //   du/dt = rate w(x) (target − u),   w = (1 − |x − centre|²/radius²)² inside the brush,
 //
-// taken exactly over the step, u += (1 − exp(−rate w dt)) (target − u): stable for any rate. A target is cut to one cell (or spacing of
-// particles) a step. Heat goes the same way towards the enthalpy of a temperature. A body follows by an acceleration rate (target − v) of
-// its centre of mass, target = (rate/4) (centre − x): a spring, critically damped. What it gives is accounted for: momentum, mass and heat
-// since the start.
+// integrated exactly over the step, u += (1 − exp(−rate w dt)) (target − u): stable for any rate. The target speed is limited to one cell
+// (or particle spacing) per step. Heat relaxes in the same way towards the enthalpy of a temperature. A body gets the acceleration rate
+// (target − v) of its centre of mass, target = (rate/4) (centre − x): a critically damped spring. Momentum, mass and heat added since the
+// start are recorded.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/types.hpp"
@@ -25,17 +25,17 @@ enum class HandKind { off, push, pull, pour, drain, heat, grab };
 inline constexpr std::array hand_kinds{"off", "push", "pull", "pour", "drain", "heat", "grab"};  // in the order of HandKind
 
 struct HandKey {
-    real time = 0;  // from here on [s]
+    real time = 0;  // applies from this time on [s]
     HandKind kind = HandKind::off;
     Vec<3> centre{};
     real radius = 0;
     Vec<3> velocity{};     // the target of push and pour [m/s]
-    real speed = 0;        // of pull, at the brush's edge towards its centre; of a surface's rise or fall in columns [m/s]
+    real speed = 0;        // of pull, at the brush's edge towards its centre; of a surface's rise or fall in height fields [m/s]
     real temperature = 0;  // the target of heat [K]
-    int body = -1;         // that grab takes hold of
+    int body = -1;         // the body that grab acts on
 };
 
-/// The brush of a step.
+/// The brush during one step.
 template <int D>
 struct Brush {
     HandKind kind = HandKind::off;
@@ -49,7 +49,7 @@ struct Brush {
         const real s = 1 - dot(x - centre, x - centre) / (radius * radius);
         return s > 0 ? s * s : 0;
     }
-    /// No component faster than `most` [m/s].
+    /// The target velocity, each component limited to `most` [m/s].
     Vec<D> target(const Vec<D>& x, const Vec<D>& most) const {
         Vec<D> u = kind == HandKind::pull ? speed / radius * (centre - x) : velocity;
         for (int a = 0; a < D; ++a) u[a] = std::clamp(u[a], -most[a], most[a]);
@@ -60,17 +60,17 @@ struct Brush {
 struct Hand {
     std::vector<HandKey> keys;  // in the order of time
     real rate = 0;              // [1/s]
-    Vec<3> impulse{};           // given to the fluid since the start, poured and drained liquid's momentum included [kg m/s]
-    real mass = 0;              // poured less drained [kg]
-    real heat = 0;              // given to the fluid since the start [J]
-    std::array<bool, hand_kinds.size()> can{};  // what the solver has of it, in this scene
+    Vec<3> impulse{};           // added to the fluid since the start, including the momentum of liquid that was poured or drained [kg m/s]
+    real mass = 0;              // poured minus drained [kg]
+    real heat = 0;              // added to the fluid since the start [J]
+    std::array<bool, hand_kinds.size()> can{};  // the kinds that the solver supports in this scene
 
     void allow(std::initializer_list<HandKind> kinds) {
         for (const HandKind kind : kinds) can[static_cast<std::size_t>(kind)] = true;
     }
     bool has(HandKind kind) const { return can[static_cast<std::size_t>(kind)]; }
 
-    /// In the step that begins at t.
+    /// The brush in the step that begins at t.
     template <int D>
     Brush<D> at(real t) const {
         const auto next = std::upper_bound(keys.begin(), keys.end(), t, [](real time, const HandKey& key) { return time < key.time; });
@@ -80,7 +80,7 @@ struct Hand {
         for (int a = 0; a < D; ++a) brush.centre[a] = key.centre[a], brush.velocity[a] = key.velocity[a];
         return brush;
     }
-    /// How much of the way to the target a place of this weight goes in a step.
+    /// Fraction of the difference to the target that one step removes at a point of this weight.
     real share(real weight, real dt) const { return -std::expm1(-rate * weight * dt); }
 
     void save(Checkpoint& to) const { to.put_value("hand", std::array<real, 5>{impulse[0], impulse[1], impulse[2], mass, heat}); }

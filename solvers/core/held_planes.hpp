@@ -1,5 +1,5 @@
-// How a solver holds its fields over ranks: each rank its own planes and some beyond its cuts, or, where somebody looks at whole fields on
-// all ranks, everything.
+// Storage of a solver's fields in parallel: each rank stores its own planes and some ghost planes, or, where whole fields are needed on all
+// ranks, everything.
 #pragma once
 #include "core/grid.hpp"
 
@@ -8,11 +8,11 @@
 
 namespace weir {
 
-/// The first member of a solver that holds fields: what is made after it, until made(), is held so.
+/// The first member of a solver that stores fields: it sets the storage of all arrays constructed after it, until made().
 class HeldPlanes {
 public:
-    /// `alone`: own planes and `deep` beyond the cuts (more than 0), around a periodic axis too; `reach` as of OwnPlanes. An empty cut:
-    /// all, in one process or not.
+    /// `alone`: distributed storage with own planes and `deep` ghost planes (more than 0), also around a periodic axis; `reach` as in
+    /// OwnPlanes. An empty partition: all planes, in one process or several.
     HeldPlanes(Cut cut, bool alone, int deep, bool ring, int reach = 1)
         : cut_(std::move(cut)),
           kept_(alone ? deep : 0),
@@ -26,9 +26,9 @@ public:
     const Cut& cut() const { return cut_; }
     bool alone() const { return kept_ > 0; }
     bool ring() const { return ring_; }
-    /// For a step.
+    /// The scope of a step.
     OwnPlanes own() const { return OwnPlanes(cut_, reach_, kept_, ring_); }
-    /// For whoever looks: this rank's planes where it holds no more, else all.
+    /// The scope in which fields are read from outside: this rank's planes with distributed storage, otherwise all.
     OwnPlanes looking() const { return OwnPlanes(alone() ? cut_ : nowhere(), reach_, kept_, ring_); }
 
 private:

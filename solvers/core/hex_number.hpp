@@ -1,10 +1,10 @@
-// Numbers in the text of a program that a device compiles.
+// Numbers in the source text of a program that a device compiles.
 #pragma once
 #include <string>
 
 namespace weir {
 
-/// A number as a C compiler reads it back to the last bit.
+/// Formats a number so that a C compiler reads it back bit for bit.
 std::string hex_number(double value);
 
 }  // namespace weir

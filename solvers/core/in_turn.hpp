@@ -1,10 +1,11 @@
-// Sums of terms that ranks hold in the order of one process: each goes on with what the one before it has.
+// Rank-ordered reduction: sums of distributed terms in the order of one process. Each rank continues with the partial result of the
+// previous rank.
 #pragma once
 #include "core/slabs.hpp"
 
 namespace weir {
 
-/// What comes of a value that each rank goes on with in turn, in their order: go_on(value). All get the last one's.
+/// Applies go_on(value) on one rank after another, in rank order. All ranks return the last rank's result.
 template <class T, class F>
 T in_turn(T value, F&& go_on) {
     for (int rank = 0; rank < slabs().ranks(); ++rank) {

@@ -1,4 +1,4 @@
-// Where each rank holds its own part alone: whose a place is, what is asked of its owner, and lists that go from rank to rank.
+// Distributed storage: the owner of a plane, values from their owners, and lists that ranks send to each other.
 #pragma once
 #include "core/slabs.hpp"
 #include "core/types.hpp"
@@ -9,14 +9,14 @@
 
 namespace weir {
 
-/// The rank that owns a plane of cells; of faces, the last rank the last one too.
+/// The rank that owns a plane of cells. The last plane of faces belongs to the last rank.
 inline int owner_of(const Cut& cut, int plane) {
     int rank = 0;
     while (rank + 1 < cut.ranks() && plane >= cut.begin(rank + 1)) ++rank;
     return rank;
 }
 
-/// Of every number the one that its owner knows, on all ranks.
+/// Takes each number from its owner; all ranks receive the result.
 inline std::vector<real> of_owners(const std::vector<real>& own, const std::vector<int>& owners) {
     const std::vector<real> all = of_all_ranks(own);
     std::vector<real> list;
@@ -28,8 +28,8 @@ inline std::vector<real> of_owners(const std::vector<real>& own, const std::vect
 template <class T>
 using ListsOfRanks = std::vector<std::vector<T>>;
 
-/// Gives each rank the list that is for it, and brings what each has for this one; this rank's own stays. A table of how many go from each
-/// to each is gathered first.
+/// Personalized all-to-all: sends each rank its list and receives the lists meant for this rank; this rank's own list stays. A table of the
+/// list lengths is gathered first.
 template <class T>
 ListsOfRanks<T> trade_lists(ListsOfRanks<T> lists) {
     const std::size_t ranks = lists.size(), self = static_cast<std::size_t>(slabs().rank());

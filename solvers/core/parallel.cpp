@@ -8,7 +8,7 @@
 namespace weir {
 
 namespace {
-int chosen_threads = 0;              // 0: nobody has chosen
+int chosen_threads = 0;              // 0: no number was set
 thread_local int worth_of_work = 0;  // 0: unknown
 }  // namespace
 

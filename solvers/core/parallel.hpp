@@ -1,4 +1,4 @@
-// Threads: one static division of a range, and reductions whose order never depends on the number of threads.
+// Threads: one static division of a range, and reductions whose order does not depend on the number of threads.
 #pragma once
 #include "core/types.hpp"
 
@@ -9,15 +9,15 @@
 
 namespace weir {
 
-/// Number of threads that every parallel loop of the library uses; at least 1. Default: OpenMP's own, or fewer where a simulation has too
-/// little work for them (ThreadsWorth). A number that is set is taken as it is. Threads that wait for the next loop spin as long as
-/// OpenMP's runtime lets them: a program that embeds the library sets GOMP_SPINCOUNT (or OMP_WAIT_POLICY) in its environment before it
-/// starts, since libgomp reads them before main.
+/// Number of threads of every parallel loop of the library; at least 1. Default: OpenMP's own, or fewer where a simulation has too little
+/// work for them (ThreadsWorth). A number that was set is used as it is. Threads that wait for the next loop spin as long as OpenMP's
+/// runtime lets them. A program that embeds the library sets GOMP_SPINCOUNT (or OMP_WAIT_POLICY) in its environment before it starts, since
+/// libgomp reads them before main.
 int threads();
-int set_threads(int count);  // 0: the default again; gives back what had been set
+int set_threads(int count);  // 0: the default again; returns the previous setting
 
-/// While it lives, loops of the calling thread are those of a problem of so many cells: below cells_a_thread for each thread, waiting for
-/// one another takes longer than the work that is shared. Without effect where a number of threads was set.
+/// Scope in which loops of the calling thread belong to a problem of this many cells. Below cells_a_thread cells per thread,
+/// synchronization takes longer than the shared work saves. No effect where a number of threads was set.
 class ThreadsWorth {
 public:
     static constexpr long cells_a_thread = 2048;
@@ -30,7 +30,7 @@ private:
     int before_;
 };
 
-/// f(i) for i in [begin, end), in contiguous blocks, one a thread. f must write only what belongs to i.
+/// f(i) for i in [begin, end), in contiguous blocks, one per thread. f must write only data of entry i.
 template <class F>
 void parallel_for(int begin, int end, F&& f) {
 #pragma omp parallel for schedule(static) num_threads(threads()) if (threads() > 1 && end - begin > 1)

@@ -1,5 +1,5 @@
-// What a step is made of, by name: calls, milliseconds, bytes moved at least. A pass times itself, so that step functions stay
-// free of clocks. Recording allocates only when a name is seen for the first time.
+// Cost of the passes of a step, by name: calls, milliseconds, and a lower bound of the bytes moved. A pass times itself, so step functions
+// stay free of clocks. Recording allocates only when a name appears for the first time.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Pass {
     double seconds = 0;
 };
 
-/// Told of each pass as it begins and as it ends: for tools that count by pass what a clock cannot. None in an ordinary run.
+/// Called when each pass begins and ends: for tools that count per pass what a clock cannot. Not set in an ordinary run.
 using PassWatch = void (*)(const Pass& pass, bool begins);
 inline PassWatch pass_watch = nullptr;
 
@@ -46,7 +46,7 @@ public:
 
     /// `const auto timed = passes.time("project");` as the first line of a pass.
     [[nodiscard]] Timer time(std::string_view name) { return Timer(*this, find(name)); }
-    /// Calls that something else has timed: a device, by its own clock.
+    /// Adds calls that were timed elsewhere: by a device's own clock.
     void add(std::string_view name, double seconds, std::int64_t calls) {
         Pass& p = list_[find(name)];
         p.calls += calls;

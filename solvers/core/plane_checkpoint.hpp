@@ -1,4 +1,4 @@
-// A grid in a checkpoint: whole, or, over ranks that hold their own planes alone, of each rank its own.
+// A grid in a checkpoint: whole, or, with distributed storage, written by each rank for its own planes.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/grid.hpp"
@@ -8,7 +8,7 @@
 namespace weir {
 
 namespace detail {
-/// Of a windowed array the entries of this rank's planes: their place and their number.
+/// The offset and number of the entries of this rank's planes in an array of distributed storage.
 template <class T, int D>
 std::array<std::size_t, 2> own_entries(const Grid<T, D>& q) {
     const Cut& cut = *own_share.cut;

@@ -16,8 +16,8 @@ std::size_t page() {
 
 }  // namespace
 
-/// With a page of zeros before and after, which can be read: where eight entries are loaded at once from one beside the first, as stencils
-/// do at the ends of rows, the one that nobody uses may lie there.
+/// A page of zeros before and after the array can be read. Stencils load eight entries at once and may read one entry beyond the ends of
+/// rows; that unused entry may lie there.
 Reserved::Reserved(std::size_t bytes) : mapped_((bytes + page() - 1) / page() * page()) {
     if (mapped_ == 0) return;
     void* const at = mmap(nullptr, mapped_ + 2 * page(), PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -54,7 +54,7 @@ std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, i
     for (int plane = begin <= 0 ? -margin : begin; plane <= (end >= n ? count + margin : end); ++plane) hold(plane);
     for (int plane = begin; ring && plane <= end; ++plane)
         if (plane < 0 || plane >= n) hold((plane % n + n) % n);
-    for (int k = 0; ring && k <= count - n + margin; ++k) {  // where a path goes around an end it meets what lies beyond the other
+    for (int k = 0; ring && k <= count - n + margin; ++k) {  // a path around a periodic end reads the planes beyond the other end
         if (begin < 0) hold(n + k);
         if (end >= n) hold(-1 - k);
     }

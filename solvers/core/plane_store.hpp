@@ -1,6 +1,6 @@
-// Memory of an array of planes. One rank: a vector. Over ranks that hold their own planes alone (OwnPlanes): address space for the whole
-// array, and memory behind this rank's planes and those beyond its cuts that it reads, so that every index means the same on all ranks, and
-// whoever looks farther faults (as sparse grids do: Setaluri, Aanjaneya, Bauer & Sifakis 2014).
+// Memory of an array of planes. With one rank it is a vector. With distributed storage (OwnPlanes) it is address space for the whole array,
+// with memory only for this rank's planes and its ghost planes. Every index then means the same on all ranks, and an access to any other
+// plane faults (as in sparse grids: Setaluri, Aanjaneya, Bauer & Sifakis 2014).
 #pragma once
 #include "core/scratch.hpp"
 #include "core/slabs.hpp"
@@ -13,7 +13,8 @@
 
 namespace weir {
 
-/// Address space that may not be touched until some of it is opened. Memory comes page by page, zero, where it is first written.
+/// Reserved address space that must not be accessed until a part of it is opened. Memory is committed page by page, zero, on the first
+/// write.
 class Reserved {
 public:
     explicit Reserved(std::size_t bytes);
@@ -22,7 +23,7 @@ public:
     Reserved& operator=(const Reserved&) = delete;
     unsigned char* data() const { return data_; }
     void open(std::size_t begin, std::size_t end);
-    /// The whole pages within are given back.
+    /// Returns the whole pages within the range to the system.
     void close(std::size_t begin, std::size_t end);
 
 private:
@@ -30,16 +31,16 @@ private:
     std::size_t mapped_ = 0;
 };
 
-/// Which planes of an array a rank holds: its own, `deep` beyond its cuts, around a periodic axis too, and what lies beyond the ends of the
-/// axis where it comes so near. `margin`: planes before the first and after the last. Entry 0 is of plane -margin.
+/// Which planes of an array a rank stores: its own, `deep` ghost planes on both sides, also around a periodic axis, and the planes beyond
+/// the ends of the axis that the ghosts reach. `margin`: planes before the first and after the last. Entry 0 is plane -margin.
 std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int deep, bool ring);
 
-/// Of `count` planes this rank's and so many beyond its cuts, around the ends of a periodic axis too: which are near. None where there is
-/// one rank: then all are.
+/// Marks, of `count` planes, this rank's and `deep` ghost planes on both sides, also around the ends of a periodic axis. Empty with one
+/// rank: all planes are near.
 std::vector<char> planes_near(int count, int deep, bool ring);
 
 namespace detail {
-/// Whether an array of so many planes that is made now is of this rank's alone.
+/// Returns whether an array of this many planes that is constructed now has distributed storage.
 inline bool makes_window(int count) {
     const OwnShare& share = own_share;
     return share.kept > 0 && share.cut != nullptr && (count == share.cut->planes() || count == share.cut->planes() + 1);
@@ -50,7 +51,7 @@ template <class T>
 class PlaneStore {
 public:
     PlaneStore() = default;
-    /// `head` entries that everybody holds, `margin` planes, `count` of them, `margin` more.
+    /// `head` entries stored on all ranks, `margin` planes, `count` planes, `margin` more.
     PlaneStore(std::size_t head, std::size_t plane, int count, int margin, const T& value) { make(head, plane, count, margin, value); }
     PlaneStore(const PlaneStore& other) { copy(other); }
     PlaneStore(PlaneStore&& other) noexcept { swap(other); }
@@ -70,7 +71,7 @@ public:
     T& operator[](std::size_t i) { return data_[i]; }
     const T& operator[](std::size_t i) const { return data_[i]; }
     std::size_t size() const { return size_; }
-    /// What has memory behind it.
+    /// Bytes of committed memory.
     std::size_t bytes() const {
         if (!window_) return whole_.capacity() * sizeof(T);
         const auto planes = static_cast<std::size_t>(std::count(window_->held.begin(), window_->held.end(), char{1}));
@@ -78,12 +79,12 @@ public:
     }
     bool windowed() const { return window_ != nullptr; }
     bool holds(int plane) const { return !window_ || window_->held[static_cast<std::size_t>(plane + window_->margin)] != 0; }
-    /// Whether the planes so deep beyond the cuts are held.
+    /// Returns whether `deep` ghost planes are stored.
     bool reaches(int deep) const { return !window_ || deep <= window_->deep; }
-    /// For Planes: of plane 0; none where all are held.
+    /// For Planes::held, at plane 0; nullptr where all planes are stored.
     const char* held() const { return window_ ? window_->held.data() + window_->margin : nullptr; }
 
-    /// What this rank does not hold yet of the planes so deep beyond its cuts.
+    /// Commits memory for the ghost planes up to `deep` that are not stored yet.
     void open(int deep, bool ring) {
         if (!window_ || (deep <= window_->deep && (window_->ring || !ring))) return;
         window_->deep = std::max(deep, window_->deep), window_->ring = window_->ring || ring;
@@ -92,7 +93,7 @@ public:
     void open_all() {
         if (window_) open(std::vector<char>(window_->held.size(), 1));
     }
-    /// Back to what it was before open_all(), with what stands there.
+    /// Undoes open_all(); the remaining planes keep their values.
     void close() {
         if (!window_) return;
         Window& w = *window_;
@@ -114,7 +115,7 @@ public:
         std::swap(data_, other.data_);
         std::swap(size_, other.size_);
     }
-    /// As the constructor; memory that fits is kept, with what stands in it.
+    /// As the constructor; memory that fits is reused with its contents.
     void resize(std::size_t head, std::size_t plane, int count, int margin) {
         const std::size_t size = head + plane * static_cast<std::size_t>(count + 2 * margin);
         if (detail::makes_window(count)) {

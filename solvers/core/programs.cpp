@@ -15,7 +15,7 @@ namespace weir {
 
 namespace {
 
-/// What a child does with its streams before it begins.
+/// Redirections of a child's streams, made before it starts.
 class Actions {
 public:
     Actions() { posix_spawn_file_actions_init(&actions_); }
@@ -33,7 +33,7 @@ private:
     posix_spawn_file_actions_t actions_;
 };
 
-/// -1 where it cannot be started.
+/// Returns -1 where it cannot be started.
 pid_t start(const std::vector<std::string>& words, const Actions& actions) {
     std::vector<char*> argv;
     for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));

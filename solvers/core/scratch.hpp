@@ -1,6 +1,5 @@
-// Vectors whose size changes from step to step: when their room is too small they get an eighth more than they had, at least, so that sizes
-// which creep up allocate a handful of times and not in every step (assign of the standard library makes exact room), and what a solver
-// holds stays within an eighth of what it needs.
+// Vectors whose size changes from step to step. They grow by at least an eighth of their capacity: slowly growing sizes then allocate a few
+// times instead of in every step (std::vector::assign allocates exactly). The memory of a solver stays within an eighth of what it needs.
 #pragma once
 #include <algorithm>
 #include <vector>

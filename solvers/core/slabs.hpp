@@ -1,6 +1,6 @@
-// One run by several processes (ranks): each owns a slab, the planes of the slowest axis between two cuts, and computes them as one process
-// would. What stands beyond its cuts comes from its neighbours; sums are of the parts of planes, which are the same whoever computes them,
-// added in the order of the planes. So the number of ranks changes no bit. With one rank, the default, every call does nothing.
+// One run distributed over several processes (MPI ranks). Each rank owns a slab of planes along the slowest axis and computes them as one
+// process would. Ghost planes are filled by halo exchange. Sums are taken per plane and added in the order of the planes, so results are
+// bitwise equal for any number of ranks. With one rank, the default, every call does nothing.
 #pragma once
 #include "core/error.hpp"
 #include "core/halo.hpp"
@@ -18,17 +18,17 @@
 
 namespace weir {
 
-/// The planes of an array over the slowest axis, neighbours in memory: plane 0 stands at `first`, `margin` more before it and after the
-/// last.
+/// The planes of an array along the slowest axis, contiguous in memory: plane 0 is at `first`, with `margin` more planes before it and
+/// after the last.
 struct Planes {
     void* first;
     std::size_t bytes;  // of a plane
     int count;
     int margin = 0;
-    const char* held = nullptr;  // of each plane whether there is memory behind it; none: behind all
+    const char* held = nullptr;  // per plane, whether it has memory; nullptr: all have
 };
 
-/// What goes to another rank and what comes from it; both know how much beforehand. Of 0 bytes there is no message.
+/// A message sent to another rank and the one received from it; both sides know the sizes beforehand. No message is sent for 0 bytes.
 struct Parcel {
     int peer;
     const void* sent;
@@ -37,7 +37,7 @@ struct Parcel {
     std::size_t received_bytes;
 };
 
-/// What this rank has sent so far.
+/// Messages and bytes that this rank has sent so far.
 struct Traffic {
     std::int64_t messages = 0, bytes = 0;
 };
@@ -55,33 +55,32 @@ public:
     bool several() const { return ranks_ > 1; }
     const Traffic& traffic() const { return traffic_; }
 
-    /// Brings the `deep` planes of each array beyond both cuts of this rank from whoever owns them, in one message from each rank; `ring`:
-    /// around the ends of the axis too.
+    /// Halo exchange: fills the `deep` ghost planes of each array on both sides of this rank's subdomain from their owners, in one message
+    /// per rank. `ring`: also around the ends of a periodic axis.
     virtual void refresh(const Cut&, std::span<const Planes>, int /*deep*/, bool /*ring*/) {}
     void refresh(const Cut& cut, const Planes& planes, int deep, bool ring) { refresh(cut, std::span(&planes, 1), deep, ring); }
-    /// Brings every plane that this rank does not own.
+    /// All-gather of planes: receives every plane that this rank does not own.
     virtual void gather(const Cut&, const Planes&) {}
-    /// Everybody's bytes in the order of the ranks, to the first: sink(data, count) there, piece by piece. What it throws comes when all
-    /// has been taken.
+    /// Streams the bytes of all ranks, in rank order, to rank 0: sink(data, count) is called there for each piece. An exception of the sink
+    /// is rethrown after all data has been received.
     virtual void stream_to_first(const void* own, std::size_t bytes, const std::function<void(const void*, std::size_t)>& sink) {
         sink(own, bytes);
     }
-    /// The same of pieces that are no planes: rank r owns the entries [begins[r], begins[r + 1]), of `bytes` each.
+    /// All-gather of entries that are not planes: rank r owns the entries [begins[r], begins[r + 1]), of `bytes` each.
     virtual void gather_parts(void* /*entries*/, std::size_t /*bytes*/, std::span<const std::size_t> /*begins*/) {}
-    /// Pieces that are no planes to and from other ranks, one parcel a rank at most.
+    /// Point-to-point exchange of other data, at most one message per rank.
     virtual void trade(std::span<const Parcel>) {}
-    /// Whether what a rank has not been brought is to be made NaN, for a test: nothing may read it.
+    /// Returns whether stale (unfilled) ghosts are set to NaN, for a test: no code may read them.
     virtual bool poisons() const { return false; }
-    /// Whether somebody looks at whole fields on all ranks, so that each is to hold them whole.
+    /// Returns whether whole fields are read on all ranks, so that each rank must store them whole.
     bool holds_whole() const { return holds_whole_; }
     void hold_whole(bool yes) { holds_whole_ = yes; }
-    /// Whether what is built now is of this rank alone, as in one process: to see what it takes.
+    /// Returns whether objects built now belong to this rank alone, as in one process: to measure their memory.
     bool builds_alone() const { return builds_alone_; }
     void build_alone(bool yes) { builds_alone_ = yes; }
-    /// The largest of the values that the ranks give.
+    /// Maximum of a value over the ranks.
     virtual int largest(int value) { return value; }
-    /// Everybody's calls up to here, and whether nobody is still missing after `seconds`: where one has failed alone, the others never
-    /// come.
+    /// Barrier with a timeout: returns false where a rank is still missing after `seconds`. A rank that failed alone never arrives.
     virtual bool all_arrive(double /*seconds*/) { return true; }
     /// Ends all ranks at once, with this exit code.
     virtual void abort(int /*exit_code*/) {}
@@ -94,12 +93,12 @@ private:
     bool holds_whole_ = false, builds_alone_ = false;
 };
 
-/// Those of this process: one rank, unless set_slabs has been called.
+/// The communicator of this process: one rank, unless set_slabs was called.
 Slabs& slabs();
-/// Back to one rank with nullptr.
+/// nullptr: back to one rank.
 void set_slabs(std::unique_ptr<Slabs> several);
 
-/// What each rank gives, in their order.
+/// All-gather of one value per rank, in rank order.
 template <class T>
 std::vector<T> of_ranks(const T& own) {
     std::vector<T> list(static_cast<std::size_t>(slabs().ranks()), own);
@@ -109,14 +108,14 @@ std::vector<T> of_ranks(const T& own) {
     return list;
 }
 
-/// Where the lists of the ranks begin when they stand one after another, this rank's of `count` entries; and where the last one ends.
+/// Offsets of the ranks' lists in their concatenation, where this rank has `count` entries; the last offset is the total.
 inline std::vector<std::size_t> begins_of_ranks(std::size_t count) {
     std::vector<std::size_t> begins{0};
     for (const std::size_t entries : of_ranks(count)) begins.push_back(begins.back() + entries);
     return begins;
 }
 
-/// The lists that the ranks give, one after another.
+/// All-gather of lists: concatenates the lists of all ranks.
 template <class T>
 std::vector<T> of_all_ranks(const std::vector<T>& own) {
     const std::vector<std::size_t> begins = begins_of_ranks(own.size());
@@ -126,7 +125,7 @@ std::vector<T> of_all_ranks(const std::vector<T>& own) {
     return all;
 }
 
-/// What one rank does for all, the first: writing. One fails, all fail, with the same exit code; its own words are shown.
+/// Runs f on rank 0 only: writing. If it fails, all ranks fail with the same exit code; rank 0's message is shown.
 template <class F>
 void by_first_rank(F&& f) {
     if (!slabs().several()) return f();
@@ -143,13 +142,13 @@ void by_first_rank(F&& f) {
 
 namespace detail {
 
-/// What loops over planes do now: planes [begin, end) of cells; what lies beyond the ends of the axis belongs to its first and last plane.
+/// The range of loops over planes: planes [begin, end) of cells. Planes beyond the ends of the axis belong to its first and last plane.
 struct OwnShare {
     int begin = INT_MIN, end = INT_MAX;
-    const Cut* cut = nullptr;  // none: everything
-    int reach = 0;             // planes beyond the cuts that ghosts are filled with
-    int kept = 0;              // planes beyond the cuts that an array made now has; 0: it is whole
-    bool ring = false;         // around the ends of the axis too
+    const Cut* cut = nullptr;  // nullptr: all planes
+    int reach = 0;             // depth to which ghost planes are filled
+    int kept = 0;              // ghost planes stored by an array constructed now; 0: whole arrays
+    bool ring = false;         // also around the ends of a periodic axis
     int lower(int lo) const { return lo > begin ? lo : begin; }
     int upper(int hi) const { return hi < end ? hi : end; }
 };
@@ -157,8 +156,8 @@ inline OwnShare own_share;
 
 }  // namespace detail
 
-/// While it lives, loops over planes are of this rank's own, and sums over planes are of everybody's; and arrays that are made then have
-/// only these planes and `kept` beyond the cuts (core/plane_store.hpp), or all where that is 0. An empty cut changes nothing.
+/// Scope in which loops run over this rank's planes, and sums over planes are global. Arrays constructed in it store these planes and
+/// `kept` ghost planes (core/plane_store.hpp), or all planes where `kept` is 0. An empty partition changes nothing.
 class OwnPlanes {
 public:
     explicit OwnPlanes(const Cut& cut, int reach = 1, int kept = 0, bool ring = false);
@@ -170,7 +169,7 @@ private:
     detail::OwnShare before_;
 };
 
-/// While it lives, loops over planes are of as many planes more beyond both cuts: of what each rank finds there for itself.
+/// Scope in which loops also run over this many ghost planes on both sides: redundant local work instead of communication.
 class WiderPlanes {
 public:
     explicit WiderPlanes(int planes) : before_(detail::own_share) {
@@ -185,7 +184,7 @@ private:
     detail::OwnShare before_;
 };
 
-/// While it lives, every rank does everything: the same work, with the same answer. Not `really`: nothing changes.
+/// Scope of replicated work: every rank does the same work and gets the same result. `really` false: no effect.
 class AllPlanes {
 public:
     explicit AllPlanes(bool really = true) : before_(detail::own_share) {
@@ -199,16 +198,16 @@ private:
     detail::OwnShare before_;
 };
 
-/// From here on ghosts are filled this deep beyond the cuts: as far as anything moves in a step.
+/// Sets the depth to which ghost planes are filled from here on: the largest displacement in a step.
 inline void set_reach(int planes) { detail::own_share.reach = planes; }
 
-/// Are loops over planes those of one rank among several?
+/// Returns whether loops over planes are distributed over several ranks.
 inline bool over_ranks() { return detail::own_share.cut != nullptr; }
 
-/// Is this plane among those that loops over planes are of now?
+/// Returns whether the current loop range includes this plane.
 inline bool is_own_plane(int plane) { return plane >= detail::own_share.begin && plane < detail::own_share.end; }
 
-/// What the ranks give, added up; in one process, and where every rank does everything, what is given.
+/// Sum of a value over the ranks; in one process, or for replicated work, the value itself.
 inline std::int64_t sum_of_ranks(std::int64_t own) {
     if (!over_ranks()) return own;
     const std::vector<std::int64_t> list = of_ranks(own);

@@ -1,4 +1,4 @@
-// A surface of triangles, or in 2D of lines: closed, its front outside the liquid.
+// A closed surface of triangles, or in 2D of lines, oriented outward from the liquid.
 #pragma once
 #include "core/types.hpp"
 
@@ -14,8 +14,8 @@ struct SurfaceMesh {
     std::vector<std::array<int, 2>> lines;    // in 2D, instead of triangles: from point to point, the liquid on their left
     std::vector<Vec<3>> normals;              // of each point, outwards, of length one
     std::vector<Vec<3>> velocity;             // of the liquid at each point [m/s]; empty where it is not known
-    std::vector<real> thickness;              // liquid along the inward normal of each point [m]
-    /// Over ranks that have a part each: so many points have those before this one; corners and lines are numbers among those of all.
+    std::vector<real> thickness;              // thickness of the liquid along the inward normal of each point [m]
+    /// In parallel, where each rank has a part: number of points of the previous ranks. Corners and lines are global indices.
     std::size_t first = 0;
 };
 

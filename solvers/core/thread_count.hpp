@@ -1,15 +1,15 @@
-// A bound on the number of threads, for the loops of one thread.
+// A bound on the number of threads for the loops of one thread.
 #pragma once
 
 namespace weir {
 
-/// More than any machine has; libgomp keeps them on its stack, and of a hundred thousand the stack overflows.
+/// More than any machine has. libgomp keeps an array per thread on its stack; a hundred thousand threads overflow it.
 inline constexpr int most_threads = 1024;
 
 /// True after set_threads(count > 0): that number is used as it is.
 bool thread_count_is_set();
 
-/// While it lives, loops of the calling thread use at most `most` threads. Without effect where thread_count_is_set().
+/// Scope in which loops of the calling thread use at most `most` threads. No effect where thread_count_is_set().
 class ThreadCountScope {
 public:
     explicit ThreadCountScope(int most);

@@ -1,4 +1,4 @@
-// Scalars, small vectors and cell indices: the vocabulary of every solver. One source for 2D and 3D.
+// Scalars, small vectors and cell indices, used by every solver. One source for 2D and 3D.
 #pragma once
 #include <array>
 #include <cmath>

@@ -28,7 +28,7 @@ namespace {
 /// An open file.
 class Descriptor {
 public:
-    /// Does not wait for the other end of a pipe.
+    /// Opens without waiting for the other end of a pipe.
     explicit Descriptor(const std::filesystem::path& path) : number_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
     ~Descriptor() {
         if (number_ >= 0) close(number_);
@@ -46,11 +46,11 @@ private:
                    std::to_string(most) + " are read");
 }
 
-/// All that is there, in pieces, because a file may grow, and some have no size.
+/// Reads everything, in pieces, because a file may grow and some files report no size.
 std::string read_all(int file, const std::string& name, std::size_t size, std::size_t most) {
     std::string all;
     constexpr std::size_t piece = std::size_t{1} << 16;
-    for (std::size_t wanted = size + 1;; wanted = std::max(all.size() + piece, 2 * all.size())) {  // one more, to see the end
+    for (std::size_t wanted = size + 1;; wanted = std::max(all.size() + piece, 2 * all.size())) {  // one byte more, to detect the end
         const std::size_t had = all.size();
         all.resize(std::min(wanted, most + 1));
         for (std::size_t at = had; at < all.size();) {
@@ -64,7 +64,7 @@ std::string read_all(int file, const std::string& name, std::size_t size, std::s
     }
 }
 
-/// Throws BadInput where the file is not there, is a folder, or is neither a regular file nor, with `pipes`, a pipe.
+/// Throws BadInput where the file does not exist, is a folder, or is neither a regular file nor, with `pipes`, a pipe.
 struct stat status_of(const Descriptor& file, const std::string& name, bool pipes) {
     struct stat status {};
     if (file.number() < 0 || fstat(file.number(), &status) != 0) throw BadInput(name + ": cannot be read: " + std::strerror(errno));
@@ -74,7 +74,7 @@ struct stat status_of(const Descriptor& file, const std::string& name, bool pipe
                                  : ": this is a device or a pipe; only regular files are read, which have an end"));
 }
 
-/// Until there are bytes, or the other end is closed.
+/// Waits until there are bytes or the other end is closed.
 void wait_for_bytes(int file) {
     pollfd wanted{file, POLLIN, 0};
     while (poll(&wanted, 1, -1) < 0 && errno == EINTR) {
@@ -93,7 +93,7 @@ std::string first_bytes_of(const std::filesystem::path& path, std::size_t most) 
     while (all.size() < most) {
         const ssize_t got = read(file.number(), block.data(), std::min(block.size(), most - all.size()));
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0 && errno == EAGAIN) {  // a program has the other end, and has not written yet
+        if (got < 0 && errno == EAGAIN) {  // a program has opened the other end but not written yet
             waited = true, wait_for_bytes(file.number());
             continue;
         }

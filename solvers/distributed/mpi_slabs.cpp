@@ -1,5 +1,5 @@
-// Slabs over MPI. What travels is known to both ends beforehand (core/halo.hpp), so that there is one message from each rank to each and
-// none that says how much. Only the thread that joined may call.
+// Slabs over MPI. Both sides know the size of each message beforehand (core/halo.hpp): there is one message per pair of ranks, and none for
+// sizes. Only the thread that joined may call.
 #include "core/slabs.hpp"
 #include "distributed/mpi_entry.hpp"
 #include "distributed/polling_wait.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr unsigned char poison_byte = 0xff;  // of NaN, single or double
 
-/// What one kind of array exchanges at a refresh.
+/// The exchange of one kind of array in a refresh.
 struct Plan {
     Cut cut;
     int count, deep;
@@ -44,7 +44,7 @@ public:
         MPI_Comm_size(here, &ranks_here);
         MPI_Comm_free(&here);
         if (ranks_here > static_cast<int>(std::thread::hardware_concurrency())) wait_ = PollingWait(std::chrono::microseconds(100));
-        prctl(PR_SET_TIMERSLACK, 1000UL);  // [ns] a sleep of 20 us would be one of 70
+        prctl(PR_SET_TIMERSLACK, 1000UL);  // [ns] by default a sleep of 20 us would take 70 us
     }
     ~MpiSlabs() override { MPI_Finalize(); }
 
@@ -87,7 +87,7 @@ public:
         const auto take = [&](const void* data, std::size_t count) {
             if (!failure) try {
                     sink(data, count);
-                } catch (...) {  // the others wait until they have sent all
+                } catch (...) {  // the other ranks wait until all data has been sent
                     failure = std::current_exception();
                 }
         };
@@ -169,7 +169,7 @@ public:
     void abort(int exit_code) override { MPI_Abort(MPI_COMM_WORLD, exit_code); }
 
 private:
-    /// A plane may be of any size, and a message of more than 2 GB: counts are of planes.
+    /// A plane may have any size, and a message may exceed 2 GB: counts are in planes.
     struct PlaneType {
         MPI_Datatype type{};
         explicit PlaneType(std::size_t bytes) {
@@ -181,7 +181,7 @@ private:
         PlaneType& operator=(const PlaneType&) = delete;
     };
 
-    /// What lies in several places of memory, as one message.
+    /// Non-contiguous memory as one message.
     struct Scattered {
         MPI_Datatype type{};
         Scattered(const std::vector<int>& lengths, const std::vector<MPI_Aint>& places) {
@@ -193,14 +193,14 @@ private:
         Scattered& operator=(const Scattered&) = delete;
     };
 
-    /// The planes of all arrays that go to a rank, or come from it, to lengths_ and places_, and how many bytes they are.
+    /// Appends the planes of all arrays that are sent to, or received from, a rank to lengths_ and places_; returns their bytes.
     std::size_t collect(const Cut& cut, std::span<const Planes> arrays, int deep, bool ring, int peer, bool sends) {
         lengths_.clear(), places_.clear();
         std::size_t bytes = 0;
         for (const Planes& planes : arrays)
             for (const auto& message : plan_of(cut, planes.count, deep, ring).messages) {
                 if (message.peer != peer || message.sends != sends) continue;
-                for (int plane = message.planes.begin; plane < message.planes.end; ++plane) {  // one alone is of less than 2 GB
+                for (int plane = message.planes.begin; plane < message.planes.end; ++plane) {  // a single plane is smaller than 2 GB
                     lengths_.push_back(static_cast<int>(planes.bytes));
                     places_.emplace_back();
                     MPI_Get_address(plane_at(planes, plane), &places_.back());
@@ -216,7 +216,7 @@ private:
         wait_for_requests();
     }
 
-    /// MPI's own waits never sleep: on a machine that others use too, the rank that is waited for then does not get to run.
+    /// MPI's own waits never sleep: on a shared machine the rank that is waited for would then not be scheduled.
     void wait_for_requests() {
         wait_.until([&] {
             int done = 0;
@@ -247,7 +247,7 @@ private:
         return plans_.back();
     }
 
-    /// NaN in every plane that is neither owned nor was brought, for a test: nothing may read them before they are brought.
+    /// For a test: sets every plane that is neither owned nor filled to NaN; no code may read stale ghosts.
     void poison(const Plan& plan, const Planes& planes) const {
         std::vector<char> known(static_cast<std::size_t>(planes.count), 0);
         for (int plane = plan.cut.begin(rank()); plane < plan.cut.end(rank(), planes.count); ++plane)
@@ -261,7 +261,7 @@ private:
     }
 
     bool poisons_;
-    /// Longer than a message takes, and than slabs differ in a pass where every rank of this machine has a processor.
+    /// Longer than a message takes, and than ranks differ in a pass when each has a processor of its own.
     PollingWait wait_{std::chrono::microseconds(2000)};
     MPI_Comm farewell_{};
     std::vector<Plan> plans_;

@@ -1,5 +1,5 @@
-// How a rank waits for others. A rank that polls on a processor of its own sees a message at once. Where other processes are busy too, a
-// rank that polls uses up its share of the processor, and then does not run when the message arrives: it must sleep instead.
+// How a rank waits for other ranks. A rank that polls on a processor of its own sees a message at once. Where other processes are busy too,
+// a polling rank uses up its time slice and is not running when the message arrives: it must sleep instead.
 #pragma once
 #include <chrono>
 #include <ctime>
@@ -21,15 +21,15 @@ struct ThreadTimes {
     static void yield() { std::this_thread::yield(); }
 };
 
-/// Times: as ThreadTimes.
+/// Times: an interface like ThreadTimes.
 template <class Times>
 class PollingWaitBy {
 public:
     /// longest: how long a wait polls before it sleeps, on a processor of its own.
     explicit PollingWaitBy(std::chrono::microseconds longest) : longest_(longest) {}
 
-    /// Returns when done() is true: polls, then sleeps between polls. After a wait in which other processes had the processor, waits sleep
-    /// at once, for a second.
+    /// Returns when done() is true: polls, then sleeps between polls. After a wait in which other processes used the processor, waits sleep
+    /// at once, for one second.
     template <class Done>
     void until(Done&& done) {
         if (done()) return;
@@ -37,7 +37,7 @@ public:
         if (start >= busy_until_ && poll(start, done)) return;
         while (!done()) Times::nap(nap);
     }
-    /// The time so far in which waits slept at once, because other processes were busy [s].
+    /// Total time in which waits slept at once, because other processes were busy [s].
     double busy_seconds() const {
         const auto now = Times::now();
         const auto to_come = busy_until_ > now ? busy_until_ - now : duration::zero();
@@ -45,21 +45,21 @@ public:
     }
 
     static constexpr std::chrono::microseconds nap{20};
-    /// A poll lost the processor to another process where so much of its time was not its own: processes take turns of some milliseconds;
-    /// interrupts take some ten microseconds. Waits that poll for less than that waste little, and go on as they are.
+    /// A poll that lost this much of its time lost the processor to another process: time slices are some milliseconds, interrupts some ten
+    /// microseconds. Shorter polling waits waste little and stay unchanged.
     static constexpr std::chrono::microseconds lost{500};
     static constexpr std::chrono::seconds busy{1};
 
 private:
     using duration = typename Times::duration;
-    /// Whether it was done before the polls were over.
+    /// Returns whether done() became true while polling.
     template <class Done>
     bool poll(duration start, Done& done) {
         const duration before = Times::own();
         bool is_done = false;
         auto now = start;
         for (; !is_done && now - start < longest_; now = Times::now())
-            if (!(is_done = done())) Times::yield();  // to the rank that is waited for, where there are more than processors
+            if (!(is_done = done())) Times::yield();  // to the rank that is waited for, where there are more ranks than processors
         const duration own = Times::own() - before;
         if (longest_ > lost && now - start - own > lost) busy_until_ = now + busy, busy_ += busy;
         return is_done;

@@ -19,12 +19,12 @@ namespace weir::distributed {
 
 namespace {
 
-/// Longer than ranks of one machine differ in what they do between two exchanges, where all of them fail at the same place.
+/// When all ranks fail at the same place, they arrive within this time.
 constexpr double patience = 10;  // [s]
 
-int own_stderr = -1;  // of a rank whose words are not shown
+int own_stderr = -1;  // of a rank whose output is hidden
 
-/// The first of these that is set, by Open MPI, by MPICH and Intel's MPI, by Slurm with PMIx.
+/// The first variable of these that is set: by Open MPI, by MPICH and Intel MPI, by Slurm with PMIx.
 int number_of(std::initializer_list<const char*> names, int fallback) {
     for (const char* name : names)
         if (const char* text = std::getenv(name)) return std::atoi(text);
@@ -76,7 +76,7 @@ int leave(int exit_code, const std::string& complaint) {
         std::fflush(nullptr);
         if (own_stderr >= 0) dup2(own_stderr, STDERR_FILENO);
         if (own_stderr >= 0) std::fprintf(stderr, "rank %d alone: %s\n", slabs().rank(), complaint.c_str());
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // for the launcher to read it: MPICH's drops what comes with an abort
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // for the launcher to read it: MPICH's drops output after an abort
         slabs().abort(exit_code);
     }
     set_slabs(nullptr);

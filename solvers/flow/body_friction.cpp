@@ -6,11 +6,11 @@ namespace weir::flow {
 
 namespace {
 
-/// As of the fluid alone (helmholtz.cpp).
+/// The same as without bodies (helmholtz.cpp).
 constexpr real tolerance = 1e-6;
 constexpr int max_iterations = 2000;
 
-/// Conductance of a wall: ρν ΔV/(θ h²) [N by m/s].
+/// Conductance of a wall: ρν ΔV/(θ h²) [N per m/s].
 template <int D>
 real conductance(const MacState<D>& s, const WallLink<D>& link) {
     return s.rho * s.nu * s.u.cell_volume() * link.nearer / (s.u.h[link.across] * s.u.h[link.across]);
@@ -34,7 +34,7 @@ void BodyFriction<D>::size(Vector& v, const MacState<D>& s) const {
     v.bodies.resize(s.grip->riders.size());
 }
 
-/// Fluid's part, then the bodies', each in its order.
+/// Inner product: the fluid's part, then the bodies', in fixed order.
 template <int D>
 real BodyFriction<D>::dot(const Vector& x, const Vector& y) const {
     real sum = 0;
@@ -45,7 +45,7 @@ real BodyFriction<D>::dot(const Vector& x, const Vector& y) const {
     return sum;
 }
 
-/// ∇²q of the grid's neighbours, without what reaches through walls: these are added by who knows the walls' velocity.
+/// ∇²q of the grid neighbours, without links across walls: their terms are added where the wall velocity is known.
 template <int D>
 void BodyFriction<D>::laplacian_of(const Padded<D>& q, const MacState<D>& s, int a, Grid<real, D>& out) const {
     const auto& mask = s.grip->takes_part[static_cast<std::size_t>(a)];
@@ -54,7 +54,7 @@ void BodyFriction<D>::laplacian_of(const Padded<D>& q, const MacState<D>& s, int
         if (link.axis == a) out(link.node) -= (q(link.beyond) - q(link.node)) / (s.u.h[link.across] * s.u.h[link.across]);
 }
 
-/// ν∇² of before, walls included, times ρ ΔV, into the image.
+/// Explicit part: ν∇² of the previous velocity, walls included, times ρ ΔV, stored in the image.
 template <int D>
 static void add_walls_of_before(const MacState<D>& s, std::array<Grid<real, D>, D>& rate) {
     const real mass = s.rho * s.u.cell_volume();
@@ -145,7 +145,7 @@ void BodyFriction<D>::set_diagonal(const MacState<D>& s, real dt) {
     }
 }
 
-/// z = residual/diagonal into the image; answers by residual · z.
+/// z = residual/diagonal, stored in the image; returns residual · z.
 template <int D>
 real BodyFriction<D>::precondition() {
     for (std::size_t c = 0; c < D; ++c)
@@ -156,7 +156,7 @@ real BodyFriction<D>::precondition() {
     return dot(residual_, image_);
 }
 
-/// direction = z + β direction; the first has no other before it.
+/// direction = z + β direction; the first direction is z.
 template <int D>
 void BodyFriction<D>::turn(real beta) {
     for (std::size_t c = 0; c < D; ++c) {
@@ -169,7 +169,7 @@ void BodyFriction<D>::turn(real beta) {
             direction_bodies_[b][k] = image_.bodies[b][k] + (beta == 0 ? 0 : beta * direction_bodies_[b][k]);
 }
 
-/// Along the direction as far as the residual falls.
+/// Updates solution and residual with the optimal step along the direction.
 template <int D>
 void BodyFriction<D>::walk(real rz) {
     real met = 0;
@@ -190,7 +190,7 @@ void BodyFriction<D>::walk(real rz) {
         }
 }
 
-/// Conjugate gradients with the diagonal as preconditioner: walls very near to nodes make entries that differ by a hundred.
+/// Conjugate gradients with Jacobi preconditioning: walls very close to nodes give entries a hundred times larger.
 template <int D>
 void BodyFriction<D>::solve(MacState<D>& s, real dt) {
     set_right_side(s, dt);
@@ -212,7 +212,7 @@ void BodyFriction<D>::solve(MacState<D>& s, real dt) {
     finish(s, dt);
 }
 
-/// u, and what friction gave the bodies: as much as it took from the fluid.
+/// Updates u and the friction impulses of the bodies: equal and opposite to the fluid's.
 template <int D>
 void BodyFriction<D>::finish(MacState<D>& s, real dt) {
     for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {

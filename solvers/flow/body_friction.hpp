@@ -1,11 +1,11 @@
-// The viscosity of a fluid and of the bodies that it sticks to, as one linear system: with δ the change of the velocity, δV that of a
-// body's, and c = dt ρν ΔV/(θ h²) at each of its walls (staggered/wall_grip.hpp)
+// Viscosity of a fluid and its no-slip bodies as one linear system. With δ the change of the fluid's velocity, δV that of a body's, and c =
+// dt ρν ΔV/(θ h²) at each wall link (staggered/wall_grip.hpp):
 //
 //     ρ ΔV (I − dt ν∇²) δ + Σ c (δ − J δV) = ρ ΔV r,      M δV + Σ Jᵀ c (J δV − δ) = R,      J: the wall's velocity by the body's
 //
-// It is symmetric and positive, so that conjugate gradients solve it, and a light body is carried by the fluid and does not swing against
-// it, whatever the step. The Laplacian gives the walls μ ∂u/∂n; on a wall that turns by ω the stress has −μ ω × n more, of which the
-// torque is −2 μ V ω for a body of any shape.
+// The matrix is symmetric positive definite, so conjugate gradients solve it. A light body follows the fluid without oscillation, for any
+// step. The Laplacian gives the wall stress μ ∂u/∂n. A wall rotating with ω has the additional stress −μ ω × n, whose torque is −2 μ V ω
+// for a body of any shape.
 #pragma once
 #include "flow/wall_rates.hpp"
 #include "staggered/state.hpp"
@@ -17,9 +17,9 @@ template <int D>
 class BodyFriction {
 public:
     explicit BodyFriction(const MacState<D>& s);
-    /// The step dt from the velocity of before, where all other rates are in.
+    /// Advances by dt from the previous velocity; all other explicit rates must be applied already.
     void solve(MacState<D>& s, real dt);
-    /// The faces inside bodies move with them.
+    /// Sets the faces inside bodies to the bodies' velocities.
     void carry(MacState<D>& s) const;
     int iterations() const { return iterations_; }
     std::size_t bytes() const;
@@ -45,7 +45,7 @@ private:
     std::array<Boundary<D>, D> homogeneous_;
     PaddedVelocity<D> direction_;
     std::vector<rigid::Twist<D>> direction_bodies_;
-    std::array<WallRows<D>, D> rows_;  // beside solids that are no bodies
+    std::array<WallRows<D>, D> rows_;  // beside solids other than bodies
     Vector residual_, solution_, image_, diagonal_;
     int iterations_ = 0;
 };

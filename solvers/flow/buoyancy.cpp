@@ -1,4 +1,4 @@
-// Buoyancy: what temperature and smoke do to the weight of the fluid.
+// Buoyancy: the force of temperature and smoke on the fluid.
 #include "flow/effects.hpp"
 #include "staggered/rows.hpp"
 
@@ -8,8 +8,8 @@ namespace {
 
 using scene::Type;
 
-/// f = (β (T − T_ambient) − α s) up     Fedkiw, Stam & Jensen 2001, eq. 8; with α = 0 and β = g × thermal expansion, Boussinesq's force.
-/// α [m/s² per unit of smoke], β [m/s² per kelvin]. A constant that is 0 asks for no field.
+/// f = (β (T − T_ambient) − α s) up     Fedkiw, Stam & Jensen 2001, eq. 8; with α = 0 and β = g × thermal expansion, the Boussinesq force.
+/// α [m/s² per unit of smoke], β [m/s² per kelvin]. A constant that is 0 requires no field.
 template <int D>
 struct Buoyancy final : MacEffect<D> {
     real alpha, beta, ambient, cfl;
@@ -27,7 +27,7 @@ struct Buoyancy final : MacEffect<D> {
             const real push = dt * factor;
             for_each_row(faces.lo, faces.hi, [&](const Index<D>& first, int count) {
                 real* v = &s.u[up](first);
-                Index<D> above = first, under = first - e<D>(up);  // on a side there is one cell, or the one around a periodic axis
+                Index<D> above = first, under = first - e<D>(up);  // on a side the single adjacent cell, or the one across a periodic end
                 above[up] = std::min(above[up], q.extent()[up] - 1);
                 if (under[up] < 0) under[up] = s.sides.periodic(up) ? q.extent()[up] - 1 : 0;
                 const real *here = &q(above), *below = &q(under);

@@ -1,4 +1,4 @@
-// Vorticity confinement: gives back to vortices what the advection scheme takes (Steinhoff & Underhill 1994; Fedkiw, Stam & Jensen 2001).
+// Vorticity confinement: compensates the numerical dissipation of vortices (Steinhoff & Underhill 1994; Fedkiw, Stam & Jensen 2001).
 #include "flow/effects.hpp"
 #include "staggered/rows.hpp"
 
@@ -17,7 +17,7 @@ struct Confinement final : MacEffect<D> {
         plan.scratch("vorticity_magnitude");
         for (int a = 0; a < D; ++a) plan.scratch(force[static_cast<std::size_t>(a)]);
     }
-    /// Of the velocity before the step, at both ends of a path.
+    /// The force of the velocity before the step, applied in halves at the departure and arrival points.
     void depart(MacState<D>& s, real dt) override {
         find_force(s);
         push(s, dt);
@@ -31,7 +31,7 @@ struct Confinement final : MacEffect<D> {
 
 private:
     struct alignas(64) Row : std::array<real, row_block> {};
-    bool departed_ = false;  // the force of this step stands in the scratch fields
+    bool departed_ = false;  // the scratch fields contain the force of this step
 
     std::array<Grid<real, D>*, D> force_fields(MacState<D>& s) const {
         std::array<Grid<real, D>*, D> f;
@@ -67,8 +67,8 @@ private:
             });
     }
 
-    /// ω at the centres of a row of cells by central differences of the velocity at the centres around them; 2D has only the third
-    /// component, which stands in the first field.
+    /// ω at the centres of a row of cells, by central differences of the cell-centred velocity; 2D has only the third component, stored in
+    /// the first field.
     static void vorticity(const MacState<D>& s, const Index<D>& first, int count, const std::array<Grid<real, D>*, D>& omega) {
         for (int c = 0; c < (D == 2 ? 1 : 3); ++c) {
             const int a = D == 2 ? 0 : (c + 1) % 3, b = D == 2 ? 1 : (c + 2) % 3;
@@ -79,7 +79,7 @@ private:
             for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) out[i] = along_a[i] - along_b[i];
         }
     }
-    /// Along b, of component a.
+    /// Slope of component a along b.
     static void slope_of_velocity(const MacState<D>& s, int a, int b, const Index<D>& first, int count, Row& slope) {
         const auto& u = s.before[a];
         const real *q = u.at(first), width = 2 * s.u.h[b];
@@ -93,7 +93,7 @@ private:
 #pragma omp simd
         for (int i = 0; i < count; ++i) out[i] = std::sqrt(D == 2 ? x[i] * x[i] : x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
     }
-    /// Of a cell field along one axis, one-sided at the sides of the domain.
+    /// Slope of a cell field along one axis, one-sided at the sides of the domain.
     static void slope(const Grid<real, D>& q, int a, real h, const Index<D>& first, int count, Row& slope) {
         const int last = q.extent()[a] - 1;
         real* out = slope.data();
@@ -127,7 +127,7 @@ private:
             if constexpr (D == 3) z[i] = z[i] / most;
         }
     }
-    /// ε h (N × ω) in fluid cells, in the place of ω.
+    /// ε h (N × ω) in fluid cells, replacing ω.
     static void cross(const Row (&n)[D], const poisson::Cell* cells, real strength, const Index<D>& first, int count,
                       const std::array<Grid<real, D>*, D>& f) {
         Row fluid;  // ε h, or 0

@@ -1,11 +1,11 @@
-// Fields of the flow that are written between two steps, and what is made good afterwards: a velocity that walls, solids and ∇·u = 0 allow,
-// sources that hold what they prescribe.
+// Flow fields written between two steps, and the restored invariants: a velocity that satisfies ∇·u = 0 and the conditions of walls and
+// solids, and the values prescribed by sources.
 #include "flow/solver.hpp"
 #include "staggered/inflow.hpp"
 
 namespace weir::flow {
 
-/// Not the velocity beside bodies, whose motion goes with it, nor where ice holds it; nor what follows from an enthalpy.
+/// Not editable: the velocity in scenes with bodies, whose motion is coupled to it, or with drag of ice; fields derived from the enthalpy.
 template <int D>
 std::vector<EditableField> FlowSolver<D>::editable() {
     std::vector<EditableField> list;
@@ -19,7 +19,7 @@ std::vector<EditableField> FlowSolver<D>::editable() {
     return list;
 }
 
-/// The pressure that the next step begins with is that of before: what projects the new velocity is no pressure of the flow.
+/// The next step starts with the previous pressure: the pressure that projects the new velocity is not that of the flow.
 template <int D>
 void FlowSolver<D>::edited(const EditableField& field) {
     if (field.name != "velocity") return hold();

@@ -13,9 +13,9 @@ inline const std::vector<Stage> stages{Stage::source, Stage::force, Stage::carri
 /// All of them, in the order in which they act in a stage: gravity first.
 const EffectKinds& effect_kinds();
 
-/// How the scene's scheme takes explicit terms, so that a steady flow does not depend on the step where the scheme allows it: with fluxes,
-/// from the fields of before each (sub)step; along paths to second order (MacCormack), half where they begin and half where they end;
-/// along paths to first order, where they end.
+/// Where the scene's scheme applies explicit terms; steady flows then do not depend on the step where the scheme allows it. Flux form: from
+/// the fields before each (sub)step. Second-order semi-Lagrangian (MacCormack): half at the departure point, half at the arrival point.
+/// First-order semi-Lagrangian: at the arrival point.
 inline Scheme scheme_of(const scene::Scene& scene) { return AdvectionOptions(scene.root().table("scheme")).scheme; }
 
 EffectKind buoyancy();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<const char*, 2> settable{"smoke", "temperature"};
 
-/// The entries of a grid in a shape, and whether there are any; over ranks, of the planes that this one holds.
+/// The entries of a grid inside a shape, and whether there are any. In parallel, of the planes that this rank stores.
 template <int D, class T, class Position>
 std::pair<std::vector<std::size_t>, bool> covered(const geometry::Shape<D>& shape, const Grid<T, D>& grid, Position position) {
     const Index<D>& extent = grid.extent();
@@ -29,7 +29,7 @@ std::pair<std::vector<std::size_t>, bool> covered(const geometry::Shape<D>& shap
     return {std::move(entries), any};
 }
 
-/// t < moment, where a sum of rounded steps that ends at the moment counts as there.
+/// t < moment, up to rounding of a sum of steps that ends at the moment.
 bool before(real t, real moment) { return t < moment * (1 - 1e-9); }
 
 }  // namespace
@@ -103,7 +103,7 @@ void Emitters<D>::apply(MacState<D>& s, real) {
     for (auto& field : s.fields) field.hold();
 }
 
-/// No step crosses the moment at which an emitter opens: what it will heat and push is not known before.
+/// No step crosses the time at which an emitter opens: its heating and forces are unknown before.
 template <int D>
 real Emitters<D>::max_dt(const MacState<D>& s) const {
     real limit = max_rate_ > 0 ? cfl_ / max_rate_ : infinity;

@@ -1,18 +1,18 @@
-// Emitters: regions in which smoke, temperature and velocity are set to given values while they work.
+// Emitters: regions in which smoke, temperature and velocity have prescribed values while they are open.
 #pragma once
 #include "flow/effects.hpp"
 #include "geometry/shape.hpp"
 
 namespace weir::flow {
 
-/// All emitters of a scene as one source. Which cells and faces each covers is found once: emitters do not move.
+/// All emitters of a scene as one source. The cells and faces of each are found once: emitters do not move.
 template <int D>
 class Emitters final : public MacEffect<D> {
 public:
-    /// Refuses emitters that give nothing, are thinner than a cell or lie inside the solids of `state`.
+    /// Rejects emitters that prescribe nothing, are thinner than a cell or lie inside the solids of `state`.
     Emitters(const scene::Scene& scene, const MacState<D>& state);
     static bool any(const scene::Scene& scene) { return scene.has("emitters") && !scene.root().tables("emitters").empty(); }
-    /// The fields that the scene's emitters set.
+    /// The fields that the scene's emitters prescribe.
     static FieldPlan& needs(const scene::Scene& scene, FieldPlan& plan);
 
     Stage stage() const override { return Stage::source; }
@@ -24,7 +24,7 @@ private:
         std::string field;  // empty: a velocity component
         int axis = -1;
         real value = 0;
-        std::vector<std::size_t> entries;  // over ranks, of the planes that this one holds
+        std::vector<std::size_t> entries;  // in parallel, of the planes that this rank stores
         bool any;                          // on all ranks
     };
     struct Emitter {
@@ -32,7 +32,7 @@ private:
         std::vector<Set> sets;
     };
     static Emitter make(const scene::Table& table, const MacState<D>& s);
-    /// Why nothing would come of it; empty where something does.
+    /// The reason why an emitter has no effect; empty where it has one.
     static std::string idle(const Emitter& emitter, const geometry::Shape<D>& shape, const MacState<D>& state);
 
     std::vector<Emitter> emitters_;

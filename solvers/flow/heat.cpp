@@ -14,7 +14,7 @@ using poisson::Cell;
 
 }  // namespace
 
-/// Temperature and share of liquid that belong to the enthalpies.
+/// Computes temperature and liquid fraction from the enthalpies.
 template <int D>
 void Heat<D>::note(MacState<D>& s) {
     const auto& h = s["enthalpy"];
@@ -65,7 +65,7 @@ void Heat<D>::lift(MacState<D>& s, real dt) const {
     const auto& T = s["temperature"];
     const Nodes<D> faces = free_faces(s.u, s.sides, up);
     for_each_row(faces.lo, faces.hi, [&](const Index<D>& first, int count) {
-        Index<D> above = first, under = first - e<D>(up);  // on a side there is one cell, or the one around a periodic axis
+        Index<D> above = first, under = first - e<D>(up);  // on a side the single adjacent cell, or the one across a periodic boundary
         above[up] = std::min(above[up], T.extent()[up] - 1);
         if (under[up] < 0) under[up] = s.sides.periodic(up) ? T.extent()[up] - 1 : 0;
         const real *here = &T(above), *below = &T(under);
@@ -74,7 +74,7 @@ void Heat<D>::lift(MacState<D>& s, real dt) const {
     });
 }
 
-/// Where all is liquid, and was before, there is nothing to do.
+/// Returns at once where everything is liquid now and was in the last step.
 template <int D>
 bool Heat<D>::slow(MacState<D>& s, real dt) {
     const bool was_ice = std::exchange(slows_, any_ice_);
@@ -88,8 +88,8 @@ real Heat<D>::stable_dt(const MacState<D>&) const {
     return explicit_ ? conduction_.longest_euler_step() : infinity;
 }
 
-/// A step lets what is lightest fall through no more than the cells that it may cross, and crosses no moment at which a heater is switched
-/// or the surroundings begin to change otherwise.
+/// In one step buoyancy from rest crosses at most `cfl` cells. No step crosses a time at which a heater is switched or the surroundings
+/// change their rate.
 template <int D>
 real Heat<D>::max_dt(const MacState<D>& s) const {
     real limit = stable_dt(s);

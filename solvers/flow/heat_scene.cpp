@@ -1,4 +1,4 @@
-// What a scene says of heat to the solver "mac": the substance, how it conducts, what sides and heaters give, temperatures at the start.
+// Heat settings of a scene for the solver "mac": substance, conduction, heat from sides and heaters, initial temperatures.
 #include "core/error.hpp"
 #include "flow/heat.hpp"
 #include "geometry/shape.hpp"
@@ -68,7 +68,7 @@ Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
     read_sides(s);
 }
 
-/// What flows in brings the enthalpy of its temperature.
+/// Inflow has the enthalpy of its temperature.
 template <int D>
 void Heat<D>::read_sides(MacState<D>& s) {
     auto& enthalpy = s.field("enthalpy").boundary;

@@ -6,9 +6,9 @@ namespace weir::flow {
 
 namespace {
 
-/// The correction is small (of the order of dt), so six digits of it leave errors far below those of the time scheme.
+/// The correction is of the order of dt, so a relative error of 1e-6 is far below that of the time scheme.
 constexpr real tolerance = 1e-6;
-/// CG's error falls by (√κ − 1)/(√κ + 1) an iteration, κ = 1 + 4 D a/h²: 2000 reach the tolerance up to a/h² of about 1e4.
+/// CG's error falls by (√κ − 1)/(√κ + 1) per iteration, κ = 1 + 4 D a/h²: 2000 reach the tolerance up to a/h² of about 1e4.
 constexpr int max_iterations = 2000;
 
 template <int D, class Row>
@@ -52,7 +52,7 @@ real Helmholtz<D>::dot(const Grid<real, D>& x, const Grid<real, D>& y) const {
     return sum_over(x.extent(), [&](const Index<D>& I) { return x(I) * y(I); });
 }
 
-/// The first direction is the residual: of δ, while r is of δ/scale.
+/// The first direction is the residual, scaled: it is for δ, r for δ/scale.
 template <int D>
 void Helmholtz<D>::begin(const Grid<real, D>& r, const WallRows<D>& walls) {
     fill_planes(direction_, r, boundary_);
@@ -60,7 +60,7 @@ void Helmholtz<D>::begin(const Grid<real, D>& r, const WallRows<D>& walls) {
         walls.each([&](const Index<D>& I, real, real scale) { direction_(I) *= scale; });
         for_each_plane(0, direction_.extent()[D - 1], [&](int plane) { fill_plane_ghosts(direction_, boundary_, plane); });
     }
-    fill_end_planes(direction_, boundary_);  // on all ranks, whoever has walls
+    fill_end_planes(direction_, boundary_);  // on all ranks, including those without walls
 }
 
 template <int D>

@@ -1,4 +1,4 @@
-// What a scene may say to the solver "mac".
+// The schema of the solver "mac".
 #include "staggered/kind.hpp"
 #include "core/traffic.hpp"
 #include "flow/effects.hpp"
@@ -17,7 +17,7 @@ using scene::Type;
 
 namespace {
 
-/// Inflow profiles are the names that this folder knows.
+/// Inflow profiles are those of staggered/inflow.hpp.
 Key sides_key() {
     Key sides{.name = "sides", .type = Type::table};
     for (const char* axis : {"x", "y", "z"})
@@ -36,7 +36,7 @@ Key sides_key() {
     return sides;
 }
 
-/// What of a scene is not cut into slabs yet.
+/// Rejects keys of a scene that are not supported in parallel.
 void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (Heat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts");

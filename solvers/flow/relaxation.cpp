@@ -1,5 +1,5 @@
-// Fields that fade by themselves: heat lost to the surroundings, smoke that settles. Exact over any step along paths; with fluxes a rate
-// like the others, because what fades apart from what flows in leaves a steady state that depends on the step.
+// Relaxation of fields: heat loss to the surroundings, settling smoke. Exact for any step with semi-Lagrangian schemes. In flux form it is
+// an explicit rate like the others, because a split decay makes the steady state depend on the step.
 #include "flow/effects.hpp"
 
 namespace weir::flow {
@@ -25,7 +25,7 @@ struct Relaxation : MacEffect<D> {
         const real lost = rate * dt;
         for_each_cell(s.extent(), [&](const Index<D>& I) { q.values(I) -= lost * (q.before(I) - ambient); });
     }
-    /// Where it is a rate, the step in which Euler's explicit scheme would take all.
+    /// Explicit Euler as a rate: the step that removes everything.
     real max_dt(const MacState<D>&) const override { return scheme == Scheme::conservative && rate > 0 ? 1 / rate : infinity; }
 
 private:

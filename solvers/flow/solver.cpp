@@ -15,8 +15,8 @@
 
 namespace weir::flow {
 
-/// One step of the basic fluid algorithm (Bridson 2015, ch. 2), in one stage along characteristics or in the three of a Runge-Kutta
-/// scheme. Enters and leaves with ∇·u = 0 to the projection's tolerance.
+/// One step of the basic fluid algorithm (Bridson 2015, ch. 2), in one stage (semi-Lagrangian) or in the three stages of a Runge-Kutta
+/// scheme. Before and after it, ∇·u = 0 to the projection's tolerance.
 template <int D>
 StepReport FlowSolver<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
@@ -27,20 +27,20 @@ StepReport FlowSolver<D>::step(real dt) {
         const real part = stage.fraction() * dt;
         remember(dt);  // uⁿ, qⁿ with their ghosts
         if (walls_ && !walls_->found()) meet_walls(t, t);
-        depart(dt);                   // u += dt f(uⁿ, qⁿ): all of it with fluxes, half where paths are followed to second order
-        advect_fields(dt);            // Dq/Dt = 0    only fields that an effect asked for
+        depart(dt);                   // u += dt f(uⁿ, qⁿ): all of it in flux form, half of it for MacCormack
+        advect_fields(dt);            // Dq/Dt = 0    only fields requested by an effect
         advect_velocity(dt);          // Du/Dt = 0
         blend(stage);                 // γ and ζ of a Runge-Kutta stage
         apply(Stage::carried, part);  // (I − dt κ∇²) q = ...
         conduct(part);                // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
-        arrive(dt);                   // u += what is left of dt f(u, q)
+        arrive(dt);                   // u += the rest of dt f(u, q)
         if (state_.grip) rub(t + part, part);
         if (walls_ && solids_.moving()) meet_walls(t + part, t);
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
         if (walls_) walls_->hold(state_, part / state_.rho);
         move_solids(t += part, part);  // u·n = u_solid·n
         project(part);                 // ∇·u = 0
-        hold();                        // what emitters and solids prescribe
+        hold();                        // values prescribed by emitters and solids
     }
     apply(Stage::finish, dt);
     if (solids_.moving()) clear_solids();
@@ -64,7 +64,7 @@ int planes_reached(real cells, int planes) {
 
 namespace {
 
-/// Beyond the cuts, of arrays that nobody asks for more of: a difference of differences looks so far.
+/// Ghost planes of arrays without a larger requirement: the width of two nested differences.
 constexpr int planes_beside = 2;
 
 /// Fastest crossing of a cell along a moving wall or through an inflow [1/s].
@@ -77,14 +77,14 @@ real fastest_side(const MacState<D>& s) {
     return rate;
 }
 
-/// Where nothing else is said, a room is as warm as its surroundings: the ambient temperature of buoyancy, or of cooling.
+/// Initial temperature where the scene gives none: the ambient temperature of buoyancy or of cooling.
 real ambient_temperature(const scene::Scene& scene) {
     for (const char* effect : {"buoyancy", "cooling"})
         if (const auto* table = scene.effect(effect)) return table->number("ambient");
     return 0;
 }
 
-/// What the rank knows that owns one end of the cut axis: f() of it alone.
+/// Evaluates f() on the rank that owns one end of the partitioned axis and broadcasts the result.
 template <class F>
 auto of_rank_at(int end, F&& f) -> decltype(f()) {
     if (!over_ranks()) return f();
@@ -97,7 +97,7 @@ auto of_rank_at(int end, F&& f) -> decltype(f()) {
     return of_ranks(own)[static_cast<std::size_t>(owner)];
 }
 
-/// What flows in must flow out: through an open side, or through another inflow that takes as much out. The sums' rounding is no inflow.
+/// Inflow must be balanced: by an open side, or by equal outflow through other inflow sides, up to rounding of the sums.
 template <int D>
 void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
     real net = 0, gross = 0, faces = 0;
@@ -128,13 +128,13 @@ void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
                  "a side of kind \"outflow\", or an inflow with the velocity to the outside that takes out as much");
 }
 
-/// How many moments of the run solids are tried at before it: as many as cost little beside its steps.
+/// Number of times at which solids are tested before the run, chosen to be cheap compared with its steps.
 int moments_of(std::size_t cells) { return static_cast<int>(std::clamp<std::size_t>(4'000'000 / std::max<std::size_t>(cells, 1), 1, 16)); }
 
-/// Nor may solids that move change the room of fluid that nothing lets out. Tried from t = 0 to the end; the solids stand at 0 again.
+/// Rejects moving solids that change the volume of enclosed fluid. Tested from t = 0 to the end; afterwards the solids are at t = 0 again.
 template <int D>
 void refuse_squeezing(const scene::Scene& scene, MacState<D>& s, SolidPlacement<D>& solids) {
-    if (over_ranks()) return;  // there the step tells
+    if (over_ranks()) return;  // the step tests it there
     const int moments = moments_of(s.cells.size());
     const real end = scene.number("time.end");
     for (int k = 0; k <= moments; ++k) {
@@ -219,12 +219,12 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     refuse_closed_box(scene, state_);
     if (move_as_told(solids_.solids())) refuse_squeezing(scene, state_, solids_);
     clear_solids();
-    smoke_removed_ = 0;  // what a scene puts inside a solid was never there
+    smoke_removed_ = 0;  // smoke placed inside a solid by the scene does not count
     if (solids_.moving() && state_.find("smoke")) {
         was_solid_ = Grid<std::uint8_t, D>(state_.extent());
         remember_solids();
     }
-    apply(Stage::source, 0);  // what is emitted from the start is there at the start: the first step knows its forces
+    apply(Stage::source, 0);  // values emitted from the start exist at the start: the first step has its forces
     passes_.reset();
     held_.made();
     whole_ = !held_.alone();
@@ -252,8 +252,8 @@ void FlowSolver<D>::remember(real dt) {
     extend_fields();
 }
 
-/// Over ranks, planes beyond the cuts from which what is continued into solids is found as deep as the step reads it: of the neighbours'
-/// values, and of what was found beside them. 0 where nothing is: the reach itself.
+/// In parallel: ghost planes needed so that the extrapolation into solids is complete to the depth that the step reads. It depends on
+/// neighbours' values and on other extrapolated ones. 0 without solids: then the reach itself.
 template <int D>
 int FlowSolver<D>::planes_to_extend() const {
     return solids_.any() ? detail::own_share.reach + 2 : 0;
@@ -275,7 +275,7 @@ void FlowSolver<D>::extend_fields() {
     if (ring) refresh(remembered_fields_);
 }
 
-/// A force on a face is of the cells on both its sides.
+/// Forces on a face depend on the cells on both sides.
 template <int D>
 void FlowSolver<D>::refresh_fields() {
     if (!over_ranks() || state_.fields.empty()) return;
@@ -284,7 +284,7 @@ void FlowSolver<D>::refresh_fields() {
     slabs().refresh(held_.cut(), shared_, 1, state_.sides.periodic(D - 1));
 }
 
-/// Friction is felt where bodies will be: they move before it.
+/// Bodies move before friction, which uses their new position.
 template <int D>
 void FlowSolver<D>::rub(real t, real dt) {
     bodies_->leave(state_, dt);
@@ -293,8 +293,8 @@ void FlowSolver<D>::rub(real t, real dt) {
     bodies_->grip(state_, solids_, dt);
 }
 
-/// With fluxes all explicit rates are of the fields of before. The trapezoidal rule along paths takes half of every term where they begin:
-/// what is carried has it in.
+/// In flux form all explicit rates use the fields before the step. The trapezoidal rule along trajectories applies half of each term at the
+/// departure point: advected fields contain it.
 template <int D>
 void FlowSolver<D>::depart(real dt) {
     refresh_fields();
@@ -307,7 +307,7 @@ void FlowSolver<D>::depart(real dt) {
     lift(0.5 * dt);
     if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force) || (heat_ && heat_->lifts())) {
         sync_periodic(state_.u, state_.sides);
-        solids_.set_faces(state_);  // no force moves a solid
+        solids_.set_faces(state_);  // forces do not change the velocity of solids
     }
     if (effects_.empty(Stage::carried)) return;
     const auto timed = passes_.time("ghosts");
@@ -317,7 +317,7 @@ void FlowSolver<D>::depart(real dt) {
     extend_fields();
 }
 
-/// The fields are whole here, so that a force is of the temperature that the step ends with.
+/// Advected fields are final here: forces use the temperature at the end of the step.
 template <int D>
 void FlowSolver<D>::arrive(real dt) {
     if (options_.scheme == Scheme::conservative) return;
@@ -335,7 +335,7 @@ void FlowSolver<D>::advect_fields(real dt) {
     if (options_.scheme != Scheme::conservative) return characteristics_.advect(carried_fields_, all_cells<D>(state_.extent()), trace_, dt);
     for (auto& field : state_.fields) {
         if (field.derived) continue;
-        if (solids_.moving())  // a cell that a body leaves begins with what is continued into it
+        if (solids_.moving())  // a cell that a body uncovers starts with extrapolated values
             for_each_cell(state_.extent(), [&](const Index<D>& I) {
                 if (state_.cells(I) == poisson::Cell::solid) field.values(I) = field.before(I);
             });
@@ -344,8 +344,8 @@ void FlowSolver<D>::advect_fields(real dt) {
     }
 }
 
-/// MacCormack carries the velocity less half of the old pressure's push and gets that half back on arrival: the trapezoidal rule along
-/// the path, without which a step is first order in dt (the reflection of Narain, Zehnder & Thomaszewski 2019 in another form).
+/// MacCormack advects the velocity minus half of the old pressure gradient and adds that half on arrival: the trapezoidal rule along the
+/// trajectory. Without it a step is first order in dt (equivalent to the reflection of Narain, Zehnder & Thomaszewski 2019).
 template <int D>
 void FlowSolver<D>::advect_velocity(real dt) {
     const auto timed = passes_.time("advect velocity");
@@ -391,7 +391,7 @@ void FlowSolver<D>::blend(const Substep& stage) {
         if (!state_.fields[i].derived) field_blend_[i].blend(stage, state_.fields[i].before, state_.fields[i].values);
 }
 
-/// Viscosity acts before solids move, and feels their walls where they will be.
+/// Viscosity acts before solids move, with walls at their new position.
 template <int D>
 void FlowSolver<D>::meet_walls(real now, real last) {
     const auto timed = passes_.time("solids");
@@ -402,7 +402,7 @@ void FlowSolver<D>::meet_walls(real now, real last) {
         for (const HeldFace<D>& f : walls_->held(a)) state_.grip->takes_part[static_cast<std::size_t>(a)](f.face) = 0;
 }
 
-/// What fluid that sticks to solids gives them. Over ranks, the stress beside a cut is of both its sides.
+/// Friction force on no-slip solids. In parallel, the stress at a subdomain boundary needs the values of both sides.
 template <int D>
 Vec<D> FlowSolver<D>::friction() {
     if (!walls_ || !walls_->stick() || state_.nu == 0) return {};
@@ -413,7 +413,7 @@ Vec<D> FlowSolver<D>::friction() {
 template <int D>
 void FlowSolver<D>::move_solids(real t, real dt) {
     if (!state_.grip) place_solids(t, dt);
-    if (walls_ && solids_.moving()) meet_walls(t, t);  // of the faces that are open now
+    if (walls_ && solids_.moving()) meet_walls(t, t);  // the faces that are open now
     solids_.set_faces(state_);
 }
 
@@ -440,7 +440,7 @@ void FlowSolver<D>::lift(real dt) {
     if (heat_) heat_->lift(state_, dt);
 }
 
-/// Where ice resists, the velocity follows the pressure less than elsewhere: the matrix knows by how much.
+/// Drag of ice reduces the response to pressure: sets the face coefficients of the matrix.
 template <int D>
 void FlowSolver<D>::slow(real dt) {
     if (!heat_) return;
@@ -458,16 +458,16 @@ void FlowSolver<D>::project(real dt) {
     impulse_ += dt * (pressure_force(state_) + friction());
 }
 
-/// Emitted values stand where they are emitted, after each (sub)step: what flows from there in the next does not depend on its length. Nor
-/// does smoke stand in a solid; what a moving one covers or leaves is counted once, at the end of the step.
+/// Emitted values are prescribed after each (sub)step: the next inflow from there does not depend on its length. Smoke is removed from
+/// solids. For moving solids this is recorded once, at the end of the step.
 template <int D>
 void FlowSolver<D>::hold() {
     for (auto& field : state_.fields) field.hold();
     if (!solids_.moving()) clear_solids();
 }
 
-/// No smoke stands inside a solid. What that removes is counted, of cells that a body has covered since the last step, and what is gained
-/// in those that it has left: in the others there are only values continued from beside it.
+/// Removes smoke from solids. Recorded: smoke in cells that a body has covered since the last step, and gains in cells that it has
+/// uncovered. Other solid cells contain only extrapolated values.
 template <int D>
 void FlowSolver<D>::clear_solids() {
     auto* smoke = state_.find("smoke");
@@ -492,14 +492,14 @@ void FlowSolver<D>::remember_solids() {
     for_each_cell(state_.extent(), [&](const Index<D>& I) { was_solid_(I) = state_.cells(I) == poisson::Cell::solid; });
 }
 
-/// Largest number of cells that anything crosses in a second, where the fluid crosses as many as it is said to.
+/// Maximum number of cells crossed per second, where `fluid` is the fluid's.
 template <int D>
 real FlowSolver<D>::rate(real fluid) const {
     const real h = *std::min_element(state_.u.h.begin(), state_.u.h.end());
     return std::isnan(fluid) ? fluid : std::max({fluid, side_rate_, solids_.max_rate(state_), bodies_ ? bodies_->bodies().max_rate(h) : 0});
 }
 
-/// The same after the last step, which knows its fastest flow.
+/// The same after the last step, whose fastest flow is known.
 template <int D>
 real FlowSolver<D>::last_rate() const {
     return rate(std::isnan(fastest_) ? max_rate(state_.u) : fastest_);
@@ -521,7 +521,7 @@ StepReport FlowSolver<D>::report(real dt) {
             .residual_max = report_->residual_max / (state_.u.h[0] * state_.u.h[0])};
 }
 
-/// What is looked at in whole after each step of one process.
+/// Checks that one process would make on whole fields after each step.
 template <int D>
 void FlowSolver<D>::check_own_planes() const {
     const auto check = [](const Grid<real, D>& q, const std::string& name) {
@@ -531,14 +531,13 @@ void FlowSolver<D>::check_own_planes() const {
     for (const auto& field : state_.fields) check(field.values, field.name);
 }
 
-/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time. Where each holds its own
-/// alone, those beside them.
+/// Gathers the planes of other ranks for reading whole fields; collective. With distributed storage it fills the ghost planes only.
 template <int D>
 void FlowSolver<D>::make_whole() const {
     if (whole_) return;
     if (held_.alone()) return bring_beside();
     const OwnPlanes mine(held_.cut());
-    auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
+    auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
     for (auto& field : state.fields) gather(field.values);
@@ -564,7 +563,7 @@ real FlowSolver<D>::advised_dt() const {
     return std::min({fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_), heat_ ? heat_->max_dt(state_) : infinity});
 }
 
-/// Central fluxes are stable while no fluid crosses more than √3 cells a step; paths traced back have no such limit.
+/// Central fluxes are stable up to √3 cells per step; semi-Lagrangian schemes have no such limit.
 template <int D>
 StepLimit FlowSolver<D>::stable_dt() const {
     if (const real most = heat_ ? heat_->stable_dt(state_) : infinity; most < infinity)
@@ -618,7 +617,7 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
     return list;
 }
 
-/// Force on the solids and torque about the origin, and the parts of pressure and friction.
+/// Force on the solids and torque about the origin, with their pressure and friction parts.
 template <int D>
 void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
     const SolidLoad<D> pressure = pressure_load(state_);

@@ -1,4 +1,4 @@
-// Solver "mac": one incompressible fluid that fills the domain, on a staggered grid, with what effects add to it: smoke, heat, forces.
+// Solver "mac": a single incompressible fluid that fills the domain, on a staggered grid, with effects: smoke, heat, forces.
 #pragma once
 #include "core/held_planes.hpp"
 #include "core/passes.hpp"
@@ -18,15 +18,15 @@
 
 namespace weir::flow {
 
-/// What a rank sends in a step of a scene that is cut so: an exchange after each pass that is read across cuts, and the numbers of planes
-/// that everybody adds up.
+/// Estimate of what a rank sends in a step of a scene with this partition: a halo exchange after each pass whose results neighbours read,
+/// and the collective sums over planes.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
 
-/// What the scene's effects, emitters and initial values ask for.
+/// The fields requested by the scene's effects, emitters and initial values.
 template <int D>
 FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& scene);
 
-/// Planes beyond a cut that a path of so many cells reads, with the stencil at its end.
+/// Ghost planes read by trajectories of so many cells, including the stencil at their ends.
 int planes_reached(real cells, int planes);
 
 /// The registered solver "mac".
@@ -51,13 +51,13 @@ public:
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
-    /// Over ranks, of the planes that each has computed.
+    /// In parallel, for the planes that each rank owns.
     bool checks_itself() const override { return !held_.cut().empty(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
     const MacState<D>& state() const { return state_; }
-    /// To be changed: what the last step knew of it is forgotten.
+    /// Write access: clears the data derived from the last step.
     MacState<D>& state() {
         fastest_ = not_applicable;
         return state_;
@@ -101,35 +101,35 @@ private:
     HeldPlanes held_;
     Effects<MacState<D>> effects_;
     MacState<D> state_;
-    std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none
+    std::unique_ptr<BodiesInFlow<D>> bodies_;  // nullptr where the scene has no bodies
     SolidPlacement<D> solids_;
-    std::unique_ptr<SolidWalls<D>> walls_;  // none without solids or without viscosity
-    std::unique_ptr<Heat<D>> heat_;         // none where the scene names no substance
+    std::unique_ptr<SolidWalls<D>> walls_;  // nullptr without solids or without viscosity
+    std::unique_ptr<Heat<D>> heat_;         // nullptr where the scene names no substance
     AdvectionOptions options_;
     CharacteristicAdvection<D> characteristics_;
     std::vector<Carried<D>> carried_fields_;
     GridBacktrace<D> trace_;
     std::array<StageBlend<D>, D> velocity_blend_;
     std::vector<StageBlend<D>> field_blend_;
-    CutFaces<D> cuts_;           // of fluxes beside solids
-    PaddedVelocity<D> carried_;  // MacCormack: what the flow carries, u less half the old pressure's push
+    CutFaces<D> cuts_;           // for fluxes beside solids
+    PaddedVelocity<D> carried_;  // MacCormack: the advected velocity, u minus half of the old pressure gradient
     Projection<D> projection_;
     const poisson::Report* report_ = nullptr;
     real smoke_removed_ = 0;           // from inside solids since the start, times the cells' volume [m^D]
-    real smoke_continued_ = 0;         // what stood in cells that a body had left, continued from beside it [m^D]
-    Grid<std::uint8_t, D> was_solid_;  // where smoke was cleared last; only beside solids that move
+    real smoke_continued_ = 0;         // extrapolated into cells that a body has uncovered [m^D]
+    Grid<std::uint8_t, D> was_solid_;  // solid cells at the last removal of smoke; only with moving solids
     Vec<D> impulse_{};                 // of the pressure on all solids since the start [N s]
     real cfl_, side_rate_ = 0;
-    real fastest_ = not_applicable;  // max |u|/h after the last step; not known before the first [1/s]
+    real fastest_ = not_applicable;  // max |u|/h after the last step; unknown before the first [1/s]
     bool wants_vorticity_ = false, wants_divergence_ = false;
-    mutable std::vector<Grid<real, D>> vorticity_;  // filled when somebody looks
+    mutable std::vector<Grid<real, D>> vorticity_;  // computed on request
     mutable Grid<real, D> divergence_;
-    std::shared_ptr<Hand> hand_;  // none where the scene names none
+    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
     Passes passes_;
     std::vector<WithBoundary<D>> remembered_fields_, remembered_;  // uⁿ, qⁿ and both
     std::vector<WithBoundary<D>> carried_velocity_;
-    std::vector<Planes> shared_;  // scratch: what travels together
-    mutable bool whole_ = true;   // all planes stand here, or those that this rank looks at, not its own alone
+    std::vector<Planes> shared_;  // scratch: arrays exchanged in one message
+    mutable bool whole_ = true;   // other ranks' planes, or the ghost planes, are up to date
 };
 
 }  // namespace weir::flow

@@ -1,4 +1,4 @@
-// What a rank sends in a step of the solver "mac": the exchanges of solver.cpp, pass by pass.
+// Estimate of what a rank sends in a step of the solver "mac": the exchanges of solver.cpp, pass by pass.
 #include "poisson/traffic.hpp"
 #include "flow/solver.hpp"
 #include "staggered/own_planes.hpp"
@@ -7,10 +7,10 @@ namespace weir::flow {
 
 namespace {
 
-/// Arrays of a scene's grid as far as their messages depend on them.
+/// The sizes of a scene's arrays that messages depend on.
 template <int D>
 struct Sizes {
-    PlaneSize cells, padded_cells, number;  // a value a cell, with its ghosts too; one number a plane
+    PlaneSize cells, padded_cells, number;  // one value per cell, without and with ghosts; one number per plane
     std::array<PlaneSize, D> faces{}, padded{};
     explicit Sizes(const Index<D>& n) : cells(plane(n, 0)), padded_cells(plane(n, ghost_layers)), number{sizeof(real), n[D - 1]} {
         for (int a = 0; a < D; ++a) {
@@ -25,7 +25,7 @@ struct Sizes {
     }
 };
 
-/// What the formula does not know the messages of.
+/// Keys whose messages the estimate does not include.
 std::vector<std::string> not_counted(const scene::Scene& scene) {
     std::vector<std::string> keys;
     const auto lists = [&](const char* key) { return scene.has(key) && !scene.root().tables(key).empty(); };
@@ -70,7 +70,7 @@ private:
         all.insert(all.end(), static_cast<std::size_t>(fields_), field);
         return all;
     }
-    /// Faces across the cut, as others leave them.
+    /// Faces beyond the subdomain boundary, after changes.
     void sync() { tally_.refresh({size_.faces[D - 1]}, 1); }
     void refresh_fields() {
         if (fields_ > 0) tally_.refresh(std::vector<PlaneSize>(static_cast<std::size_t>(fields_), size_.cells), 1);
@@ -84,7 +84,7 @@ private:
         refresh_fields();
         if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force)) sync();
     }
-    /// What is carried as deep as paths go, and what is predicted: a plane where none is longer than a cell.
+    /// Advected values to the depth of trajectories, and predicted ones: one plane where no trajectory is longer than a cell.
     void advect() {
         const int predicted = shape_.cells_crossed <= 1 && scene_.text("scheme.interpolation") == "linear" ? 1 : deep_;
         if (fields_ > 0) tally_.refresh(std::vector<PlaneSize>(static_cast<std::size_t>(fields_), size_.padded_cells), predicted);
@@ -95,10 +95,10 @@ private:
     void forces() {
         refresh_fields();
         if (scene_.effect("confinement")) tally_.refresh({size_.cells}, 1, 2);  // the vorticity's magnitude, the force
-        constexpr int asked = 2;  // how long a step may be: for the step, and for the longest of the run
+        constexpr int asked = 2;  // computations of the step limit: for the step, and for the longest one of the run
         if (const auto* buoyancy = scene_.effect("buoyancy"); buoyancy && !scene_.has("time.dt"))
             for (const char* constant : {"alpha", "beta"})
-                if (buoyancy->number(constant) != 0) tally_.gather(size_.number, asked);  // the strongest lift
+                if (buoyancy->number(constant) != 0) tally_.gather(size_.number, asked);  // the maximum buoyancy
         sync();
     }
     void project() {
@@ -114,13 +114,13 @@ private:
             poisson::tally_multigrid<D>(lattice_.cells, periodic, weight, closed, shape_.iterations, tally_);
             tally_.refresh({size_.cells}, 1);
         } else {
-            tally_.gather(size_.cells, 2);  // right-hand side and guess: each solves for itself
+            tally_.gather(size_.cells, 2);  // right-hand side and guess: replicated solve
         }
         sync();
     }
     void report() {
         largest_velocity();
-        tally_.gather(size_.number, 2 + fields_);  // of the pressure and the fields, whether they are finite; of what diverges
+        tally_.gather(size_.number, 2 + fields_);  // finite checks of the pressure and the fields; maximum divergence
     }
 
     const scene::Scene& scene_;

@@ -1,9 +1,9 @@
-// Viscosity of the fluid and diffusion of what it carries, with constant coefficients.
+// Viscosity of the fluid and diffusion of advected fields, with constant coefficients.
 //
-// Crank-Nicolson is solved for the correction to the field as the step found it, with the old pressure gradient inside the solve, so
-// that the tangential velocity at walls is right to second order in dt (van Kan 1986):
+// Crank-Nicolson is solved for the correction to the field before the step, with the old pressure gradient inside the solve, so that the
+// tangential velocity at walls is second order in dt (van Kan 1986):
 //     (I − dt/2 ν∇²)(u* − uⁿ) = (ũ − uⁿ) + dt ν∇²uⁿ − (dt/ρ)∇pⁿ,      u = u* + (dt/ρ)∇pⁿ,      ũ: all explicit rates are in.
-// Along paths to second order (MacCormack) ũ brings half of dt ν∇²uⁿ from where the path begins, and half is left to be added here.
+// For MacCormack, ũ includes half of dt ν∇²uⁿ from the departure point, and the other half is added here.
 #include "flow/body_friction.hpp"
 #include "flow/effects.hpp"
 #include "flow/helmholtz.hpp"
@@ -31,7 +31,7 @@ scene::Key time_key() {
             .choices = {"explicit", "crank-nicolson", "implicit"}};
 }
 
-/// A scheme in time, and whether half of what it takes from before the step is taken where paths begin.
+/// A time scheme, and whether half of the explicit part is applied at the departure points.
 struct TimeRule {
     Time time;
     bool departs;
@@ -40,12 +40,12 @@ struct TimeRule {
     }
     TimeRule(const scene::Table& table, const scene::Scene& scene)
         : time(time_named(table.text("scheme"))), departs(scheme_of(scene) == Scheme::maccormack && time != Time::implicit) {}
-    /// Share of the Laplacian of before that is taken where paths end, and that of the Laplacian at the end of the step.
+    /// Weight of the previous Laplacian at the arrival points, and that of the Laplacian at the end of the step.
     real before_share() const { return departs ? 0.5 : 1; }
     real implicit_share() const { return time == Time::implicit ? 1 : 0.5; }
 };
 
-/// Euler's explicit scheme neither oscillates nor grows below dt = 1 / (2 ν Σ 1/h²).
+/// Explicit Euler neither oscillates nor grows below dt = 1 / (2 ν Σ 1/h²).
 template <int D>
 real explicit_limit(real nu, const Vec<D>& h) {
     real sum = 0;
@@ -53,7 +53,7 @@ real explicit_limit(real nu, const Vec<D>& h) {
     return nu > 0 ? 1 / (2 * nu * sum) : infinity;
 }
 
-/// Diffusion of one quantity from its values `before` the step: explicit, or by an implicit solve.
+/// Diffusion of one quantity from its previous values `before`: explicit, or by an implicit solve.
 template <int D>
 class Diffuser {
 public:
@@ -66,7 +66,7 @@ public:
     void add(const Padded<D>& before, real dt_nu, Grid<real, D>& q) {
         add(before, dt_nu, mask_, q, [](Grid<real, D>&) {});
     }
-    /// `at_walls` adds to ∇² of before what walls change of it.
+    /// `at_walls` adds the contribution of walls to the previous ∇².
     template <class AtWalls>
     void add(const Padded<D>& before, real dt_nu, const Mask<D>& mask, Grid<real, D>& q, AtWalls&& at_walls) {
         laplacian(before, h_, nodes_, mask, open_, rhs_);
@@ -115,7 +115,7 @@ template <int D>
 struct Viscosity final : MacEffect<D> {
     TimeRule rule;
     std::vector<Diffuser<D>> axes;
-    std::unique_ptr<BodyFriction<D>> friction;  // none where the fluid sticks to no body
+    std::unique_ptr<BodyFriction<D>> friction;  // nullptr without no-slip bodies
     Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) { refuse_friction_of_before(table, scene); }
     Stage stage() const override { return rule.time == Time::explicit_ ? Stage::force : Stage::implicit; }
     void depart(MacState<D>& s, real dt) override {
@@ -170,7 +170,7 @@ private:
     }
 };
 
-/// dq/dt = κ ∇²q for the temperature, the smoke, or both; nothing passes into solids.
+/// dq/dt = κ ∇²q for the temperature, the smoke, or both; no flux into solids.
 template <int D>
 struct Diffusion final : MacEffect<D> {
     struct Carried {

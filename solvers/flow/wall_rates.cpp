@@ -12,10 +12,10 @@ real per_square(const MacState<D>& s, const SolidWall<D>& wall) {
     return 1 / (s.u.h[wall.across] * s.u.h[wall.across]);
 }
 
-/// In units of 1/h²: m, and all of it.
+/// In units of 1/h²: m, limited; the whole conductance c is `nearer`.
 real bounded(real nearer) { return std::min(nearer, 2.0); }
 
-/// What the stencil has across a wall: (q(N) − q(I))/h².
+/// The regular stencil across a wall: (q(N) − q(I))/h².
 template <int D>
 real across(const MacState<D>& s, const Padded<D>& q, const Index<D>& I, const SolidWall<D>& wall) {
     const std::ptrdiff_t step = wall.way * q.stride(wall.across);

@@ -1,5 +1,5 @@
-// What the conjugate gradients keep of columns on top of the matrix, A + Σ U C Uᵀ: the numbers Uᵀ v of their vectors, and where in these
-// the cells of U lie.
+// Low-rank part of the matrix, A + Σ U C Uᵀ, in conjugate gradients: the numbers Uᵀ v of their vectors, and the positions of the cells of U
+// in these vectors.
 #pragma once
 #include "poisson/level.hpp"
 #include "poisson/low_rank.hpp"
@@ -10,22 +10,22 @@ template <int D>
 class AddedColumns {
 public:
     bool empty() const { return more_ == nullptr; }
-    /// Columns of a problem with this layout, and its right-hand side.
+    /// Sets the columns of a problem with this layout, and its right-hand side.
     void begin(const LowRank& more, const Layout<D>& at, Grid<real, D>& b);
-    /// The right-hand side is as it was, and there are no columns.
+    /// Restores the right-hand side and removes the columns.
     void end();
-    /// x is zero; x is p.
+    /// Sets x to zero; sets x to p.
     void see_zero();
     void see(const Grid<real, D>& p);
     void see(const Coloured<double>& x);
-    /// The right-hand side less what the columns make of x.
+    /// Subtracts the product of the columns with x from the right-hand side.
     void set_rhs();
 
-    /// u·U C Uᵀ u of a vector that is about to become part of the direction.
+    /// u·U C Uᵀ u of a vector that is about to be added to the direction.
     real energy(const Coloured<float>& u);
-    /// The direction is u and β times what it was.
+    /// direction = u + β direction.
     void turn(real beta);
-    /// x goes by α along the direction.
+    /// x += α direction.
     void move(real alpha);
     /// r −= α U C Uᵀ p.
     void subtract_product(real alpha, const Coloured<float>& r) const;
@@ -44,8 +44,8 @@ private:
     const LowRank* more_ = nullptr;
     Grid<real, D>* b_ = nullptr;
     std::vector<Place> places_;   // of the entries
-    std::vector<real> given_;     // b there
-    std::vector<Row> x_, u_, p_;  // Uᵀ of each, block by block
+    std::vector<real> given_;     // values of b there
+    std::vector<Row> x_, u_, p_;  // Uᵀ of each vector, block by block
 };
 
 }  // namespace weir::poisson

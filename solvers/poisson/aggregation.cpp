@@ -7,27 +7,27 @@ namespace weir::poisson {
 
 namespace {
 
-/// The worst two-grid condition number that a pair may cause (Napov & Notay 2012 use 8; an isotropic pair has 4 in 2D, 6 in 3D).
+/// Largest two-grid condition number allowed for a pair (Napov & Notay 2012 use 8; an isotropic pair has 4 in 2D, 6 in 3D).
 constexpr real worst_quality = 10;
 
-/// Passes of pairing, and the part of the unknowns that a level should keep: a fourth, with a little to spare for odd ones out.
+/// Number of pairing passes, and the target size of the next level: a fourth of the unknowns, plus a margin for single ones.
 constexpr int passes = 3;
 constexpr real wanted_coarsening = 0.3;
 
-/// What joins an unknown to p = 0: its diagonal less its weights, exactly zero inside a closed component.
+/// Coupling of an unknown to p = 0: its diagonal minus its weights, exactly zero inside a closed component.
 real to_zero(const Matrix& A, std::size_t i) {
     real weights = 0;
     for (int k = A.start[i]; k < A.start[i + 1]; ++k) weights += A.weight[static_cast<std::size_t>(k)];
     return A.diagonal[i] - weights;
 }
 
-/// Quality of the pair {i, j} (Napov & Notay 2012, eq. 4.4, symmetric case): harmonic mean of the diagonals over what holds them together.
+/// Quality of the pair {i, j} (Napov & Notay 2012, eq. 4.4, symmetric case): harmonic mean of the diagonals over their coupling.
 real quality(real diagonal_i, real diagonal_j, real weight, real zero_i, real zero_j) {
     const real held = zero_i > 0 && zero_j > 0 ? 1 / (1 / zero_i + 1 / zero_j) : 0;
     return 2 / (1 / diagonal_i + 1 / diagonal_j) / (weight + held);
 }
 
-/// The unknowns of each group, one group after another.
+/// The unknowns of each group, group by group.
 struct Members {
     std::vector<int> first, unknown;
     explicit Members(const Aggregation& groups) : first(static_cast<std::size_t>(groups.count) + 1, 0), unknown(groups.of.size()) {
@@ -57,9 +57,8 @@ struct Candidate {
         }
     }
 
-    /// Is the two-grid quality max_v 2 vᵀ(D − D 1 1ᵀ D / 1ᵀD1) v / vᵀ A_G v at most `worst_quality`? (Napov & Notay 2012, theorem 3.2:
-    /// by whether worst_quality A_G less that matrix has a Cholesky factor.) It is the smoother that must reduce what varies inside a
-    /// group.
+    /// Returns whether the two-grid quality max_v 2 vᵀ(D − D 1 1ᵀ D / 1ᵀD1) v / vᵀ A_G v is at most `worst_quality` (Napov & Notay 2012,
+    /// theorem 3.2: worst_quality A_G minus that matrix has a Cholesky factor). The smoother must reduce the variation inside a group.
     bool is_good(const Matrix& A, const Vector& zero) {
         const auto n = static_cast<std::size_t>(size);
         real total = 0;
@@ -75,7 +74,7 @@ struct Candidate {
                         S[i][i] += worst_quality * A.weight[static_cast<std::size_t>(k)];
                     }
         }
-        for (std::size_t k = 0; k + 1 < n; ++k) {  // the last pivot is zero but for what leads to p = 0: constants are exact
+        for (std::size_t k = 0; k + 1 < n; ++k) {  // the last pivot is zero up to the coupling to p = 0: constants are exact
             if (!(S[k][k] > 0)) return false;
             for (std::size_t i = k + 1; i < n; ++i)
                 for (std::size_t j = k + 1; j <= i; ++j) S[i][j] -= S[i][k] * S[j][k] / S[k][k];
@@ -84,7 +83,7 @@ struct Candidate {
     }
 };
 
-/// Joins groups of A's unknowns two by two; C is A coarsened by them. Partners are tried in the order of their quality as seen in C.
+/// Pairs groups of A's unknowns; C is A coarsened by them. Partners are tried in the order of their quality in C.
 Aggregation join_pairs(const Matrix& A, const Vector& zero, const Aggregation& groups, const Matrix& C) {
     const auto n = static_cast<std::size_t>(C.size());
     const Members members(groups);
@@ -109,7 +108,7 @@ Aggregation join_pairs(const Matrix& A, const Vector& zero, const Aggregation& g
             Candidate both;
             both.add(A, members, static_cast<int>(i));
             both.add(A, members, j);
-            if (both.size > 2 && !both.is_good(A, zero)) continue;  // of two unknowns, q is the quality
+            if (both.size > 2 && !both.is_good(A, zero)) continue;  // for two unknowns q is the quality
             joined.of[static_cast<std::size_t>(j)] = joined.of[i];
             break;
         }
@@ -119,7 +118,7 @@ Aggregation join_pairs(const Matrix& A, const Vector& zero, const Aggregation& g
 
 }  // namespace
 
-/// Entries of the last row of C in order of their columns.
+/// Sorts the entries of the last row of C by column.
 void sort_last_row(Matrix& C) {
     for (std::size_t k = static_cast<std::size_t>(C.start.back()) + 1; k < C.column.size(); ++k)
         for (std::size_t m = k; m > static_cast<std::size_t>(C.start.back()) && C.column[m] < C.column[m - 1]; --m) {
@@ -142,7 +141,7 @@ Matrix coarsen(const Matrix& A, const Aggregation& groups) {
     C.diagonal.reserve(m);
     C.column.reserve(A.column.size() / 2);
     C.weight.reserve(A.column.size() / 2);
-    std::vector<int> seen(m, -1);  // entry of column c in the row being built
+    std::vector<int> seen(m, -1);  // entry of column c in the present row
     for (std::size_t c = 0; c < m; ++c) {
         const int begin = C.start.back();
         real zero = 0;

@@ -4,8 +4,8 @@ namespace weir::poisson {
 
 namespace {
 
-constexpr int direct_size = 1500;      // unknowns that a direct solve takes faster than further levels do
-constexpr real slow_coarsening = 0.8;  // a level that keeps more than this part of its unknowns is not worth having
+constexpr int direct_size = 1500;      // number of unknowns below which a direct solve is faster than further levels
+constexpr real slow_coarsening = 0.8;  // a level that keeps more than this part of the unknowns is not used
 constexpr real content = 0.25;         // residual reduction after which the K-cycle skips its second direction (Notay 2010)
 
 real row_sum(const Matrix& A, const Vector& x, std::size_t i) {

@@ -1,5 +1,5 @@
-// Aggregation multigrid with the K-cycle (Notay & Vassilevski 2008; Notay 2010): slower than the geometric cycle on open water, and
-// indifferent to walls, slits and face weights of any size, because it coarsens along the strong connections of the matrix only.
+// Aggregation multigrid with the K-cycle (Notay & Vassilevski 2008; Notay 2010). It is slower than the geometric cycle on open water, but
+// robust for walls, slits and face weights of any size, because it coarsens only along strong couplings of the matrix.
 #pragma once
 #include "poisson/aggregation.hpp"
 #include "poisson/sparse_cholesky.hpp"
@@ -8,7 +8,7 @@ namespace weir::poisson {
 
 class AlgebraicMultigrid {
 public:
-    /// The K-cycle takes inner products, so M changes with r: conjugate gradients must be flexible.
+    /// The K-cycle uses inner products, so M depends on r: conjugate gradients must be flexible.
     static constexpr bool is_linear = false;
 
     void prepare(const Matrix& A, const Components& components);
@@ -18,10 +18,10 @@ public:
 
 private:
     struct Level {
-        Matrix own;  // empty on the finest level, whose matrix belongs to the caller
+        Matrix own;  // empty on the finest level, whose matrix is the caller's
         const Matrix* A = nullptr;
         Aggregation groups;       // to the next level
-        Vector r, x, c, v, d, w;  // right-hand side and answer of this level; directions of the K-cycle and their products
+        Vector r, x, c, v, d, w;  // right-hand side and solution of this level; directions of the K-cycle and their products
         const Matrix& matrix() const { return A != nullptr ? *A : own; }
     };
     void cycle(std::size_t l, const Vector& r, Vector& z);

@@ -30,7 +30,7 @@ void Arena::reserve(std::size_t bytes, bool closed) {
         begin_ = closed_->data();
         return;
     }
-    mapped_ = bytes + huge_page;  // room to begin on a huge page
+    mapped_ = bytes + huge_page;  // includes space to align to a huge page
     mapping_ = mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (mapping_ == MAP_FAILED) {
         mapping_ = nullptr;
@@ -38,7 +38,7 @@ void Arena::reserve(std::size_t bytes, bool closed) {
     }
     const auto start = reinterpret_cast<std::uintptr_t>(mapping_);
     begin_ = reinterpret_cast<unsigned char*>((start + huge_page - 1) / huge_page * huge_page);
-    madvise(begin_, bytes, MADV_HUGEPAGE);  // a wish: nothing depends on it
+    madvise(begin_, bytes, MADV_HUGEPAGE);  // a hint: correctness does not depend on it
 }
 
 void Arena::open_bytes(const void* from, const void* to) {

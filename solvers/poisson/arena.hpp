@@ -1,4 +1,4 @@
-// One block of zeroed memory on huge pages, handed out in aligned pieces: a cycle streams through all of it, so page walks matter.
+// One block of zeroed memory on huge pages, allocated in aligned pieces: a cycle streams through all of it, so page walks matter.
 #pragma once
 #include "core/plane_store.hpp"
 
@@ -14,23 +14,23 @@ public:
     Arena(const Arena&) = delete;
     Arena& operator=(const Arena&) = delete;
 
-    /// Makes room for `bytes`, all zero; forgets what was handed out. `closed`: room that nobody may touch until it is opened.
+    /// Reserves `bytes`, all zero, and releases all pieces. `closed`: address space that must not be accessed until it is opened.
     void reserve(std::size_t bytes, bool closed = false);
-    /// Of a closed one, the entries [from, to) of a piece.
+    /// Opens the entries [from, to) of a piece of a closed arena.
     template <class T>
     void open(const T* from, const T* to) {
         open_bytes(from, to);
     }
-    /// What has memory behind it.
+    /// Bytes of committed memory.
     std::size_t bytes() const { return closed_ ? opened_ : size_; }
-    /// A piece for `count` elements on its own cache lines.
+    /// Allocates `count` elements on separate cache lines.
     template <class T>
     T* take(std::size_t count) {
         T* piece = reinterpret_cast<T*>(begin_ + used_);
         used_ += need<T>(count);
         return piece;
     }
-    /// Bytes that take(count) uses: whole cache lines and one more, so that arrays of a power of two do not share cache sets.
+    /// Bytes that take(count) uses: whole cache lines plus one, so that arrays of a power of two do not share cache sets.
     template <class T>
     static constexpr std::size_t need(std::size_t count) {
         return (count * sizeof(T) + line - 1) / line * line + line;

@@ -12,7 +12,7 @@ struct Identity {
     std::size_t bytes() const { return 0; }
 };
 
-/// An isolated cell has diagonal 0 and residual 0: its entry of M may be any number.
+/// An isolated cell has diagonal 0 and residual 0: its entry of M is arbitrary.
 struct Diagonal {
     Vector inverse;
     void prepare(const Matrix& A, const Components&) {

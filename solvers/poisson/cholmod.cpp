@@ -1,4 +1,4 @@
-// cholmod: a direct solve, refined until the true residual meets the tolerance (one step is the rule, with round-off left over).
+// cholmod: a direct solve, refined until the true residual meets the tolerance (usually one step, to round-off).
 #include "poisson/factories.hpp"
 #include "poisson/list_solver.hpp"
 #include "poisson/sparse_cholesky.hpp"

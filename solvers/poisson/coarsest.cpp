@@ -1,12 +1,12 @@
-// The coarsest level of the geometric hierarchy: factored and solved in double precision. Every cell is an unknown, dry ones with a row of
-// their own, so that the pattern, and with it CHOLMOD's analysis, is the level's and not the fluid's.
+// The coarsest level of the geometric hierarchy: factored and solved in double precision. Every cell is an unknown; dry cells have a row of
+// their own. So the pattern, and CHOLMOD's analysis, depends on the level but not on the fluid.
 #include "poisson/hierarchy.hpp"
 
 namespace weir::poisson {
 
 namespace {
 
-/// Row of a matrix whose columns ascend; two cells around a periodic axis are neighbours twice, and their weights add.
+/// A matrix row with ascending columns; two cells around a periodic axis are neighbours twice, and their weights add.
 template <int D>
 class RowEntries {
 public:
@@ -20,7 +20,7 @@ public:
         for (std::size_t k = count_++; k > at; --k) entry_[k] = entry_[k - 1];
         entry_[at] = {column, weight};
     }
-    /// Appends the row; `zero` is the weight of what joins its cell to p = 0.
+    /// Appends the row; `zero` is the weight of the cell's coupling to p = 0.
     void append_to(Matrix& A, real zero) const {
         real diagonal = 0;
         for (std::size_t k = 0; k < count_; ++k) {

@@ -7,8 +7,8 @@ namespace weir::poisson {
 template <class M>
 concept ChangesWithResidual = !M::is_linear;
 
-/// The preconditioner is a type with prepare(A, components), apply(r, z), which sets z = M r, and bytes(). One that says it is not linear
-/// gets the flexible form, in which β makes the new direction conjugate to the last by an inner product of its own (Notay 2000).
+/// The preconditioner is a type with prepare(A, components), apply(r, z), which sets z = M r, and bytes(). For a nonlinear one the flexible
+/// form is used, in which an additional inner product gives β (Notay 2000).
 template <int D, class Preconditioner>
 class ConjugateGradient final : public ListSolver<D> {
 public:
@@ -29,7 +29,7 @@ private:
         for (real rz = dot(r_, z_); rz > 0;) {
             multiply(system_.A, p_, Ap_);
             const real pAp = dot(p_, Ap_);
-            if (!(pAp > 0)) break;  // round-off is all that is left of the direction
+            if (!(pAp > 0)) break;  // the direction is only round-off
             const real alpha = rz / pAp;
             const real relative = std::sqrt(advance(alpha)) / b_norm_;
             progress.count(relative);

@@ -88,7 +88,7 @@ public:
     std::size_t bytes() const override { return (values_.size() + b_.size()) * sizeof(real) + A_.cells.size(); }
 
 private:
-    /// FFTW_ESTIMATE: measured plans would differ from run to run, and so would the last bits of the answer.
+    /// FFTW_ESTIMATE: measured plans would differ between runs, and so would the last bits of the result.
     void plan(const Index<D>& n) {
         release();
         values_ = Grid<real, D>(n);
@@ -106,7 +106,7 @@ private:
         if (backward_ != nullptr) fftw_destroy_plan(backward_);
         forward_ = backward_ = nullptr;
     }
-    /// Divides by λ and by FFTW's scale; the mean is left at zero.
+    /// Divides by λ and by FFTW's scale; the mean becomes zero.
     void divide() {
         real scale = 1;
         for (int a = 0; a < D; ++a) scale *= 2.0 * values_.extent()[a];
@@ -116,7 +116,7 @@ private:
             values_(k) = lambda > 0 ? values_(k) / (lambda * scale) : 0;
         });
     }
-    /// Leaves b − A p in values_ and returns its norm over that of b.
+    /// Stores b − A p in values_ and returns its norm relative to that of b.
     real measure(const Grid<real, D>& p) {
         residual(A_, p, b_, values_);
         const auto square = [&](const Grid<real, D>& g) { return sum_over<D>(g.extent(), [&](const Index<D>& I) { return g(I) * g(I); }); };
@@ -124,9 +124,9 @@ private:
         return b2 == 0 ? 0 : std::sqrt(square(values_) / b2);
     }
 
-    /// The residual, over the norm of b, that rounding leaves of the exact answer. A transform of N values is wrong by at most
-    /// eta = 7 u log2(4 N) of its norm (Higham 2002, theorem 24.2, u = epsilon / 2): there eta |b|, back eta |A| |p|; and the residual
-    /// itself is a sum of 2 D + 1 differences, each of at most |A| |p|.
+    /// Round-off of the residual of the exact solution, relative to the norm of b. A transform of N values has a relative error of at most
+    /// eta = 7 u log2(4 N) (Higham 2002, theorem 24.2, u = epsilon / 2): forward eta |b|, backward eta |A| |p|. The residual itself is a
+    /// sum of 2 D + 1 differences, each of at most |A| |p|.
     real round_off(const Grid<real, D>& p) {
         const real epsilon = std::numeric_limits<real>::epsilon(), N = static_cast<real>(p.size());
         const real eta = 3.5 * epsilon * std::log2(4 * N);

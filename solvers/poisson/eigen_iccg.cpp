@@ -1,5 +1,5 @@
-// eigen_iccg: Eigen's incomplete Cholesky with dual threshold (Lin & More 1999) inside our conjugate gradients, so that the history and
-// the fixed number of iterations are the same for all methods. Eigen allocates during each application.
+// eigen_iccg: Eigen's incomplete Cholesky with dual threshold (Lin & More 1999) in weir's conjugate gradients, so that the history and the
+// fixed number of iterations are the same for all methods. Eigen allocates in each application.
 #include "poisson/conjugate_gradient.hpp"
 #include "poisson/factories.hpp"
 
@@ -10,8 +10,8 @@ namespace weir::poisson {
 
 namespace {
 
-/// The lower triangle. A closed component gets its first diagonal entry raised by a thousandth: with a compatible right-hand side the
-/// factor of a matrix that is barely regular would do as well, but its last pivot is round-off.
+/// The lower triangle. The first diagonal entry of a closed component is raised by a thousandth: with a compatible right-hand side a barely
+/// regular factor would suffice, but its last pivot is round-off.
 Eigen::SparseMatrix<real> lower_triangle(const Matrix& A, const Components& components) {
     const int n = A.size();
     Eigen::SparseMatrix<real> lower(n, n);

@@ -1,11 +1,11 @@
-// Where a level gets the faces of a natural row from: a coarse level has them stored, the finest derives them from cells and weights.
+// Sources of the faces of a natural row: a coarse level stores them, the finest computes them from cells and weights.
 #pragma once
 #include "poisson/level.hpp"
 #include "poisson/natural.hpp"
 
 namespace weir::poisson {
 
-/// Buffers of one thread for the rows that the finest level derives.
+/// Buffers of one thread for the rows computed on the finest level.
 template <int D>
 struct RowBuffers {
     std::array<std::vector<float>, D + 1> row;
@@ -58,7 +58,7 @@ struct DerivedRows {
     }
 
 private:
-    /// Where there is fluid all around, at most the ends of the row are joined to anything else.
+    /// With fluid on all sides only the ends of the row may couple to anything else.
     FaceRow<D> amid_fluid(int q, int j, const std::uint8_t* c, RowBuffers<D>& to) const {
         const int n = problem.extent()[0];
         FaceRow<D> out;
@@ -81,7 +81,7 @@ private:
 
     static constexpr auto fluid = static_cast<std::uint8_t>(Cell::fluid), air = static_cast<std::uint8_t>(Cell::air);
 
-    /// Weights of the faces towards one side: to fluid neighbours into `face` (if wanted), to air added to `zero`.
+    /// Weights of the faces towards one side: fluid neighbours are written to `face` (if not nullptr), air is added to `zero`.
     void add_side(int q, int j, int a, int side, const std::uint8_t* c, float* face, float* zero) const {
         const int n = problem.extent()[0];
         const std::uint8_t* other = a == 0 ? c + (side == 0 ? -1 : 1) : problem.cells(problem.neighbour(q, j, a, side));

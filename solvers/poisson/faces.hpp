@@ -1,4 +1,4 @@
-// The weight of a face as every method understands it: one place for the rules of poisson.hpp.
+// The weight of a face, in one place for all methods: the rules of poisson.hpp.
 #pragma once
 #include "poisson/poisson.hpp"
 
@@ -27,7 +27,7 @@ Neighbour<D> neighbour(const Operator<D>& A, Index<D> I, int a, int side) {
     return {I, false};
 }
 
-/// w_f of the face between fluid cell I and its neighbour: 0 towards solids, closed sides, and a periodic cell's own self.
+/// w_f of the face between fluid cell I and its neighbour: 0 towards solids, closed sides, and a periodic cell's own image.
 template <int D>
 real face_weight(const Operator<D>& A, const Index<D>& I, int a, int side) {
     const auto [N, outside] = neighbour(A, I, a, side);

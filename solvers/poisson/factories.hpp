@@ -1,4 +1,4 @@
-// One maker a method, defined where the method is.
+// One factory per method, defined with the method.
 #pragma once
 #include "poisson/poisson.hpp"
 

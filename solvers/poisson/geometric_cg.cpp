@@ -6,16 +6,16 @@ namespace weir::poisson {
 
 namespace {
 
-/// Reduction of r after which it is replaced: single precision leaves it wrong by some 1e-5 of what it was.
+/// Reduction of r after which it is recomputed: single precision has a relative error of some 1e-5.
 constexpr real replace_counted = 1e-4, replace_weighted = 1e-3;
 
-/// What an iteration usually leaves of the residual.
+/// Typical reduction of the residual per iteration.
 constexpr real usual_reduction = 0.1;
 
-/// Iterations before the speed of convergence is judged, and how many in all are still worth their price (open water takes 7 to 12).
+/// Number of iterations before the convergence rate is judged, and the acceptable total (open water takes 7 to 12).
 constexpr int judged_from = 6, worth_while = 32;
 
-/// Will the tolerance take more iterations than another method is likely to?
+/// Returns whether the tolerance takes more iterations than another method probably would.
 bool is_slow(const Report& report, real norm, real tolerance) {
     if (report.iterations < judged_from) return false;
     const real digits_done = std::log(report.residual_before / norm), digits_wanted = std::log(report.residual_before / tolerance);
@@ -42,7 +42,7 @@ bool GeometricCg<D>::setup(const Natural<D>& problem) {
     return true;
 }
 
-/// Over ranks, of the planes of others.
+/// In parallel: including the planes of other ranks.
 template <int D>
 void GeometricCg<D>::gather_sums() {
     const Level<D>& finest = hierarchy_.finest();
@@ -72,7 +72,7 @@ void GeometricCg<D>::gather(const Natural<D>& problem, const Grid<real, D>& p) {
     });
 }
 
-/// x = 0; answers r·r, and has begun the first cycle.
+/// x = 0; returns r·r after the first cycle has begun.
 template <int D>
 real GeometricCg<D>::begin_at_zero(const Natural<D>& problem, const Grid<real, D>& b) {
     at_zero_ = true;
@@ -84,7 +84,7 @@ real GeometricCg<D>::begin_at_zero(const Natural<D>& problem, const Grid<real, D
     return total([](const PlaneSums& s) { return s.rr; });
 }
 
-/// x = p; answers r·r.
+/// x = p; returns r·r.
 template <int D>
 real GeometricCg<D>::begin_at(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b) {
     at_zero_ = false;
@@ -94,7 +94,7 @@ real GeometricCg<D>::begin_at(const Natural<D>& problem, const Grid<real, D>& p,
     return total([](const PlaneSums& s) { return s.rr; });
 }
 
-/// p = x and r = b − A p, after before(plane); answers r·r. If wanted, the next cycle begins in the same sweep.
+/// p = x and r = b − A p, after before(plane); returns r·r. Optionally the next cycle begins in the same sweep.
 template <int D>
 template <class F>
 real GeometricCg<D>::replace_residual(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, bool begin_cycle, F&& before) {
@@ -117,13 +117,13 @@ real GeometricCg<D>::replace_residual(const Natural<D>& problem, Grid<real, D>& 
     return total([](const PlaneSums& s) { return s.rr; });
 }
 
-/// The way down of a cycle for an r that did not come from an iteration.
+/// The downward half of a cycle for an r that was not computed by an iteration.
 template <int D>
 void GeometricCg<D>::restart_cycle() {
     VCycle<D>(hierarchy_).down(0, 1, [&](int, int q) { start_plane(hierarchy_.finest(), q); });
 }
 
-/// The rest of the cycle, and γ = r·u, δ = u·A u.
+/// The upward half of the cycle, and γ = r·u, δ = u·A u.
 template <int D>
 void GeometricCg<D>::finish_cycle() {
     VCycle<D> cycle(hierarchy_);
@@ -165,20 +165,20 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, Grid<rea
     return solved;
 }
 
-/// x as it stands is what the columns on top of the matrix see.
+/// Passes the present x to the low-rank columns.
 template <int D>
 void GeometricCg<D>::see_answer() {
     if (added_.empty()) return;
     at_zero_ ? added_.see_zero() : added_.see(x_);
 }
 
-/// ‖b‖, or a negative number if it is not known.
+/// b_norm: ‖b‖, or a negative number if it is not known.
 template <int D>
 bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
                            real b_norm) {
     report.iterations = 0;
     report.history.clear();
-    bool begun = problem.clean(p);  // has the cycle for r begun?
+    bool begun = problem.clean(p);  // whether the cycle for r has begun
     refresh(p, hierarchy_.finest().at.periodic[D - 1]);
     real norm = std::sqrt(begun ? begin_at_zero(problem, b) : begin_at(problem, p, b));
     if (b_norm < 0) b_norm = begun ? norm : problem.norm(b);
@@ -205,7 +205,7 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
     return true;
 }
 
-/// The iterations of solve() from a residual r; p is x at the end.
+/// The iterations of solve() from a residual r; at the end p is x.
 template <int D>
 bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
                              const Start& start) {
@@ -227,7 +227,7 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
         if (!(alpha > 0)) {
             if (!options.fixed_iterations) return false;
             see_answer();
-            norm = replaced_norm(false, [](int) {});  // converged to round-off before the iterations were spent
+            norm = replaced_norm(false, [](int) {});  // converged to round-off before the last iteration
             break;
         }
         const real expected = norm * reduction, before = norm;

@@ -1,14 +1,15 @@
-// Conjugate gradients preconditioned by the V-cycle, in two sweeps through memory an iteration (scalars: Chronopoulos & Gear 1989):
+// Conjugate gradients preconditioned by the V-cycle, in two sweeps through memory per iteration (scalars: Chronopoulos & Gear 1989):
 //
 //     down:  p = u + β p;  s = A p;  x += α p;  r −= α s;  ρ = r·r;  pre-smoothing and restriction of the cycle for r
 //     up:    prolongation and post-smoothing: u = M r;  γ = r·u;  δ = u·A u
 //     then   β = γ/γ',  α = γ / (δ − β γ/α')
 //
 // p, r and the cycle are single precision; x and A p are double. r is replaced by the true b − A x each time it has fallen by a fixed
-// factor, and at the end: where the last reduction foretells that, the sweep down takes b − A x itself instead of r − α s.
+// factor, and at the end. Where the estimated reduction shows that this is due, the downward sweep computes b − A x itself instead of r − α
+// s.
 //
-// A matrix with a few columns on top, A + Σ U C Uᵀ, is solved with the cycle of A (added_columns.hpp): s and δ get their part, of the
-// numbers Uᵀ u of each direction alone.
+// A matrix with low-rank columns, A + Σ U C Uᵀ, is solved with the cycle of A (added_columns.hpp): their contributions to s and δ need only
+// the numbers Uᵀ u of each direction.
 #pragma once
 #include "poisson/added_columns.hpp"
 #include "poisson/list_solver.hpp"
@@ -19,14 +20,14 @@ namespace weir::poisson {
 template <int D>
 class GeometricCg {
 public:
-    /// False if the shape of the problem does not suit: nothing else may be called then.
+    /// Returns false if the problem's shape is not supported: no other function may be called then.
     bool setup(const Natural<D>& problem);
-    /// Over ranks: are iterations shared by them now? Else each must do all.
+    /// In parallel: returns whether iterations are distributed. Otherwise each rank must do all of them.
     bool share() { return hierarchy_.share(detail::own_share.cut); }
-    /// Iterates on A p = b; fills the report but for times, bytes and components. Answers false if it stopped because convergence is slow:
-    /// p then holds what has been reached.
+    /// Iterates on A p = b; fills the report except times, bytes and components. Returns false if it stopped because of slow convergence: p
+    /// then contains the last iterate.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);
-    /// The same with columns on top of the matrix; b is changed meanwhile.
+    /// The same with low-rank columns; b is changed temporarily.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, Grid<real, D>& b, const Options& options, Report& report, const LowRank& more);
     std::size_t bytes() const { return arena_.bytes() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums) + added_.bytes(); }
     /// One cycle u = M r, for tests.
@@ -36,7 +37,7 @@ private:
     struct PlaneSums {
         real rr = 0, ru = 0, uAu = 0, largest = 0;
     };
-    /// Where the iterations begin: ‖r‖ over ‖b‖, ‖b‖, and whether the cycle for r has begun.
+    /// Start of the iterations: ‖r‖ over ‖b‖, ‖b‖, and whether the cycle for r has begun.
     struct Start {
         real norm, b_norm;
         bool begun;
@@ -71,7 +72,7 @@ private:
     Coloured<double> x_{};
     Coloured<float> p_{};
     bool windowed_ = false;
-    bool at_zero_ = false;  // x is zero, whatever its memory holds
+    bool at_zero_ = false;  // x is zero, whatever its memory contains
     std::vector<PlaneSums> sums_;
     real gamma_ = 0, delta_ = 0;
 };

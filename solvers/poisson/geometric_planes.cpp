@@ -1,4 +1,4 @@
-// What the sweeps of the conjugate gradients do to one plane of the finest level.
+// The operations of the conjugate gradients on one plane of the finest level.
 #include "poisson/geometric_cg.hpp"
 #include "poisson/packing.hpp"
 #include "poisson/products.hpp"
@@ -7,7 +7,7 @@ namespace weir::poisson {
 
 namespace {
 
-/// sum += r·r, largest = max |r|; in the order of the compiler's vectors, whatever the threads.
+/// sum += r·r, largest = max |r|; in the order of the compiler's vectors, for any number of threads.
 void add_norms(const real* r, int n, real& sum, real& largest) {
     real rr = 0, most = largest;
 #pragma omp simd reduction(+ : rr) reduction(max : most)
@@ -42,7 +42,7 @@ void GeometricCg<D>::scatter_plane(const Natural<D>& problem, Grid<real, D>& p, 
     }
 }
 
-/// r = b − A p, packed, with its norms; p may be none, which is zero. The means of the problem must be those of b.
+/// r = b − A p, packed, with its norms; p may be nullptr for zero. The means of the problem must be those of b.
 template <int D>
 void GeometricCg<D>::residual_plane(const Natural<D>& problem, const real* p, const Grid<real, D>& b, int q) {
     Level<D>& finest = hierarchy_.finest();
@@ -64,7 +64,7 @@ void GeometricCg<D>::residual_plane(const Natural<D>& problem, const real* p, co
     sums_[static_cast<std::size_t>(q)] = sums;
 }
 
-/// The last half sweep over the red cells of a plane. It leaves them no residual, so that their u·A u is u·r.
+/// The last half sweep over the red cells of a plane. Their residual is then zero, so their u·A u is u·r.
 template <int D>
 void GeometricCg<D>::last_half_sweep(int q) {
     Level<D>& finest = hierarchy_.finest();
@@ -100,7 +100,7 @@ void GeometricCg<D>::black_products(int q) {
         with_product(finest, finest.u, q, j, 1, [&](const auto product) WEIR_INLINED {
             for (const Span& span : RowSpans<D>(finest, row))
                 for (int m = span.begin; m < span.end; m += lanes) {
-                    // Past the end of a periodic row stands its first entry again: it must not count twice.
+                    // a periodic row repeats its first entry past its end: it must not be counted twice
                     const f16 value = load16(u + m), inside = diagonal_at(m) != f16{} ? value : f16{};
                     const d16 Au = product(m), v = {low(inside), high(inside)}, f = load_wide(r + m);
                     ru += v.lo * f.lo + v.hi * f.hi;
@@ -130,7 +130,7 @@ void GeometricCg<D>::turn_plane(int q, real beta) {
     }
 }
 
-/// x += α p,  r −= α A p,  r·r, and the red start of the next cycle.
+/// x += α p,  r −= α A p,  r·r, and the red initialization of the next cycle.
 template <int D>
 void GeometricCg<D>::advance_plane(int q, real alpha) {
     Level<D>& finest = hierarchy_.finest();
@@ -165,7 +165,7 @@ void GeometricCg<D>::advance_plane(int q, real alpha) {
     sums_[static_cast<std::size_t>(q)].rr = sum(rr);
 }
 
-/// x += α p alone.
+/// Only x += α p.
 template <int D>
 void GeometricCg<D>::move_plane(int q, real alpha) {
     const Level<D>& finest = hierarchy_.finest();

@@ -11,11 +11,11 @@ namespace weir::poisson {
 
 namespace {
 
-constexpr std::size_t direct_cells = 300;   // levels of at most this many cells are solved directly
-constexpr std::size_t small_level = 20000;  // levels of fewer cells are not worth a second thread
-constexpr real strong_axis = 0.4;           // only axes whose weight is at least this part of the largest are coarsened
+constexpr std::size_t direct_cells = 300;   // levels up to this size are solved directly
+constexpr std::size_t small_level = 20000;  // smaller levels do not use a second thread
+constexpr real strong_axis = 0.4;           // only axes with at least this part of the largest weight are coarsened
 
-/// Widths of Dirichlet neighbours: an air cell stays at its distance while fluid cells grow (half a cell of each).
+/// Widths for Dirichlet neighbours: an air cell keeps its distance while fluid cells grow (half a cell of each).
 real zero_scale(real m) {
     const auto f = [](real width) { return width / (width / 2 + 0.5); };
     return 0.5 * f(2 * m) / f(m);
@@ -72,7 +72,7 @@ void coarsen_level(const Level<D>& fine, Level<D>& coarse, const Rows& rows) {
         parallel_for(0, coarse.at.planes(), plane);
 }
 
-/// Axes worth halving: strongly coupled, and, if periodic, even afterwards (or a single cell).
+/// Axes to coarsen: strongly coupled, and, if periodic, even afterwards (or a single cell).
 template <int D>
 std::array<bool, D> axes_to_halve(const Level<D>& level) {
     float strongest = 0;
@@ -88,7 +88,7 @@ std::array<bool, D> axes_to_halve(const Level<D>& level) {
     return halve;
 }
 
-/// The next coarser level, none if no axis is worth halving. Marks in `fine` which are.
+/// The next coarser level, none if no axis is suitable. Marks these axes in `fine`.
 template <int D>
 std::optional<Level<D>> halve(Level<D>& fine) {
     fine.coarsened = axes_to_halve(fine);
@@ -117,7 +117,7 @@ Level<D> finest_of(const Index<D>& n, const std::array<bool, D>& periodic, const
     return finest;
 }
 
-/// The levels of such a problem without their memory; none where the shape does not suit.
+/// The levels of such a problem without their memory; none where its shape is not supported.
 template <int D>
 std::vector<Level<D>> levels_below(Level<D> finest) {
     for (int a = 0; a < D; ++a)
@@ -153,7 +153,7 @@ bool Hierarchy<D>::plan(const Natural<D>& problem) {
     return true;
 }
 
-/// Where each rank holds its own planes alone, and those beside them, of the levels that are cut.
+/// Distributed storage of the partitioned levels: each rank's own planes and adjacent ghost planes.
 template <int D>
 void Hierarchy<D>::window() {
     for (auto& level : levels_) level.held.clear();
@@ -163,7 +163,7 @@ void Hierarchy<D>::window() {
         if (!level.cut.empty()) level.held = planes_held(level.cut, slabs().rank(), level.at.planes(), 0, 1, level.at.periodic[D - 1]);
 }
 
-/// The matrix of a level as far as others have made it: beside this rank's planes, or everywhere.
+/// Exchanges the matrix of a level: ghost planes of this rank, or all planes.
 template <int D>
 void Hierarchy<D>::bring_beside(std::size_t l) {
     Level<D>& level = levels_[l];
@@ -238,7 +238,8 @@ bool Hierarchy<D>::build(const Natural<D>& problem) {
     return true;
 }
 
-/// A level is cut where it is worth the messages and where no coarse plane is made of planes of two ranks. The coarsest is everybody's.
+/// A level is distributed if it is large enough for messages and no coarse plane has children on two ranks. The coarsest level is
+/// replicated.
 template <int D>
 bool Hierarchy<D>::share(const Cut* cut) {
     const bool known = cut == nullptr ? shared_as_.empty() : shared_as_ == *cut;

@@ -1,6 +1,6 @@
-// The geometric hierarchy: a coarse cell is fluid if any child is; restriction sums, prolongation is constant; a coarse face weighs half
-// the sum of its fine faces. The half is the over-correction that constant prolongation needs (Braess 1995): a face between cells of
-// double width conducts half as much as the sum says.
+// The geometric hierarchy: a coarse cell is fluid if any child is. Restriction sums, prolongation is constant; a coarse face has half the
+// sum of its fine faces' weights. The half is the over-correction that constant prolongation needs (Braess 1995): a face between cells of
+// double width conducts half of the sum.
 #pragma once
 #include "poisson/level.hpp"
 #include "poisson/natural.hpp"
@@ -11,13 +11,13 @@ namespace weir::poisson {
 template <int D>
 class Hierarchy {
 public:
-    /// False, with nothing built, if the shape does not suit: an odd periodic axis cannot be coloured red and black.
+    /// Returns false, with nothing built, if the shape is not supported: an odd periodic axis has no red-black colouring.
     bool build(const Natural<D>& problem);
     std::vector<Level<D>>& levels() { return levels_; }
     Level<D>& finest() { return levels_.front(); }
-    /// Cuts the large ones as the finest is cut, or none.
+    /// Partitions the large levels like the finest one, or none.
     static void cut_levels(std::vector<Level<D>>& levels, const Cut& cut);
-    /// Cuts the large levels as the finest is cut, or none; answers whether the finest is.
+    /// The same; returns whether the finest level is distributed.
     bool share(const Cut* cut);
     /// u = A⁻¹ r on the coarsest level.
     void solve_coarsest();
@@ -32,8 +32,8 @@ private:
     void build_coarsest();
 
     std::vector<Level<D>> levels_;
-    Cut shared_as_{};        // what the levels' cuts follow from
-    bool windowed_ = false;  // each rank holds its own planes alone of the levels that are cut
+    Cut shared_as_{};        // the partition that the levels' ones were derived from
+    bool windowed_ = false;  // distributed storage of the partitioned levels
     Arena arena_;
     SparseCholesky coarsest_;
     Matrix coarsest_matrix_;
@@ -42,7 +42,7 @@ private:
     Vector x_, b_;
 };
 
-/// The levels of such a problem without their memory, the large ones cut as the finest is; none where the shape does not suit.
+/// The levels of such a problem without their memory, the large ones partitioned like the finest; none where the shape is not supported.
 template <int D>
 std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut);
 

@@ -1,10 +1,10 @@
-// What happens to one row: smoothing, residual, products. The shape of a row decides once which of three forms its loops take.
+// Row kernels: smoothing, residual, products. The shape of a row selects once which of three loop variants is used.
 #pragma once
 #include "poisson/level.hpp"
 
 namespace weir::poisson {
 
-/// Σ w u over the neighbours of the entries of a row; all face weights plain.
+/// Σ w u over the neighbours of the entries of a row, with uniform face weights.
 template <int D>
 struct PlainSum {
     std::array<float, D> w;
@@ -36,7 +36,7 @@ struct CountedDiagonal {
     WEIR_INLINE f16 value(int m) const { return splat(weight) * to_float(count + m); }
 };
 
-/// From a stored 1/diagonal. Outside fluid the value is huge, and multiplies exact zeros only.
+/// From a stored 1/diagonal. Outside fluid the value is huge, and is multiplied by exact zeros only.
 struct StoredDiagonal {
     const float* dinv;
     WEIR_INLINE f16 inverse(int m) const { return load16(dinv + m); }
@@ -46,7 +46,8 @@ struct StoredDiagonal {
     }
 };
 
-/// Pointers to what the entries of one colour in one row see: the other colour's rows, shifted so that entry m finds its own neighbours.
+/// Pointers to the neighbours of the entries of one colour in one row: the other colour's rows, shifted so that entry m is at its
+/// neighbours.
 template <int D, class T>
 WEIR_INLINE std::array<T*, 2 * D> neighbours_of(const Layout<D>& at, int q, int j, int colour, T* other) {
     std::array<T*, 2 * D> u;
@@ -58,7 +59,7 @@ WEIR_INLINE std::array<T*, 2 * D> neighbours_of(const Layout<D>& at, int q, int 
     return u;
 }
 
-/// Weights of the same faces. A red cell has its own; a black one finds them with its red neighbours, as their opposite faces.
+/// Weights of the same faces. A red cell stores its own; a black one reads those of its red neighbours for the opposite faces.
 template <int D>
 std::array<const float*, 2 * D> weights_of(const Level<D>& level, int q, int j, int colour) {
     std::array<const float*, 2 * D> w;
@@ -80,7 +81,7 @@ std::array<const float*, 2 * D> weights_of(const Level<D>& level, int q, int j, 
     return w;
 }
 
-/// f(sum over neighbours, diagonal) in the form that fits the row.
+/// f(sum over neighbours, diagonal) in the variant for the row.
 template <int D, class F>
 WEIR_INLINE void with_row(const Level<D>& level, int q, int j, int colour, F&& f) {
     const auto c = static_cast<std::size_t>(colour);

@@ -1,6 +1,6 @@
-// One level of the geometric hierarchy. Every vector is two packed arrays, red and black (even and odd sum of indices): entry m of a row of
-// parity s holds cell i = 2m + s in the red array and i = 2m + 1 − s in the black one. The x-neighbours of entry m are then entries m and
-// m ± 1 of the other colour's row, all other neighbours are entry m, and every loop is contiguous. Entries outside fluid are zero.
+// One level of the geometric hierarchy. Every vector is two packed arrays, red and black (even and odd sum of indices). Entry m of a row of
+// parity s is cell i = 2m + s in the red array and i = 2m + 1 − s in the black one. The x-neighbours of entry m are then entries m and m ±
+// 1 of the other colour's row, all other neighbours are entry m, and every loop is contiguous. Entries outside fluid are zero.
 #pragma once
 #include "core/slabs.hpp"
 #include "poisson/arena.hpp"
@@ -13,7 +13,7 @@
 
 namespace weir::poisson {
 
-/// Consecutive entries of a row that the kernels work on: multiples of 16 that hold all fluid of both colours.
+/// A range of entries of a row, in multiples of 16, that contains all fluid of both colours.
 struct Span {
     int begin, end;
 };
@@ -26,7 +26,7 @@ struct Layout {
     Index<D> n{};
     std::array<bool, D> periodic{};
     int width = 0;   // entries of one colour in a row
-    int stride = 0;  // from one row to the next: whole vectors, and one more of zeros
+    int stride = 0;  // from one row to the next: whole vectors, plus one of zeros
 
     Layout() = default;
     Layout(const Index<D>& n_, const std::array<bool, D>& periodic_) : n(n_), periodic(periodic_) {
@@ -38,9 +38,9 @@ struct Layout {
     int planes() const { return n[D - 1]; }
     int rows_in_plane() const { return D == 2 ? 1 : n[1]; }
     int rows() const { return planes() * rows_in_plane(); }
-    /// Row −1 is all zero: the neighbour of a row at a closed or open side.
+    /// Row −1 is zero: the neighbour of a row at a closed or open side.
     std::size_t entries() const { return static_cast<std::size_t>(rows() + 1) * static_cast<std::size_t>(stride) + 2 * lanes; }
-    /// Rows after the others that hold the weights of sides, as the black cells beside them read them: one for each row along a side.
+    /// Additional rows with the weights of sides, which black cells beside them read: one for each row along a side.
     int side_rows() const { return D == 2 ? 1 : std::max(planes(), rows_in_plane()); }
     int side_row(int q, int j, int a) const { return rows() + (a == D - 1 ? j : q); }
     std::ptrdiff_t offset(int row) const { return static_cast<std::ptrdiff_t>(row) * stride; }
@@ -66,7 +66,7 @@ struct Layout {
     }
 };
 
-/// Weights of faces below the cells of one natural row, and what joins its cells to p = 0. Used while building only.
+/// Weights of the lower faces of one natural row, and its cells' couplings to p = 0. Used only while building.
 template <int D>
 struct FaceRow {
     std::array<const float*, D> face;
@@ -77,21 +77,21 @@ struct FaceRow {
 template <int D>
 struct Level {
     Layout<D> at;
-    std::array<bool, D> coarsened{};      // axes along which the next level has half the cells
-    std::array<float, D> plain_weight{};  // the weight of most faces along each axis
-    real zero_width = 1;                  // width of a cell in finest cells, along the axes coarsened so far
+    std::array<bool, D> coarsened{};      // axes along which the next level has half as many cells
+    std::array<float, D> plain_weight{};  // the most frequent face weight along each axis
+    real zero_width = 1;                  // width of a cell in finest cells, along the coarsened axes
 
     Coloured<float> u{}, r{};
-    // The diagonal: of the finest level by one byte a cell, the number of its open faces; else one over it.
+    // the diagonal: on the finest level one byte per cell, the number of open faces; otherwise its inverse
     bool by_count = false;
     Coloured<std::uint8_t> count{};
     alignas(64) std::array<float, lanes> inverse{};  // 1 / (weight × count), 0 for 0
     Coloured<float> dinv{};
-    // Faces in the order of the red cells: below and above along each axis. None where by_count.
+    // faces in the order of the red cells: below and above along each axis; unused with by_count
     std::array<float*, 2 * D> weight{};
-    std::vector<std::uint8_t> plain;  // rows whose fluid cells see plain weights only
+    std::vector<std::uint8_t> plain;  // rows whose fluid cells have uniform weights only
 
-    std::vector<int> span_start;  // of each row, and one more
+    std::vector<int> span_start;  // per row, plus one
     std::vector<Span> spans;
     std::vector<std::int64_t> work;  // blocks before each plane
 
@@ -100,29 +100,30 @@ struct Level {
     float* zero = nullptr;
     std::uint8_t* fluid = nullptr;
 
-    Cut cut{};                 // over ranks: who owns which planes; empty where every rank does all
-    std::vector<char> held{};  // which planes this rank holds; empty where it holds all
+    Cut cut{};                 // in parallel: the partition of planes; empty for replicated work
+    std::vector<char> held{};  // planes stored on this rank; empty where it stores all
 
     std::size_t cells() const { return product(at.n); }
-    /// The planes of a packed vector. An entry earlier than their rows, as a periodic row keeps what its first entry reads before itself.
+    /// The planes of a packed vector, starting one entry before its rows: a periodic row stores the left neighbour of its first entry
+    /// there.
     template <class T>
     Planes planes_of(T* vector) const {
         const int rows = at.rows_in_plane();
         return {vector - 1, sizeof(T) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(at.stride), at.planes(), 0,
                 held.empty() ? nullptr : held.data()};
     }
-    /// Of an array in natural order.
+    /// The planes of an array in natural order.
     template <class T>
     Planes natural_planes(T* array) const {
         return {array, sizeof(T) * cells() / static_cast<std::size_t>(at.planes()), at.planes(), 0, held.empty() ? nullptr : held.data()};
     }
     bool holds(int plane) const { return held.empty() || held[static_cast<std::size_t>(plane)] != 0; }
-    /// Whether this rank computes a plane's matrix.
+    /// Returns whether this rank computes a plane's matrix.
     bool owns(int plane) const {
         return held.empty() || (plane >= cut.begin(slabs().rank()) && plane < cut.end(slabs().rank(), at.planes()));
     }
-    /// Opens what this rank holds of a packed vector that the arena has given, which begins `skip` entries before its first row; `size`:
-    /// with what comes after its rows.
+    /// Opens the planes of a packed vector that this rank stores. The vector is a piece of the arena and begins `skip` entries before its
+    /// first row; `size`: including the entries after its rows.
     template <class T>
     void open(Arena& arena, const T* vector, std::size_t skip, std::size_t size) const {
         const T* const first = vector - skip;
@@ -139,7 +140,7 @@ struct Level {
         for (int q = 0; q < at.planes(); ++q)
             if (holds(q)) arena.open(array + q * plane, array + (q + 1) * plane);
     }
-    /// Over ranks: the planes beside the cuts, after each of a sweep's stages has written them.
+    /// In parallel: halo exchange after each stage of a sweep has written its planes.
     template <class T>
     void refresh(T* vector) const {
         if (!cut.empty()) slabs().refresh(cut, planes_of(vector), 1, at.periodic[D - 1]);
@@ -150,7 +151,7 @@ struct Level {
         const std::array<Planes, 2> both{planes_of(vectors[0]), planes_of(vectors[1])};
         slabs().refresh(cut, both, 1, at.periodic[D - 1]);
     }
-    /// Whether no cell of the row is fluid; known once the spans are.
+    /// Returns whether the row has no fluid; valid once the spans are known.
     bool is_dry(int row) const { return span_start[static_cast<std::size_t>(row)] == span_start[static_cast<std::size_t>(row) + 1]; }
 };
 

@@ -60,7 +60,7 @@ const Report& ListSolver<D>::continue_solve(const Report& attempt, Grid<real, D>
         const int before = report_.iterations;
         iterate(progress);
         report_.residual_after = true_residual();
-        if (report_.iterations == before) break;  // nothing to gain
+        if (report_.iterations == before) break;  // no further gain
     }
     system_.components.remove_means(x_);
     p.fill(0);

@@ -1,5 +1,5 @@
-// A few columns that come on top of a matrix: A + Σ U C Uᵀ over blocks, as rigid bodies that the fluid carries add them to the matrix of
-// the pressure (Batty, Bertails & Bridson 2007, eq. 9).
+// A low-rank addition to a matrix: A + Σ U C Uᵀ over blocks. Rigid bodies coupled to the fluid add it to the pressure matrix (Batty,
+// Bertails & Bridson 2007, eq. 9).
 #pragma once
 #include "core/types.hpp"
 
@@ -9,9 +9,9 @@
 namespace weir::poisson {
 
 struct LowRank {
-    static constexpr std::size_t columns = 6;  // of a block, at most; those that it has not are zero
+    static constexpr std::size_t columns = 6;  // maximum per block; unused ones are zero
     using Row = std::array<real, columns>;
-    /// A cell that a block's columns see. It must be fluid; another block may see it too.
+    /// A cell with entries in a block's columns. It must be fluid, and may belong to several blocks.
     struct Entry {
         std::size_t cell;
         Row u;

@@ -6,10 +6,10 @@ namespace weir::poisson {
 
 namespace {
 
-constexpr real tau = 0.97;    // how much of the dropped fill is added to the diagonal (Bridson 2015)
-constexpr real sigma = 0.25;  // below this part of the diagonal a pivot is not trusted (Bridson 2015)
+constexpr real tau = 0.97;    // fraction of the dropped fill that is added to the diagonal (Bridson 2015)
+constexpr real sigma = 0.25;  // smaller pivots, relative to the diagonal, are replaced (Bridson 2015)
 
-/// L = (strict lower triangle of A) E + E⁻¹ with a diagonal E; solves L q = r, then Lᵀ z = q, one row after another.
+/// L = (strict lower triangle of A) E + E⁻¹ with a diagonal E; solves L q = r, then Lᵀ z = q, row by row.
 class Mic0 {
 public:
     void prepare(const Matrix& A, const Components&) {

@@ -1,4 +1,4 @@
-// multigrid: conjugate gradients preconditioned by the geometric V-cycle where the cells allow it, else by aggregation multigrid.
+// multigrid: conjugate gradients preconditioned by the geometric V-cycle where the cells allow it, otherwise by aggregation multigrid.
 #include "poisson/algebraic_multigrid.hpp"
 #include "poisson/conjugate_gradient.hpp"
 #include "poisson/factories.hpp"
@@ -26,8 +26,8 @@ public:
         report_.setup_seconds = watch.seconds();
     }
 
-    /// Walls and slits that coarse cells cannot show, or weights of many magnitudes, slow the geometric cycle down: then the algebraic one
-    /// takes over where it stopped. It is built when a solve first needs it, and whether one does depends on that solve alone.
+    /// Walls and slits that coarse cells do not resolve, or weights of many magnitudes, slow the geometric cycle down. The algebraic one
+    /// then continues from its iterate. It is built when a solve first needs it; whether one does depends on that solve alone.
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) override {
         const Stopwatch watch;
         geometric_.share();
@@ -50,7 +50,7 @@ public:
         return report_;
     }
 
-    /// A component without air would need the columns' means taken out of them; the algebraic cycle knows nothing of them.
+    /// A component without air would require removing the columns' means; the algebraic cycle does not support columns.
     const Report* solve(Grid<real, D>& p, Grid<real, D>& b, const LowRank& more) override {
         if (!geometric_fits_ || problem_.closed() > 0 || over_ranks()) return nullptr;
         const Stopwatch watch;
@@ -72,7 +72,7 @@ public:
     bool shares_planes() const override { return geometric_fits_ && const_cast<GeometricCg<D>&>(geometric_).share(); }
 
 private:
-    /// Over ranks, by each of them.
+    /// In parallel, replicated on each rank.
     const Report& continue_alone(Grid<real, D>& p, const Grid<real, D>& b) {
         if (algebraic_ == nullptr) set_up_algebraic();
         if (!over_ranks()) return algebraic_->continue_solve(report_, p, b);

@@ -40,7 +40,7 @@ int Natural<D>::neighbour(int q, int j, int a, int side) const {
     return row(q, j);
 }
 
-/// Beyond a side there is p = 0 where face weights say how much of it is open, else a wall.
+/// Beyond a side p = 0, where face weights define its open fraction; otherwise a wall.
 template <int D>
 void Natural<D>::copy_cells(const Operator<D>& A) {
     const int nx = n_[0], rows = planes() * rows_in_plane();
@@ -107,7 +107,7 @@ void Natural<D>::clean_faces(const Operator<D>& A) {
                 const int q_low = q - (a == D - 1), j_low = j - (a > 0 && a != D - 1);
                 const int up_row = !last ? row(q, j) : neighbour(q_low, j_low, a, 1);
                 const int low_row = t > 0 ? row(q_low, j_low) : neighbour(q, j, a, 0);
-                if (!is_wet(up_row) && !is_wet(a == 0 ? up_row : low_row)) continue;  // no one looks at these faces
+                if (!is_wet(up_row) && !is_wet(a == 0 ? up_row : low_row)) continue;  // these faces are not used
                 const std::uint8_t *up = cells(up_row), *low = a == 0 ? up - 1 : cells(low_row);
                 const bool wraps = last && ring;
                 const real* w =
@@ -152,7 +152,7 @@ void Natural<D>::find_runs() {
     refill_scratch<real>(sum_, runs_.size(), 0);
 }
 
-/// Over ranks, those of all of them: there are few in a row.
+/// In parallel, those of all ranks: there are few per row.
 template <int D>
 void Natural<D>::gather_runs() {
     const Cut& cut = *detail::own_share.cut;
@@ -171,7 +171,7 @@ void Natural<D>::gather_runs() {
     for (const Run& run : runs_) fluid_cells_ += run.end - run.begin;
 }
 
-/// Union-find over runs of neighbouring rows that share an open face; components that no face joins to p = 0 are closed.
+/// Union-find over runs of adjacent rows that share an open face; components without a face to p = 0 are closed.
 template <int D>
 void Natural<D>::find_closed() {
     std::vector<int>& parent = root_;
@@ -182,7 +182,7 @@ void Natural<D>::find_closed() {
             i = parent[static_cast<std::size_t>(i)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
         return i;
     };
-    std::vector<std::array<int, 2>> joined;  // over ranks, by this one
+    std::vector<std::array<int, 2>> joined;  // in parallel, pairs found by this rank
     const auto join_runs = [&](int a, int b) {
         const int i = root(a), k = root(b);
         parent[static_cast<std::size_t>(std::max(i, k))] = std::min(i, k);
@@ -254,7 +254,7 @@ void Natural<D>::mark_open() {
             }
 }
 
-/// Over ranks: a component is open where any of them has found it so.
+/// In parallel: a component is open if any rank found it open.
 template <int D>
 void Natural<D>::gather_open() {
     std::vector<int> found;

@@ -1,5 +1,5 @@
-// The problem in the order of the caller's grids, as the geometric multigrid keeps it: cells with a margin, cleaned face weights in double
-// precision, and runs of connected fluid cells. The true residual is taken here, apart from the packed arrays of the cycle.
+// The problem in the order of the caller's grids, for the geometric multigrid: cells with a margin, cleaned face weights in double
+// precision, and runs of connected fluid cells. The true residual is computed here, independent of the cycle's packed arrays.
 #pragma once
 #include "poisson/poisson.hpp"
 
@@ -8,10 +8,10 @@
 
 namespace weir::poisson {
 
-/// Fluid cells [begin, end) of a row, joined by open faces, all of one component.
+/// Fluid cells [begin, end) of a row, connected by open faces, all of one component.
 struct Run {
     int begin, end;
-    int component;  // number of the closed component, −1 if the pressure is fixed
+    int component;  // index of the closed component, −1 if the pressure is fixed
 };
 
 template <int D>
@@ -19,7 +19,7 @@ class Natural {
 public:
     void build(const Operator<D>& A);
 
-    /// An operator with the same matrix; over ranks, whole, on all of them.
+    /// An operator with the same matrix; in parallel, whole on all ranks.
     Operator<D> as_operator() const;
 
     const Index<D>& extent() const { return n_; }
@@ -29,9 +29,9 @@ public:
     int planes() const { return n_[D - 1]; }
     int rows_in_plane() const { return D == 2 ? 1 : n_[1]; }
     int row(int q, int j) const { return D == 2 ? q : q * n_[1] + j; }
-    /// Cells of a row; [−1] and [n_x] are what lies beyond its ends.
+    /// Cells of a row; [−1] and [n_x] are those beyond its ends.
     const std::uint8_t* cells(int row) const { return cells_.data() + 1 + static_cast<std::ptrdiff_t>(row + 1) * (n_[0] + 2); }
-    /// The neighbouring row along axis a > 0; −1, a row of what lies outside, beyond a side.
+    /// The neighbouring row along axis a > 0; beyond a side −1, the row of outside cells.
     int neighbour(int q, int j, int a, int side) const;
     /// Cleaned weights: zero at solids and between cells that are not fluid; axis weight included. Row q, j of the faces along a.
     const real* faces(int a, int q, int j) const { return faces_[static_cast<std::size_t>(a)].data() + face_offset(a, q, j); }
@@ -43,23 +43,23 @@ public:
     /// Means of the values over closed components, from sums over runs, added in the order of the runs.
     void find_means(const Grid<real, D>& values) const;
     void clear_means() const { std::fill(mean_.begin(), mean_.end(), 0.0); }
-    /// The same in two parts, for who passes over the values anyway: sums over the runs of every row, then means.
+    /// The same in two parts, for callers that already loop over the values: sums over the runs of every row, then means.
     void sum_row(int row, const real* values) const;
     void means_from_sums() const;
     /// Subtracts from p the mean of its closed component.
     void subtract_means(Grid<real, D>& p) const;
     /// ‖b − means‖₂ over fluid.
     real norm(const Grid<real, D>& b) const;
-    /// Makes p zero outside fluid; answers whether it is zero everywhere.
+    /// Sets p to zero outside fluid; returns whether it is zero everywhere.
     bool clean(Grid<real, D>& p) const;
     void clear_outside(int row, real* values) const;
     real mean(const Run& run) const { return run.component < 0 ? 0 : mean_[static_cast<std::size_t>(run.component)]; }
     const Run* runs_begin(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row)]; }
     const Run* runs_end(int row) const { return runs_.data() + run_start_[static_cast<std::size_t>(row) + 1]; }
 
-    /// Is no cell of the row fluid?
+    /// Returns whether no cell of the row is fluid.
     bool is_dry(int row) const { return runs_begin(row) == runs_end(row); }
-    /// Are all cells of the row fluid, and all of the rows beside it?
+    /// Returns whether all cells of the row and of its neighbouring rows are fluid.
     bool is_amid_fluid(int q, int j) const {
         bool amid = is_full(row(q, j));
         for (int a = 1; a < D; ++a)
@@ -68,7 +68,7 @@ public:
     }
     /// r[i] = b[i] − mean for the fluid cells of a row, 0 elsewhere: the residual of p = 0.
     void rhs_row(int row, const real* b, real* r) const;
-    /// r[i] = b[i] − mean − (A p)[i] for the cells of a row, 0 elsewhere. p is zero outside fluid.
+    /// r[i] = b[i] − mean − (A p)[i] for the cells of a row, 0 elsewhere. p must be zero outside fluid.
     void residual_row(int q, int j, const real* p, const real* b, real* r) const;
 
 private:
@@ -82,7 +82,7 @@ private:
     void find_runs();
     void gather_runs();
     void gather_open();
-    /// Over ranks, of the runs of others.
+    /// In parallel, receives the values of the other ranks' runs.
     template <class T>
     void gather_by_runs(T* values) const {
         first_runs_.clear();
@@ -95,7 +95,7 @@ private:
     void find_closed();
     void mark_open();
     void gather_sums() const;
-    /// f(row), threaded over all of them; over ranks, of this one's planes.
+    /// f(row), threaded over all rows; in parallel, over those of this rank's planes.
     template <class F>
     void for_each_row_of_own(F&& f) const {
         const int rows = rows_in_plane(), begin = detail::own_share.lower(0), end = detail::own_share.upper(planes());
@@ -110,9 +110,9 @@ private:
     Vec<D> axis_weight_{};
     std::array<bool, D> periodic_{};
     PlaneStore<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
-    std::vector<std::uint8_t> wet_;           // how much of each row is fluid
+    std::vector<std::uint8_t> wet_;           // amount of fluid in each row
     std::array<PlaneStore<real>, D> faces_;
-    PlaneRange own_{0, 0};  // the planes that this rank makes, all where it holds all
+    PlaneRange own_{0, 0};  // the planes that this rank computes, all where it stores all
     bool windowed_ = false;
     std::vector<int> run_start_;
     std::vector<Run> runs_;
@@ -120,8 +120,8 @@ private:
     std::int64_t fluid_cells_ = 0;
     std::vector<real> size_;                       // cells of each closed component
     mutable std::vector<real> mean_, sum_;         // of components, of runs
-    mutable std::vector<std::size_t> first_runs_;  // of each rank
-    std::vector<int> root_, number_;               // scratch of find_closed: of each run its root, of each root its component
+    mutable std::vector<std::size_t> first_runs_;  // per rank
+    std::vector<int> root_, number_;               // scratch of find_closed: root of each run, component of each root
     std::vector<char> open_;
 };
 

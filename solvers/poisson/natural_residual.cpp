@@ -7,7 +7,7 @@ namespace weir::poisson {
 
 namespace {
 
-/// p of the calling thread's row with what lies beyond its ends.
+/// p of a row in the thread's buffer, with the values beyond its ends.
 const real* with_margins(const real* p, int n, bool ring) {
     thread_local std::vector<real> copy;
     if (copy.size() < static_cast<std::size_t>(n) + 2) copy.resize(static_cast<std::size_t>(n) + 2);
@@ -84,7 +84,7 @@ void Natural<D>::sum_row(int row, const real* values) const {
     }
 }
 
-/// Over ranks, of the runs of others.
+/// In parallel, receives the sums of the other ranks' runs.
 template <int D>
 void Natural<D>::gather_sums() const {
     if (!over_ranks() || closed_ == 0) return;

@@ -6,16 +6,16 @@ namespace weir::poisson {
 
 namespace {
 
-constexpr std::uint8_t is_fluid = 1;  // in rows of cells and in rows of coarse flags alike
+constexpr std::uint8_t is_fluid = 1;  // in rows of cells and of coarse flags
 static_assert(static_cast<std::uint8_t>(Cell::fluid) == is_fluid);
 
-/// Everything about the faces of one natural row, towards both sides of each axis.
+/// All data of the faces of one natural row, towards both sides of each axis.
 template <int D, class T>
 struct RowView {
     std::array<const T*, 2 * D> weight;
     std::array<const std::uint8_t*, 2 * D> beside;
     const std::uint8_t* self;
-    const float* zero;  // what else joins the cells to p = 0, or none
+    const float* zero;  // other couplings of the cells to p = 0, or nullptr
 };
 
 /// Buffers of one thread, grown as needed.
@@ -87,7 +87,7 @@ bool is_plain(const Level<D>& level, const RowView<D, T>& v) {
     return different == 0;
 }
 
-/// A black cell finds its weights with its red neighbours; beyond a side there is none, so what the side weighs is kept in its place.
+/// A black cell reads the weights of its red neighbours; beyond a side there is none, so the side's weight is stored in its place.
 template <int D, class T>
 void pack_sides(Level<D>& level, int q, int j, const RowView<D, T>& v) {
     const Layout<D>& at = level.at;
@@ -130,7 +130,7 @@ void pack_row(Level<D>& level, int q, int j, const RowView<D, T>& v, Buffers& bu
     level.plain[static_cast<std::size_t>(row)] = is_plain(level, v);
 }
 
-/// Over ranks, of this one's planes where it holds no others.
+/// In parallel, over this rank's planes where it stores no others.
 template <int D, class F>
 void for_each_row(const Level<D>& level, bool threaded, F&& f) {
     const Layout<D>& at = level.at;
@@ -146,7 +146,7 @@ void for_each_row(const Level<D>& level, bool threaded, F&& f) {
         for (int q = 0; q < at.planes(); ++q) plane(q);
 }
 
-/// Whether neither a row nor any row beside it holds fluid: then no sweep reads its weights.
+/// Returns whether neither a row nor its neighbours contain fluid: then no sweep reads its weights.
 template <int D>
 bool is_far_from_fluid(const Level<D>& level, int q, int j) {
     bool far = level.is_dry(level.at.row(q, j));
@@ -158,7 +158,7 @@ bool is_far_from_fluid(const Level<D>& level, int q, int j) {
     return far;
 }
 
-/// Weights and diagonals of all rows that matter; view(q, j, buffers) looks at a natural row.
+/// Weights and diagonals of all rows in use; view(q, j, buffers) returns a natural row.
 template <int D, class View>
 void pack_rows(Level<D>& level, bool threaded, const View& view_of) {
     level.plain.resize(static_cast<std::size_t>(level.at.rows()));
@@ -169,12 +169,12 @@ void pack_rows(Level<D>& level, bool threaded, const View& view_of) {
             pack_row(level, q, j, view_of(q, j, buffers), buffers);
     });
     if (level.held.empty()) return;
-    std::vector<Planes> all;  // black cells find their weights with their red neighbours
+    std::vector<Planes> all;  // black cells read the weights of their red neighbours
     for (float* weight : level.weight) all.push_back(level.planes_of(weight));
     slabs().refresh(level.cut, all, 1, level.at.periodic[D - 1]);
 }
 
-/// Open faces of each cell of a row, packed: all faces that do not lead to a solid.
+/// Number of open faces of each cell of a row, packed: all faces that do not border a solid.
 template <int D>
 void count_row(Level<D>& level, const Natural<D>& problem, int q, int j, Buffers& buffers) {
     const Layout<D>& at = level.at;
@@ -195,7 +195,7 @@ void count_row(Level<D>& level, const Natural<D>& problem, int q, int j, Buffers
     split(count, n, at.width, level.count[s] + own, level.count[1 - s] + own);
 }
 
-/// Spans of all rows, and zeros where no sweep will ever write.
+/// Spans of all rows, and zeros outside them.
 template <int D, class Flags>
 void find_spans(Level<D>& level, const Flags& flags) {
     const Layout<D>& at = level.at;

@@ -12,7 +12,7 @@ void pack_finest(Level<D>& level, const Natural<D>& problem);
 template <int D>
 void pack_coarse(Level<D>& level, bool threaded);
 
-/// Zeros where no sweep ever writes: outside the spans of each row.
+/// Zeros where no sweep writes: outside the spans of each row.
 template <int D>
 void clear_gaps(const Level<D>& level, float* vector);
 

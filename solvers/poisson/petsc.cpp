@@ -1,6 +1,6 @@
-// petsc_gamg, petsc_boomeramg, petsc_icc: PETSc's conjugate gradients, from a library that is loaded when one of them is named. Over ranks
-// each knows the whole system and PETSc shares its rows. Its sums depend on the number of ranks, so that answers differ within the
-// tolerance.
+// petsc_gamg, petsc_boomeramg, petsc_icc: PETSc's conjugate gradients, from a library that is loaded when a scene names one of them. In
+// parallel each rank assembles the whole system and PETSc distributes its rows. Its sums depend on the number of ranks, so results differ
+// within the tolerance.
 #include "poisson/petsc_engine.hpp"
 
 #include "core/error.hpp"
@@ -15,7 +15,8 @@ namespace weir::poisson {
 
 namespace {
 
-/// Were the ranks started by another MPI than PETSc's? Then its library cannot even be loaded: parts of it call what they take for theirs.
+/// Returns whether the ranks were started by another MPI than PETSc's. Its library cannot be loaded then: parts of it would call the wrong
+/// MPI.
 bool other_mpi() { return slabs().several() && (dlsym(RTLD_DEFAULT, "ompi_mpi_comm_world") != nullptr) != WEIR_PETSC_OPEN_MPI; }
 
 PetscEntry entry() {

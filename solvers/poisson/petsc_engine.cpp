@@ -1,5 +1,5 @@
 // libweir_petsc: PETSc's conjugate gradients (KSPCG) with its algebraic multigrid (GAMG), hypre's (BoomerAMG; Henson & Yang 2002) or
-// incomplete Cholesky. None of weir's own arithmetic is in the way: an independent referee. Balay et al., PETSc/TAO Users Manual, 3.18.
+// incomplete Cholesky. It uses none of weir's arithmetic: an independent reference. Balay et al., PETSc/TAO Users Manual, 3.18.
 #include "poisson/petsc_engine.hpp"
 
 #include "core/halo.hpp"
@@ -23,7 +23,7 @@ void check(PetscErrorCode code) {
     throw std::runtime_error(std::string("PETSc: ") + (text ? text : "unknown error"));
 }
 
-/// Once a process, without the others; signals stay weir's, and no file or variable of the user's changes what is solved.
+/// Once per process, for this process alone. Signal handlers stay weir's, and no user file or environment variable changes the solver.
 void start_petsc() {
     static const bool started = [] {
         PETSC_COMM_WORLD = MPI_COMM_SELF;
@@ -36,7 +36,7 @@ void start_petsc() {
         check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
         check(PetscOptionsSetValue(nullptr, "-weir_blocks_sub_pc_type", "icc"));
         check(PetscOptionsSetValue(nullptr, "-weir_blocks_sub_pc_factor_shift_type", "positive_definite"));
-        // What hypre's manual recommends in space: with the 0.25 of the plane the hierarchy fills.
+        // recommended by hypre's manual in 3D; with 0.25, the value for 2D, the hierarchy fills in
         check(PetscOptionsSetValue(nullptr, "-weir_3d_pc_hypre_boomeramg_strong_threshold", "0.5"));
         if (!has_mpi)
             std::atexit([] {
@@ -48,7 +48,7 @@ void start_petsc() {
     static_cast<void>(started);
 }
 
-/// Bytes of the heap in use: what hypre holds it does not tell.
+/// Bytes of heap in use: hypre does not report its own memory.
 std::size_t heap() {
     const auto info = mallinfo2();
     return info.uordblks + info.hblkhd;
@@ -94,7 +94,7 @@ public:
     std::size_t bytes() const override { return bytes_; }
 
 private:
-    /// This rank's rows with their diagonal, as PETSc has them; alone it keeps these arrays as its own.
+    /// Takes this rank's rows with their diagonal in PETSc's format; for a single rank these arrays are used in place.
     void take(const Matrix& A) {
         first_ = 0, end_ = static_cast<std::size_t>(A.size());
         if (const Cut cut = cut_of(A.size(), ranks_); !cut.empty()) {
@@ -156,12 +156,12 @@ private:
             check(PCSetFromOptions(pc));
         } else {
             check(PCSetType(pc, PCICC));
-            // A closed component's last pivot is round-off without it.
+            // otherwise a closed component's last pivot is round-off
             check(PCFactorSetShiftType(pc, MAT_SHIFT_POSITIVE_DEFINITE));
         }
     }
 
-    /// PETSc's question after each iteration, and before the first.
+    /// PETSc's callback after each iteration, and before the first.
     static PetscErrorCode ask(KSP, PetscInt iteration, PetscReal residual, KSPConvergedReason* reason, void* self) {
         const auto& engine = *static_cast<Engine*>(self);
         const bool more = iteration == 0 || (*engine.wants_more_)(residual);
@@ -169,7 +169,7 @@ private:
         return 0;
     }
 
-    /// Subtracts from v its mean over each closed component, of all ranks' rows.
+    /// Subtracts from v its mean over each closed component, over all ranks' rows.
     static PetscErrorCode take_means_out(MatNullSpace, ::Vec v, void* self) {
         auto& engine = *static_cast<Engine*>(self);
         PetscScalar* values = nullptr;
@@ -177,7 +177,7 @@ private:
         const auto closed = static_cast<std::size_t>(engine.components_->closed);
         const int* of = engine.components_->of.data() + engine.first_;
         const std::size_t own = engine.end_ - engine.first_;
-        auto& sums = engine.sums_;  // of values, and then how many
+        auto& sums = engine.sums_;  // of values, then counts
         sums.assign(2 * closed, 0);
         for (std::size_t i = 0; i < own; ++i)
             if (of[i] >= 0) sums[static_cast<std::size_t>(of[i])] += values[i], sums[closed + static_cast<std::size_t>(of[i])] += 1;

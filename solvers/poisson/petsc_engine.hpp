@@ -1,5 +1,5 @@
-// What weir asks of PETSc, as a class that a library of its own implements: PETSc brings a hundred shared libraries with it, MPI among
-// them, and a run that does not name it loads none.
+// Interface to PETSc, implemented by a separate library: PETSc depends on a hundred shared libraries, including MPI, and a run that does
+// not use it loads none.
 #pragma once
 #include "poisson/system.hpp"
 
@@ -11,16 +11,16 @@ namespace weir::poisson {
 class PetscEngine {
 public:
     virtual ~PetscEngine() = default;
-    /// Takes its rank's rows of the matrix, as cut_of cuts them, and sets the preconditioner up. `components`: what the matrix maps to
-    /// zero; they are to live as long as solves go on.
+    /// Takes this rank's rows of the matrix, as partitioned by cut_of, and sets up the preconditioner. `components`: the null space of the
+    /// matrix; it must outlive all solves.
     virtual void prepare(const Matrix& A, const Components& components) = 0;
-    /// Conjugate gradients from x on, until `wants_more`, asked with ‖b − A x‖₂ after each iteration, says no, or PETSc finds nothing to
-    /// gain. Over ranks each has improved its rows of x. Throws std::runtime_error with PETSc's words.
+    /// Conjugate gradients starting at x, until `wants_more`, called with ‖b − A x‖₂ after each iteration, returns false, or PETSc finds no
+    /// further gain. In parallel each rank improves its rows of x. Throws std::runtime_error with PETSc's message.
     virtual void solve(Vector& x, const Vector& b, const std::function<bool(real)>& wants_more) = 0;
     virtual std::size_t bytes() const = 0;
 };
 
-/// The name in the library of a function that makes an engine for "gamg", "boomeramg" or "icc" in `dim` dimensions, for this process alone
+/// The name of the library's function that creates an engine for "gamg", "boomeramg" or "icc" in `dim` dimensions, for this process alone
 /// or for all of `ranks` together.
 inline constexpr const char* petsc_entry = "weir_petsc_engine";
 using PetscEntry = PetscEngine* (*)(const char* preconditioner, int dim, int ranks);

@@ -1,4 +1,4 @@
-// The pressure equation on cells of any shape of fluid, solved by name.
+// The pressure equation on fluid cells of any geometry, with solvers selected by name.
 //
 //     (A p)(I) = Σ_faces w_f (p(I) − p(N)) = b(I)      for each fluid cell I; N is its neighbour across face f
 //
@@ -22,12 +22,12 @@ namespace weir::poisson {
 
 enum class Cell : std::uint8_t { solid = 0, fluid = 1, air = 2 };
 
-/// The matrix, as data. Faces between two non-fluid cells are ignored; faces of solid cells count as closed whatever their weight.
+/// The matrix, as data. Faces between two non-fluid cells are ignored; faces of solid cells are closed for any weight.
 template <int D>
 struct Operator {
     Grid<Cell, D> cells;
-    /// weight[a] has cells.extent() + e<D>(a) entries; entry I is the face on the lower side of cell I along a. All D empty: every
-    /// face between non-solid cells weighs axis_weight[a], and domain sides are closed (the fast path by flags alone).
+    /// weight[a] has cells.extent() + e<D>(a) entries; entry I is the face on the lower side of cell I along a. All D empty: every face
+    /// between non-solid cells has axis_weight[a], and domain sides are closed (the fast path, which uses flags only).
     std::array<Grid<real, D>, D> weight;
     /// Multiplies every face weight along an axis: (h/h_a)² for anisotropic cells.
     Vec<D> axis_weight = Vec<D>::constant(1);
@@ -35,45 +35,46 @@ struct Operator {
     std::array<bool, D> periodic{};
 };
 
-/// What every solve answers.
+/// The result of a solve.
 struct Report {
     int iterations = 0;
     bool converged = false;
-    real residual_before = 0;   // ‖b − A p₀‖₂ / ‖b‖₂ with the compatible b; p₀ is the guess, or zero where that is nearer
-    real residual_after = 0;    // the same for the answer, recomputed in double precision
+    real residual_before = 0;  // ‖b − A p₀‖₂ / ‖b‖₂ with the compatible b; p₀ is the guess, or zero where its residual is smaller
+    real residual_after = 0;    // the same for the solution, recomputed in double precision
     real residual_max = 0;      // ‖b − A p‖_∞, absolute
-    std::vector<real> history;  // relative residual after each iteration, as the iteration sees it; empty unless asked for
+    std::vector<real> history;  // relative residual after each iteration, as computed by it; empty unless requested
     double setup_seconds = 0;   // of the last setup()
     double solve_seconds = 0;
-    std::size_t bytes = 0;  // held by the solver after setup, without the caller's p, b and Operator
+    std::size_t bytes = 0;  // of the solver after setup, without the caller's p, b and Operator
     int components = 0;     // closed (singular) components of fluid
 };
 
 struct Options {
     real tolerance = 1e-8;  // on ‖b − A p‖₂ / ‖b‖₂
     int max_iterations = 1000;
-    bool fixed_iterations = false;  // run exactly max_iterations and accept what comes (what games do)
+    bool fixed_iterations = false;  // run exactly max_iterations and accept the result (as games do)
     bool record_history = false;
 };
 
-/// One method. Usage: setup() when cells or weights changed, solve() as often as wanted.
+/// One method. Usage: setup() when cells or weights changed, then solve() any number of times.
 template <int D>
 class Solver {
 public:
     virtual ~Solver() = default;
     virtual void setup(const Operator<D>& A) = 0;
-    /// Solves A p = b. p holds the first guess on entry, which is dropped if its residual is larger than that of zero; cells that are not
-    /// fluid are set to 0, whatever they held, and b is not read there. Throws NumericalFailure("pressure", ...)
-    /// when the tolerance is missed after max_iterations (unless fixed_iterations) or when the residual is not finite.
-    /// The reference stays valid until the next call; after the first, a solve with an unchanged structure allocates nothing.
+    /// Solves A p = b. On entry p is the initial guess, which is replaced by zero if its residual is larger. Cells that are not fluid are
+    /// set to 0, and b is not read there. Throws NumericalFailure("pressure", ...) when the tolerance is missed after max_iterations
+    /// (unless fixed_iterations) or when the residual is not finite. The reference stays valid until the next call; after the first, a
+    /// solve with an unchanged structure allocates nothing.
     virtual const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) = 0;
-    /// Solves (A + Σ U C Uᵀ) p = b by iterations that converge for A, each a little dearer; b is as it was afterwards. None: this method,
-    /// or this problem, does not let itself be solved so, and p is a guess.
+    /// Solves (A + Σ U C Uᵀ) p = b by the iterations for A, each slightly more expensive; b is restored afterwards. nullptr: this method or
+    /// problem is not supported, or did not converge; p is then a guess.
     virtual const Report* solve(Grid<real, D>&, Grid<real, D>&, const LowRank&) { return nullptr; }
-    /// Solves from now on may stop at this residual over the right-hand side. Methods that take no tolerance go on as before.
+    /// Sets the relative residual at which later solves may stop. Methods without a tolerance ignore it.
     virtual void aim(real) {}
     virtual std::size_t bytes() const = 0;
-    /// Over ranks (core/slabs.hpp): does solve() take and give each rank's own planes of b and p? Else it wants them whole, on all ranks.
+    /// In parallel (core/slabs.hpp): returns whether solve() works on each rank's own planes of b and p. Otherwise it requires them whole,
+    /// on all ranks.
     virtual bool shares_planes() const { return false; }
 };
 
@@ -90,22 +91,22 @@ struct Method {
 };
 
 /// multigrid, cg_mic0, cg_jacobi, cg, eigen_iccg, cholmod, red_black, jacobi, dct, and PETSc's petsc_gamg, petsc_boomeramg, petsc_icc:
-/// always in this order, whatever this weir was built with.
+/// always in this order, for any build of weir.
 const std::vector<Method>& methods();
-/// Throws BadInput for an unknown name, and names the known ones.
+/// Throws BadInput for an unknown name, listing the known ones.
 const Method& method_named(std::string_view name);
-/// Can PETSc's methods be made here? Loads its library at the first question.
+/// Returns whether PETSc's methods are available. Loads its library at the first call.
 bool has_petsc();
 
-/// Throws BadInput for an unknown name, naming the known ones, and for one of PETSc's where weir was built without it.
+/// Throws BadInput for an unknown name, listing the known ones, and for PETSc's methods where weir was built without it.
 template <int D>
 std::unique_ptr<Solver<D>> make_solver(std::string_view method, const Options& options);
 
-/// Over ranks that are cut so, does "multigrid" share the planes of such a grid, whatever the cells?
+/// In parallel: returns whether "multigrid" distributes the planes of such a grid with this partition, for any cell flags.
 template <int D>
 bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut);
 
-/// r = b − A p in double precision on fluid cells, zero elsewhere; b is taken as it stands.
+/// r = b − A p in double precision on fluid cells, zero elsewhere; b is used without removing its mean.
 template <int D>
 void residual(const Operator<D>& A, const Grid<real, D>& p, const Grid<real, D>& b, Grid<real, D>& r);
 

@@ -1,4 +1,4 @@
-// A p on the finest level, sixteen cells at a time, in double precision where that matters.
+// A p on the finest level, sixteen cells at a time, in double precision where needed.
 #pragma once
 #include "poisson/kernels.hpp"
 
@@ -24,8 +24,8 @@ struct CountedProduct {
     WEIR_INLINE d16 operator()(int m) const { return {half(m), half(m + 8)}; }
 };
 
-/// Σ w (p_c − p_n) in single precision: differences of neighbours are nearly exact, and the weights are rounded anyway. What is lost comes
-/// back when the residual is replaced.
+/// Σ w (p_c − p_n) in single precision: differences of neighbours are nearly exact, and the weights are rounded anyway. Replacing the
+/// residual removes the error.
 template <int D>
 struct WeightedProduct {
     const float* own;
@@ -38,7 +38,7 @@ struct WeightedProduct {
     }
 };
 
-/// f(product) in the form that fits the finest level. Entries outside fluid are meaningless: they must meet a zero.
+/// f(product) in the variant for the finest level. Entries outside fluid are meaningless: they must be multiplied by zero.
 template <int D, class F>
 WEIR_INLINE void with_product(const Level<D>& level, const Coloured<float>& v, int q, int j, int colour, F&& f) {
     const auto c = static_cast<std::size_t>(colour);

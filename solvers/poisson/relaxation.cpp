@@ -1,4 +1,4 @@
-// red_black and jacobi: what games run for a fixed number of iterations.
+// red_black and jacobi: the methods of games, for a fixed number of iterations.
 #include "poisson/factories.hpp"
 #include "poisson/list_solver.hpp"
 
@@ -16,7 +16,7 @@ real neighbours(const Matrix& A, const Vector& x, int i) {
     return sum;
 }
 
-/// Gauss-Seidel, one colour after another: cells of a colour are not neighbours, so they may be done at once.
+/// Gauss-Seidel, colour by colour: cells of a colour are not neighbours and can be updated in parallel.
 template <int D>
 class RedBlack final : public ListSolver<D> {
 public:
@@ -51,8 +51,8 @@ private:
     std::array<std::vector<int>, 2 << D> of_colour_;
 };
 
-/// x += ω r / diagonal. ω = 0.9: undamped, the checkerboard of a closed box never decays; so it loses a fifth in each iteration,
-/// and smooth errors are only a tenth slower.
+/// x += ω r / diagonal. ω = 0.9: undamped, the checkerboard mode of a closed box never decays. With 0.9 it loses a fifth per iteration, and
+/// smooth errors converge only a tenth more slowly.
 template <int D>
 class Jacobi final : public ListSolver<D> {
 public:

@@ -1,4 +1,4 @@
-// r = b − A p straight from the definition in poisson.hpp: slow, and what every method is judged by.
+// r = b − A p directly from the definition in poisson.hpp: slow, and the reference for every method.
 #include "poisson/faces.hpp"
 
 namespace weir::poisson {

@@ -34,7 +34,7 @@ WEIR_INLINE void store(T* to, const V& v) {
 }
 WEIR_INLINE f16 load16(const float* p) { return load<f16>(p); }
 
-// The compilers' own conversions between widths go through halves and even through single elements; AVX-512 has one instruction for each.
+// the compilers' own conversions between widths use half vectors or even single elements; AVX-512 has one instruction for each
 #ifdef __AVX512F__
 WEIR_INLINE d8 widen(const f8& v) { return _mm512_cvtps_pd(v); }
 WEIR_INLINE f8 narrow(const d8& v) { return _mm512_cvtpd_ps(v); }

@@ -12,7 +12,7 @@ namespace weir::poisson {
 struct SparseCholesky::Handles {
     cholmod_common common;
     cholmod_factor* factor = nullptr;
-    cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;  // kept between solves, so that they allocate once
+    cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;  // kept between solves, so that they are allocated once
 
     Handles() {
         cholmod_l_start(&common);
@@ -30,12 +30,12 @@ SparseCholesky::~SparseCholesky() = default;
 
 namespace {
 
-constexpr int small = 5000;  // below, dense blocks and the threads of BLAS cost more than they save
+constexpr int small = 5000;  // below, dense blocks and BLAS threads cost more than they save
 
 }  // namespace
 
 /// The upper triangle of A by columns, which is its lower triangle by rows. In each closed component the first diagonal entry is doubled
-/// (an isolated cell gets 1): a compatible right-hand side then makes that unknown zero, and the other equations stay as they are.
+/// (an isolated cell gets 1): a compatible right-hand side then makes that unknown zero, and the other equations are unchanged.
 void SparseCholesky::upper_by_columns(const Matrix& A, const Components& components) {
     auto& [start, row, value] = next_;
     refill_scratch<char>(held_, static_cast<std::size_t>(components.closed), 0);
@@ -68,7 +68,7 @@ void SparseCholesky::factor(const Matrix& A, const Components& components) {
     auto& [common, factor, x, y, e] = *cholmod_;
     const bool same_pattern = factor != nullptr && next_.start == now_.start && next_.row == now_.row;
     if (same_pattern && next_.value == now_.value) return;
-    now_ = next_;  // not swapped: both have their room after the first
+    now_ = next_;  // not swapped: both keep their capacity
     if (A.size() == 0) return;
     cholmod_sparse matrix{};
     matrix.nrow = matrix.ncol = static_cast<std::size_t>(A.size());

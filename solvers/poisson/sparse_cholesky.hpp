@@ -1,4 +1,4 @@
-// SuiteSparse's CHOLMOD (Chen, Davis, Hager & Rajamanickam 2008) behind a small face: factor a matrix, solve with it.
+// A minimal interface to SuiteSparse's CHOLMOD (Chen, Davis, Hager & Rajamanickam 2008): factor a matrix, solve with it.
 #pragma once
 #include "poisson/system.hpp"
 
@@ -13,8 +13,8 @@ public:
     SparseCholesky(const SparseCholesky&) = delete;
     SparseCholesky& operator=(const SparseCholesky&) = delete;
 
-    /// Factors A, each closed component held by a raised first diagonal entry. The analysis is kept while the pattern is the same, the
-    /// factor while the values are the same.
+    /// Factors A, with a raised first diagonal entry in each closed component. The analysis is reused while the pattern is unchanged, the
+    /// factor while the values are unchanged.
     void factor(const Matrix& A, const Components& components);
     /// x = A⁻¹ b; for a closed component any solution of a compatible b.
     void solve(const Vector& b, Vector& x);
@@ -32,8 +32,8 @@ private:
         Vector value;
         std::size_t bytes() const { return (start.capacity() + row.capacity()) * sizeof(long) + value.capacity() * sizeof(real); }
     };
-    Columns now_, next_;      // of the factor, and of the matrix that comes
-    std::vector<char> held_;  // closed components whose diagonal has been raised
+    Columns now_, next_;      // of the present factor, and of the next matrix
+    std::vector<char> held_;  // closed components with a raised diagonal
     int analyses_ = 0, factorizations_ = 0;
 };
 

@@ -98,7 +98,8 @@ std::size_t ComponentFinder::bytes() const { return bytes_of(parent_) + bytes_of
 
 namespace {
 
-/// Parity, and a bit for each odd periodic axis whose last layer holds the cell: neighbours across the wrap would share a parity.
+/// Parity, and a bit for each odd periodic axis whose last layer contains the cell: neighbours across that boundary would have equal
+/// parity.
 template <int D>
 std::uint8_t colour_of(const Operator<D>& op, const Index<D>& I) {
     int parity = 0, last = 0;
@@ -126,8 +127,8 @@ void insert_sorted(std::array<std::pair<int, real>, N>& entry, std::size_t count
     entry[count] = value;
 }
 
-/// Appends the row of cell I: weights to fluid neighbours in order of their numbers, and the diagonal with all open faces. The diagonal
-/// is the sum of the sorted weights, so that it exceeds them exactly when a face leads to p = 0.
+/// Appends the row of cell I: weights to fluid neighbours by ascending number, and the diagonal with all open faces. The diagonal is the
+/// sum of the sorted weights, so it exceeds them exactly when a face leads to p = 0.
 template <int D>
 void append_row(Matrix& A, const Operator<D>& op, const std::vector<int>& number, const Index<D>& I) {
     std::array<std::pair<int, real>, 2 * D> entry;

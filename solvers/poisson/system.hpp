@@ -1,5 +1,5 @@
-// The pressure equation on numbered fluid cells: a symmetric M-matrix by rows, and the closed components that make it singular.
-// All methods but the geometric multigrid and the DCT work on this list, so that only fluid cells cost time.
+// The pressure equation on numbered fluid cells: a symmetric M-matrix by rows, and the closed components that make it singular. All methods
+// except the geometric multigrid and the DCT use this list, so that only fluid cells cost time.
 #pragma once
 #include "poisson/poisson.hpp"
 
@@ -11,7 +11,7 @@ namespace weir::poisson {
 
 using Vector = std::vector<real>;
 
-/// Long lists are worked on in blocks of this many entries; sums add the blocks in order, so they do not depend on the number of threads.
+/// Block length of loops over long lists; sums add the blocks in order, so they do not depend on the number of threads.
 inline constexpr std::size_t block_size = 4096;
 
 /// f(begin, end) for each block of [0, n), threaded.
@@ -47,9 +47,9 @@ void multiply(const Matrix& A, const Vector& x, Vector& y);
 
 real dot(const Vector& a, const Vector& b);
 
-/// Closed components: connected sets of unknowns that no face joins to p = 0.
+/// Closed components: connected sets of unknowns without a face to p = 0.
 struct Components {
-    std::vector<int> of;  // number of the closed component of each unknown, −1 where pressure is fixed by air; empty if none is closed
+    std::vector<int> of;  // index of each unknown's closed component, −1 where air fixes the pressure; empty if no component is closed
     int closed = 0;
     /// Subtracts from x its mean over each closed component.
     void remove_means(Vector& x) const;
@@ -59,8 +59,8 @@ private:
     mutable Vector sum_, count_;
 };
 
-/// Union-find over the faces of positive weight; a component is open if some row's diagonal exceeds its weights, that is, if a face leads
-/// to p = 0. Keeps its room between calls.
+/// Union-find over the faces of positive weight. A component is open if some row's diagonal exceeds its weights, that is, if a face leads
+/// to p = 0. Memory is reused between calls.
 class ComponentFinder {
 public:
     void find(const Matrix& A, Components& components);
@@ -76,7 +76,7 @@ template <int D>
 struct System {
     Matrix A;
     std::vector<int> cell;             // linear index of each unknown's cell
-    std::vector<std::uint8_t> colour;  // no two neighbours share one: 0 and 1, more only across odd periodic axes
+    std::vector<std::uint8_t> colour;  // neighbours have different colours: 0 and 1, more only across odd periodic axes
     Components components;
 
     void build(const Operator<D>& op);

@@ -1,4 +1,4 @@
-// What a solve sends over ranks, by formula.
+// Estimate of what a solve sends in parallel.
 #pragma once
 #include "core/traffic.hpp"
 #include "core/types.hpp"
@@ -7,19 +7,19 @@
 
 namespace weir::poisson {
 
-/// A solve of so many iterations by "multigrid" over ranks that share the planes, from a guess that is not 0: what a rank sends in it, to
-/// the tally, whose cut is the grid's. `closed`: nothing joins the fluid to p = 0. Where the residual has to be found anew without the last
-/// iteration having been expected to be it, that is two messages more, and half a cycle, which are not counted.
+/// Counts the messages of one rank in a solve of `iterations` iterations by a distributed "multigrid", from a nonzero guess, with the
+/// partition of the tally. `closed`: the fluid has no coupling to p = 0. Not counted: where the residual is recomputed unexpectedly, two
+/// further messages and half a cycle.
 template <int D>
 void tally_multigrid(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, bool closed, int iterations,
                      Tally& tally);
 
-/// Runs of fluid cells of a rank's own rows, all joined, and of the plane below its first.
+/// Number of runs of fluid cells in a rank's own rows, all connected, and in the plane below its first.
 struct Runs {
     std::size_t own = 0, below = 0;
 };
-/// Setting up "multigrid" where each rank holds its own planes alone, with weights on faces and some of the fluid joined to p = 0: what a
-/// rank sends of its runs and of each level's matrix.
+/// Setup of "multigrid" with distributed storage, face weights and a coupling of the fluid to p = 0: counts one rank's messages for its
+/// runs and for each level's matrix.
 template <int D>
 void tally_multigrid_setup(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Runs& runs,
                            Tally& tally);

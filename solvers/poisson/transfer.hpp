@@ -1,5 +1,5 @@
-// Between a level and the next coarser one: sums down, constants up. After a black half sweep the residual lives on red cells only, and
-// before a black half sweep only red values are read: so both transfers touch red cells only.
+// Transfer between a level and the next coarser one: restriction by sums, prolongation of constants. After a black half sweep only red
+// cells have a residual, and a black half sweep reads only red values: so both transfers access red cells only.
 #pragma once
 #include "poisson/kernels.hpp"
 
@@ -12,7 +12,7 @@ inline float* scratch_row(int width) {
     return row.data();
 }
 
-/// How many children a coarse cell has along an axis, and the first of them.
+/// The number of children of a coarse cell along an axis, and the first of them.
 template <int D>
 struct Children {
     int first, last;
@@ -38,7 +38,7 @@ void add_red_residual(const Level<D>& fine, int q, int j, float* t) {
     });
 }
 
-/// Coarse right-hand side of the coarse plane Q, from the fine planes below it.
+/// Right-hand side of the coarse plane Q, from its fine planes.
 template <int D>
 void restrict_plane(const Level<D>& fine, Level<D>& coarse, int Q) {
     const bool halve_x = fine.coarsened[0];

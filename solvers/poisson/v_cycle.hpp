@@ -1,6 +1,6 @@
-// The V-cycle on a geometric hierarchy: red, black, red, black from zero on the way down, black, red, black, red on the way up. The two
-// halves mirror each other, so the cycle is a symmetric positive definite preconditioner. Each half is one wavefront over its level. Over
-// ranks the large levels are cut into slabs; the right-hand side of the first that is not goes to all of them.
+// The V-cycle on a geometric hierarchy: red, black, red, black from zero on the way down, black, red, black, red on the way up. The halves
+// are mirror images, so the cycle is a symmetric positive definite preconditioner. Each half is one wavefront over its level. In parallel
+// the large levels are partitioned into slabs; the right-hand side of the first level that is not is gathered on all ranks.
 #pragma once
 #include "poisson/hierarchy.hpp"
 #include "poisson/transfer.hpp"
@@ -13,9 +13,9 @@ class VCycle {
 public:
     explicit VCycle(Hierarchy<D>& hierarchy) : hierarchy_(hierarchy) {}
 
-    /// Level l: smooths u from zero for its r, and hands the residual to level l + 1. `before` stages of the caller's come first, as
-    /// f(stage, plane); the last of them must leave the red start r / diagonal in u. Over ranks, exchange(stage) brings what the others of
-    /// them have written beside the cuts.
+    /// Level l: smooths u from zero for its r, and restricts the residual to level l + 1. `before` stages of the caller's come first, as
+    /// f(stage, plane); the last of them must set u to r / diagonal on red cells. In parallel, exchange(stage) fills the ghost planes
+    /// written by that stage.
     template <class F>
     void down(std::size_t l, int before, F&& f) {
         down(l, before, f, [](int) {});
@@ -41,7 +41,7 @@ public:
         for (float* r : coarse.r) slabs().gather(halved_cut(fine), coarse.planes_of(r));
     }
 
-    /// Everything below level l: leaves u of level l corrected by the coarser ones when up() has run.
+    /// All levels below l: after up(), u of level l includes the coarse correction.
     void below(std::size_t l) {
         if (l + 2 == hierarchy_.levels().size()) return hierarchy_.solve_coarsest();
         down(l + 1, 1, [&](int, int q) { start_plane(level(l + 1), q); });
@@ -49,8 +49,8 @@ public:
         up(l + 1, 0, [](int, int) {});
     }
 
-    /// Level l: adds the answer of level l + 1 and smooths. If `after` is not 0, the last half sweep, over red cells, is the caller's
-    /// f(0, plane), and more of its stages follow.
+    /// Level l: adds the correction of level l + 1 and smooths. If `after` is not 0, the last half sweep, over red cells, is the caller's
+    /// f(0, plane), followed by its further stages.
     template <class F>
     void up(std::size_t l, int after, F&& f) {
         Level<D>&fine = level(l), &coarse = level(l + 1);
@@ -71,7 +71,7 @@ public:
         front.run_slab(threads_for(at), {at.cut.begin(rank), at.cut.end(rank, front.planes)}, rank > 0 || front.ring,
                        rank < last || front.ring, f, exchange);
     }
-    /// Of the level below one that is cut.
+    /// The partition of the level below a distributed one.
     static Cut halved_cut(const Level<D>& at) {
         Cut half = at.cut;
         if (at.coarsened[D - 1])

@@ -1,7 +1,7 @@
-// Several stages over the planes of a grid in one pass through memory: stage s works on plane q as soon as stage s − 1 has done planes
-// q − 1, q and q + 1, so that a plane is still in the cache. Threads own slabs: each does in its slab what depends on no other slab
-// (a trapezoid in plane and stage), then all close the triangles left at the slabs' ends: stage by stage where planes are few, else each
-// thread those at its slab's beginning. Who computes what never changes what is computed: results do not depend on the number of threads.
+// Several stages over the planes of a grid in one pass through memory: stage s processes plane q as soon as stage s − 1 has finished planes
+// q − 1, q and q + 1, so that a plane is still in cache. Each thread has a slab and first processes the part that depends on no other slab
+// (a trapezoid in plane and stage). Then the triangles at the slabs' ends are completed: stage by stage where planes are few, otherwise by
+// the thread of the following slab. Results do not depend on the number of threads.
 #pragma once
 #include "core/halo.hpp"
 #include "core/parallel.hpp"
@@ -16,16 +16,16 @@ struct Wavefront {
     int planes = 0;
     int stages = 0;
     bool ring = false;                                // the first and the last plane are neighbours
-    const std::vector<std::int64_t>* work = nullptr;  // cost of the planes before each plane, planes + 1 entries: slabs share it fairly
-    bool last_pairs = false;                          // the last stage works on pairs of planes: for odd q it may reach q − 2 .. q + 1
+    const std::vector<std::int64_t>* work = nullptr;  // cumulative cost of the planes, planes + 1 entries: slabs have equal cost
+    bool last_pairs = false;                          // the last stage processes pairs of planes: for odd q it may read q − 2 .. q + 1
 
-    /// Planes a slab must have for its trapezoid not to be empty, rounded up to even.
+    /// Minimum number of planes of a slab for a nonempty trapezoid, rounded up to even.
     int thickness() const { return (2 * stages + 2) / 2 * 2; }
     int reach_down(int stage) const { return stage + (last_pairs && stage == stages - 1 ? 1 : 0); }
 
-    /// The same on the planes of one rank: `below` and `above` tell whether another owns what lies beyond them. exchange(stage) brings what
-    /// that stage has written beside the cuts; as many exchanges as there are stages but one, whatever the slab. What others wait for comes
-    /// first: the planes by the cuts, a plane less each stage; then what depends on no other rank any more, however much that is.
+    /// The same on the planes of one rank; `below` and `above`: whether another rank owns the planes beyond. exchange(stage) exchanges the
+    /// ghost planes written by that stage; there are stages − 1 exchanges for any slab. Planes that other ranks need come first: those near
+    /// the subdomain boundary, one plane fewer for each stage. Then follows the part that is independent of other ranks.
     template <class F, class Exchange>
     void run_slab(int wanted, PlaneRange own, bool below, bool above, F&& f, Exchange&& exchange) const {
         const auto low = [&](int s) { return below ? own.begin + by_cut(s) : own.begin; };
@@ -90,8 +90,7 @@ struct Wavefront {
     }
 
 private:
-    /// The even plane at which slab t of some planes begins: where the work before it is t parts of `team`, but no slab thinner than its
-    /// triangles.
+    /// The even first plane of slab t: the work before it is t parts of `team`, but no slab is thinner than its triangles.
     int boundary(int t, int team, PlaneRange of) const {
         if (t == 0 || t == team) return t == 0 ? of.begin : of.end;
         const std::int64_t before = (*work)[static_cast<std::size_t>(of.begin)], all = (*work)[static_cast<std::size_t>(of.end)] - before;
@@ -100,10 +99,10 @@ private:
         return std::clamp(fair, of.begin + t * thickness(), (of.end - (team - t) * thickness()) / 2 * 2);
     }
 
-    /// Is a triangle so small a part of a slab that one thread had better close it than all meet at every stage?
+    /// Returns whether triangles are a small part of a slab: one thread then completes each, without a barrier at every stage.
     bool many_planes() const { return planes >= 32 * stages; }
 
-    /// The triangles on both sides of the plane at which a slab begins.
+    /// The triangles on both sides of a slab's first plane.
     template <class F>
     void close_below(int begin, F&& f) const {
         for (int s = 1; s < stages; ++s)
@@ -116,7 +115,7 @@ private:
             for (int q = 0; q < planes; ++q) f(s, q);
     }
 
-    /// Stage s on the planes of(s), whose ends move by a plane a stage at least where they are not ends of the grid.
+    /// Stage s on the planes of(s), whose ends move by at least one plane per stage, except at the ends of the grid.
     template <class Of, class F>
     void sweep(Of&& of, F&& f) const {
         int begin = planes, end = 0;
@@ -128,7 +127,7 @@ private:
                 if (q >= range.begin && q < range.end) f(s, q);
             }
     }
-    /// Planes beside a cut that stage s does before the rest: each stage needs those of the stage before it and one more.
+    /// Number of planes at a subdomain boundary that stage s processes first: each stage needs those of the previous one and one more.
     int by_cut(int stage) const { return stages - stage + (last_pairs && stage + 1 < stages ? 1 : 0); }
 };
 

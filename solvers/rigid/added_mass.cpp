@@ -6,16 +6,17 @@ namespace weir::rigid {
 
 namespace {
 
-/// A pair that says a mass further from the guess than by this factor speaks of a neighbour, or of the pressure's tolerance.
+/// A pair whose mass differs from the initial estimate by more than this factor is rejected: it reflects a neighbour or the pressure's
+/// tolerance.
 constexpr real credible = 8;
 
-/// What is forgotten of what was learnt, a step: old pairs spoke of other places, and many that differ a little would in the end leave a
-/// mass that is none in some direction.
+/// Part of the learned mass that is forgotten per step: old pairs belong to other positions, and many slightly inconsistent pairs would
+/// make the mass singular.
 constexpr real forgotten = 0.1;
 
 }  // namespace
 
-/// By elimination without pivots, which a positive definite matrix does not need.
+/// Elimination without pivoting, sufficient for a positive definite matrix.
 template <int D>
 Block<D> inverse_of(Block<D> m, const char* free) {
     constexpr std::size_t n = freedoms<D>;
@@ -31,7 +32,7 @@ Block<D> inverse_of(Block<D> m, const char* free) {
             for (std::size_t l = 0; l < n; ++l) m[i][l] -= factor * m[k][l], inverse[i][l] -= factor * inverse[k][l];
         }
     }
-    for (std::size_t k = 0; k < n; ++k)  // of round-off
+    for (std::size_t k = 0; k < n; ++k)  // removes the asymmetry of round-off
         for (std::size_t l = 0; l < k; ++l) inverse[k][l] = inverse[l][k] = 0.5 * (inverse[k][l] + inverse[l][k]);
     return inverse;
 }
@@ -52,7 +53,7 @@ void AddedMass<D>::see(std::size_t body, const Block<D>& guess) {
     keep(known);
 }
 
-/// The mass in units of the guess, which of a velocity that the wet surface does not feel is left as it was: none.
+/// Stores the mass in units of the initial estimate. Entries of velocities without effect on the wet surface stay zero.
 template <int D>
 void AddedMass<D>::keep(Known& known) {
     for (std::size_t k = 0; k < n; ++k)
@@ -80,7 +81,7 @@ template <int D>
 void AddedMass<D>::improve(Known& known, const real* change, const real* impulse) {
     if (!known.wet) return;
     Twist<D> met{};
-    real sy = 0, sms = 0, ss = 0, yy = 0;  // ss, yy: in units of the guess
+    real sy = 0, sms = 0, ss = 0, yy = 0;  // ss, yy: in units of the initial estimate
     for (std::size_t k = 0; k < n; ++k) {
         if (known.scale[k] == 0) continue;
         for (std::size_t l = 0; l < n; ++l) met[k] += known.mass[k][l] * change[l];
@@ -93,7 +94,7 @@ void AddedMass<D>::improve(Known& known, const real* change, const real* impulse
     keep(known);
 }
 
-/// The inverse of the sum, H, all bodies together: H += ρ (1 + ρ y·Hy) s sᵀ − ρ (s (Hy)ᵀ + Hy sᵀ), ρ = 1/(y·s).
+/// Update of the inverse H of the total mass, of all bodies together: H += ρ (1 + ρ y·Hy) s sᵀ − ρ (s (Hy)ᵀ + Hy sᵀ), ρ = 1/(y·s).
 template <int D>
 void AddedMass<D>::learn(const std::vector<real>& change, const std::vector<real>& impulse, const std::vector<Block<D>>& masses,
                          const std::vector<char>& free, Mobility& mobility) {

@@ -1,8 +1,8 @@
-// The mass that a fluid adds to bodies, as far as it is known without solving for it: guessed from the wet surface, and then learnt from
-// the fluid's own answers. A change s of the velocities that the pressure met by the impulse −y says y = m s; each such pair improves the
-// guess by the formula of Broyden, Fletcher, Goldfarb & Shanno (Nocedal & Wright 2006, ch. 6), as quasi-Newton methods couple fluids and
-// structures (Degroote, Bathe & Vierendeels 2009). What is learnt stays with the body, in units of the guess, so that it turns and dips
-// with the wet surface.
+// Quasi-Newton estimate of the added mass of bodies, without extra solves. It is initialized from the wet surface and updated by the
+// pressure solves. A change s of the velocities to which the pressure responds with the impulse −y implies y = m s. Each such pair improves
+// the estimate by the BFGS formula (Nocedal & Wright 2006, ch. 6), as in quasi-Newton coupling of fluids and structures (Degroote, Bathe &
+// Vierendeels 2009). The result is stored with the body, in units of the initial estimate, so it rotates and submerges with the wet
+// surface.
 #pragma once
 #include "rigid/contacts.hpp"
 
@@ -14,7 +14,7 @@ namespace weir::rigid {
 template <int D>
 using Block = std::array<Twist<D>, freedoms<D>>;
 
-/// The inverse of the rows and columns of a positive definite matrix that are free, symmetric to the last bit; zero in the others.
+/// The inverse of the free rows and columns of a positive definite matrix, symmetric to the last bit; zero in the others.
 template <int D>
 Block<D> inverse_of(Block<D> m, const char* free);
 
@@ -22,16 +22,16 @@ template <int D>
 class AddedMass {
 public:
     void resize(std::size_t bodies) { known_.resize(bodies); }
-    /// A body as it stands: `guess` from its wet surface; all zero where it is dry.
+    /// Sets a body's initial estimate, from its wet surface; all zero where it is dry.
     void see(std::size_t body, const Block<D>& guess);
-    /// What is known of it.
+    /// The present estimate.
     const Block<D>& of(std::size_t body) const { return known_[body].mass; }
-    /// The inverse of mass and added mass, body by body, of what is free.
+    /// The block-diagonal inverse of mass plus added mass, for the free velocities.
     void begin(const std::vector<Block<D>>& masses, const std::vector<char>& free, Mobility& mobility) const;
-    /// A change of the velocities, and the impulse against it; `mobility` becomes one that knows of it.
+    /// Updates the estimate by a change of the velocities and the impulse against it, and `mobility` likewise.
     void learn(const std::vector<real>& change, const std::vector<real>& impulse, const std::vector<Block<D>>& masses,
                const std::vector<char>& free, Mobility& mobility);
-    /// All of it is known: of each body its own part is kept.
+    /// Stores an exact result: the diagonal block of each body is kept.
     void learn(const Mobility& exact);
 
     void save(Checkpoint& to, const std::string& name) const;
@@ -41,7 +41,7 @@ public:
 private:
     static constexpr std::size_t n = freedoms<D>;
     struct Known {
-        Block<D> mass{}, share{};  // share: the mass over the guess's diagonal, from both sides
+        Block<D> mass{}, share{};  // share: the mass scaled on both sides by the diagonal of the initial estimate
         Twist<D> scale{};          // square roots of that diagonal; all zero: dry
         bool wet = false;
     };

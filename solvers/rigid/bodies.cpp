@@ -77,7 +77,7 @@ Key probe_key() {
 
 namespace {
 
-/// The axis of a turn, as long as its angle, at most half a turn.
+/// The rotation axis times the angle, at most half a turn.
 Vec<3> rotation_vector(const Orientation& q) {
     const Vec<3> v{{q[1], q[2], q[3]}};
     const real sine = norm(v), half = std::atan2(sine, std::abs(q[0]));
@@ -214,7 +214,7 @@ void Bodies<D>::recall(const std::function<real(const char*, std::size_t, std::s
 template <int D>
 ShownSolids<D>::ShownSolids(const scene::Scene& scene, bool lines) : bodies_(scene) {
     still_ = geometry::Solids<D>(scene);
-    constexpr real part = 1.0 / 500;  // of the domain: a line that pictures still show
+    constexpr real part = 1.0 / 500;  // relative to the domain: a line still visible in pictures
     if (lines) thin_ = part * norm(scene.vec<D>("grid.size"));
 }
 
@@ -305,7 +305,7 @@ void Bodies<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t Bodies<D>::bytes() const {
     std::size_t total = list_.capacity() * sizeof(Body<D>);
-    std::set<const geometry::Mesh*> meshes;  // bodies of one file share it
+    std::set<const geometry::Mesh*> meshes;  // bodies from the same file share it
     for (const Body<D>& body : list_) {
         total += body.feelers.capacity() * sizeof(Feeler<D>);
         if (const auto* posed = body.shape->mesh(); posed && meshes.insert(posed->mesh.get()).second) total += posed->mesh->bytes();

@@ -1,4 +1,4 @@
-// The free bodies of a scene: its list "bodies", what they show of themselves, their checkpoints.
+// The free bodies of a scene: its list "bodies", their output and checkpoints.
 #pragma once
 #include "core/solver.hpp"
 #include "geometry/solids.hpp"
@@ -11,11 +11,11 @@
 
 namespace weir::rigid {
 
-/// The name of the set of points by which solvers show their bodies, one a body: position of the centre of mass, velocity, angle (2D) or
-/// rotation (3D, its axis as long as its angle), spin, and what the fluid does to it.
+/// The name of the particle set of bodies, one point per body: position of the centre of mass, velocity, angle (2D) or rotation vector
+/// (3D), angular velocity, and the force and torque of the fluid.
 inline constexpr const char* body_set_name = "bodies";
 
-/// What solvers that carry bodies add to their keys: the bodies, and the probe that follows one.
+/// The keys of solvers with bodies: the bodies, and the probe that follows one.
 scene::Key bodies_key();
 scene::Key probe_key();
 
@@ -23,7 +23,7 @@ template <int D>
 class Bodies {
 public:
     Bodies() = default;
-    /// From the scene's list; refuses what cannot be (BadScene).
+    /// From the scene's list; throws BadScene for invalid entries.
     explicit Bodies(const scene::Scene& scene);
 
     bool empty() const { return list_.empty(); }
@@ -34,17 +34,17 @@ public:
     const std::vector<Body<D>>& all() const { return list_; }
     const Joints<D>& joints() const { return joints_; }
 
-    /// Appends them to the solids, and puts them where they are.
+    /// Appends them to the solids, in their present position.
     void join(geometry::Solids<D>& solids);
     void place(geometry::Solids<D>& solids) const;
-    /// Puts them where they were shown to be: value(field, component, body) of the set of points.
+    /// Moves them to their positions in output fields: value(field, component, body) of the particle set.
     void recall(const std::function<real(const char*, std::size_t, std::size_t)>& value);
     /// Walls of the domain and solids that they may touch.
     Surroundings<D> surroundings(const geometry::Solids<D>& solids) const;
-    /// The fastest crossing of a length h by a point of a body [1/s].
+    /// Maximum number of lengths h that a point of a body crosses per second [1/s].
     real max_rate(real h) const;
 
-    /// Appends their set of points; the views are valid until the next call.
+    /// Appends their particle set; the views are valid until the next call.
     void show(FieldSet& set) const;
     std::vector<Integral> integrals(const Vec<D>& gravity) const;
     void save(Checkpoint& to) const;
@@ -60,14 +60,14 @@ private:
     mutable std::vector<std::vector<real>> shown_;
 };
 
-/// All solids of a scene with its bodies where they were shown to be, for those who draw, and lines that moor as thin rods; `value` as in
+/// All solids of a scene for drawing, with its bodies at their positions in output fields and mooring lines as thin rods; `value` as in
 /// Bodies::recall.
 template <int D>
 class ShownSolids {
 public:
     explicit ShownSolids(const scene::Scene& scene, bool lines = true);
     bool empty() const { return still_.empty() && bodies_.empty(); }
-    /// The last ones of them are the bodies, in their order.
+    /// The last ones are the bodies, in their order.
     const geometry::Solids<D>& at(real t, const std::function<real(const char*, std::size_t, std::size_t)>& value);
 
 private:

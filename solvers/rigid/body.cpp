@@ -12,7 +12,7 @@ Orientation product(const Orientation& p, const Orientation& q) {
             p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
 }
 
-/// The turn by `angle` about a unit axis.
+/// The rotation by `angle` about a unit axis.
 Orientation turn_about(const Vec<3>& axis, real angle) {
     const real s = std::sin(0.5 * angle);
     return {std::cos(0.5 * angle), s * axis[0], s * axis[1], s * axis[2]};
@@ -32,7 +32,7 @@ Vec<3> spin_of(const Body<D>& body) {
     return {{body.velocity[3], body.velocity[4], body.velocity[5]}};
 }
 
-/// All of it is the one contact sphere that it has.
+/// Returns whether the shape is a ball, equal to its single contact sphere.
 template <int D>
 bool is_ball(const Body<D>& body) {
     if (body.feelers.size() != 1) return false;
@@ -40,7 +40,7 @@ bool is_ball(const Body<D>& body) {
     return std::abs(body.moments.volume - ball) < 1e-9 * ball;
 }
 
-/// A splitting is good to the fourth power of this: turns of a part of a step [rad].
+/// Rotation per substep [rad]: the splitting error is of fourth order in it.
 constexpr real turn_of_part = 0.02;
 constexpr int most_parts = 100000;
 
@@ -127,8 +127,8 @@ template <int D>
 real Body<D>::max_speed() const {
     real moves = 0, turns = 0;
     for (std::size_t k = 0; k < freedoms<D>; ++k) (k < D ? moves : turns) += velocity[k] * velocity[k];
-    // A ball that turns stays where it is, but for its middle's distance from the centre: one without mass, which what grid faces are off a
-    // circle spins at once to metres per second, else cuts every step for nothing.
+    // Rotation moves no surface point of a ball except by the offset of its middle. Otherwise a massless ball, which the error of grid
+    // faces accelerates to metres per second, would limit every step needlessly.
     const real arm = is_ball(*this) && !no_slip ? norm(feelers[0].at - centre) : radius;
     return std::sqrt(moves) + arm * std::sqrt(turns);
 }
@@ -181,7 +181,7 @@ void Body<D>::shift(const Twist<D>& by) {
     }
 }
 
-/// In the frame of the principal axes the momentum turns by the opposite of what the body does.
+/// In the principal frame the angular momentum rotates opposite to the body.
 template <int D>
 void Body<D>::turn_freely(real dt) {
     if constexpr (D == 3) {
@@ -204,7 +204,7 @@ void Body<D>::turn_freely(real dt) {
                 about(0, 0.5 * time), about(1, 0.5 * time), about(2, time), about(1, 0.5 * time), about(0, 0.5 * time);
             }
         normalise(orientation);
-        // What is kept is the momentum in space: the velocity follows from it and from where the body now points.
+        // the momentum in space is conserved: the velocity follows from it and the new orientation
         const Vec<3> now = times(axes, transposed_times(rotation<3>(orientation), in_space));
         Vec<3> w{};
         for (int i = 0; i < 3; ++i) w += (now[i] / principal[i]) * axes[static_cast<std::size_t>(i)];
@@ -253,7 +253,7 @@ void Body<D>::restore(const Checkpoint& from, const std::string& block) {
     if (rubbed) viscous = from.template get_value<Twist<D>>(block + "viscous");
     wet = from.template get_value<real>(block + "wet");
     touches = from.template get_value<char>(block + "touches") != 0;
-    const auto require = [&](const char* which, const auto& value) {  // all of them are lists of reals
+    const auto require = [&](const char* which, const auto& value) {  // all are lists of reals
         Checkpoint::require_finite(block + which, {reinterpret_cast<const real*>(&value), sizeof value / sizeof(real)});
     };
     require("at", at), require("orientation", orientation), require("velocity", velocity), require("force", force), require("wet", wet);

@@ -1,6 +1,6 @@
-// A rigid body: what it is, where it is, how it moves, and how it turns by itself. Torque-free turning is the splitting of Dullweber,
-// Leimkuhler & McLachlan 1997 ("Symplectic splitting methods for rigid body molecular dynamics"), a product of exact turns about the
-// principal axes, composed to fourth order (Suzuki 1990): it keeps the angular momentum to round-off, and the energy does not drift.
+// A rigid body: its properties, state and torque-free motion. The rotation uses the splitting of Dullweber, Leimkuhler & McLachlan 1997
+// ("Symplectic splitting methods for rigid body molecular dynamics"): a product of exact rotations about the principal axes, composed to
+// fourth order (Suzuki 1990). It conserves the angular momentum to round-off, and the energy does not drift.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "geometry/motion.hpp"
@@ -17,19 +17,19 @@ inline Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
     return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 
-/// Components of a rigid velocity: D of translation, then the turning about z (2D) or about x, y and z.
+/// Components of a rigid velocity: D of translation, then the rotation about z (2D) or about x, y and z.
 template <int D>
 inline constexpr int freedoms = D == 2 ? 3 : 6;
 template <int D>
 using Twist = std::array<real, freedoms<D>>;
 
-/// 3D: the unit quaternion (w, x, y, z) that turns the body from where the scene puts it. 2D: the angle, then zeros.
+/// 3D: the unit quaternion (w, x, y, z) of the rotation from the scene's orientation. 2D: the angle, then zeros.
 using Orientation = std::array<real, 4>;
 
-/// A ball inside a body that reaches its surface: where it may touch others.
+/// A contact sphere: a ball inside a body that touches its surface.
 template <int D>
 struct Feeler {
-    Vec<D> at{};  // in the scene's own place [m]
+    Vec<D> at{};  // at the scene's initial position [m]
     real radius = 0;
 };
 
@@ -39,12 +39,12 @@ struct Body {
     geometry::ShapePtr<D> shape;
     std::vector<Feeler<D>> feelers;
     Moments<D> moments;  // of the shape, density 1
-    Vec<D> centre{};     // of mass, where the scene puts the body [m]
-    real radius = 0;     // of a ball about it that holds the shape [m]
+    Vec<D> centre{};     // of mass, at the scene's initial position [m]
+    real radius = 0;     // of a bounding ball about the centre of mass [m]
     real mass = 0;       // [kg; per metre of depth in 2D]
     Vec<3> principal{};  // moments of inertia about the centre of mass [kg m²]; 2D: the last one
-    std::array<Vec<3>, 3> axes{Vec<3>::unit(0), Vec<3>::unit(1), Vec<3>::unit(2)};  // 3D: their axes, where the scene puts the body
-    std::array<bool, freedoms<D>> held{};                                           // what a scene fixes
+    std::array<Vec<3>, 3> axes{Vec<3>::unit(0), Vec<3>::unit(1), Vec<3>::unit(2)};  // 3D: their axes, in the scene's initial orientation
+    std::array<bool, freedoms<D>> held{};                                           // velocities fixed by the scene
     bool no_slip = false;
     real friction = 0, restitution = 0;
 
@@ -52,26 +52,26 @@ struct Body {
     Vec<D> at{};  // of the centre of mass [m]
     Orientation orientation{1, 0, 0, 0};
     Twist<D> velocity{};   // [m/s], then [rad/s]
-    bool touches = false;  // something other than fluid in the last step
-    real wet = 0;          // the part of its surface that fluid touched then, in [0, 1]
-    Twist<D> force{};      // of the fluid, mean over the last step [N], then [N m] about the centre of mass
-    Twist<D> viscous{};    // its friction's part of that
-    bool rubbed = false;   // friction is felt: its part is shown
+    bool touches = false;  // had contact, or a joint, in the last step
+    real wet = 0;          // liquid volume fraction at its surface in that step, in [0, 1]
+    Twist<D> force{};      // force of the fluid, mean over the last step [N], then torque about the centre of mass [N m]
+    Twist<D> viscous{};    // the viscous part of that
+    bool rubbed = false;   // viscous: its part is written
 
     real density() const { return mass / moments.volume; }
-    /// Position and velocity field, as solids have them.
+    /// Pose and velocity field, as for solids.
     geometry::Pose<D> pose() const;
     /// Mass, then the inertia tensor in space; row by row.
     std::array<Twist<D>, freedoms<D>> mass_matrix() const;
     real kinetic_energy() const;
-    real max_speed() const;           // none of its points is faster
+    real max_speed() const;           // upper bound for all its points
     Vec<3> angular_momentum() const;  // about the centre of mass; 2D: about z, in the last entry
-    /// A time dt on its own: along its velocity, and where neither water nor walls touch it along the parabola of `gravity`, whose push on
-    /// the velocity comes later.
+    /// Free motion for a time dt: with its velocity, or, without water and walls, along the parabola of `gravity`; the velocity change by
+    /// gravity is applied later.
     void fly(real dt, const Vec<D>& gravity);
-    /// Moves it and turns it by so much [m], then [rad], whatever its velocity.
+    /// Translates [m] and rotates [rad] it, independent of its velocity.
     void shift(const Twist<D>& by);
-    /// Mass and inertia of a shape of density one times `density`, about the centre of mass.
+    /// Mass and inertia from the shape's moments of unit density, about the centre of mass.
     void weigh(real total_mass, const Vec<D>& centre_of_mass);
 
     void save(Checkpoint& to, const std::string& name) const;
@@ -86,7 +86,7 @@ private:
 template <int D>
 std::array<Vec<D>, D> rotation(const Orientation& q);
 
-/// Eigenvalues and eigenvectors of a symmetric matrix (Jacobi's rotations).
+/// Eigenvalues and eigenvectors of a symmetric matrix (Jacobi rotations).
 void diagonalise(std::array<Vec<3>, 3> matrix, Vec<3>& values, std::array<Vec<3>, 3>& vectors);
 
 }  // namespace weir::rigid

@@ -7,13 +7,13 @@ namespace weir::rigid {
 
 namespace {
 
-/// What overlaps is pushed apart at a fifth of the overlap a step, beyond a slop of a thousandth of the body (Catto 2005).
+/// Position correction: a fifth of the overlap per step, beyond a tolerance of a thousandth of the body (Catto 2005).
 constexpr real push_apart = 0.2, slop = 1e-3;
 
-/// Points of a pair whose gaps differ by less than this part of the body are taken to touch together.
+/// Contact points of a pair belong together if their gaps differ by less than this part of the body.
 constexpr real as_deep = 0.02;
 
-/// Directions across a normal.
+/// A unit tangent of a normal.
 Vec<2> tangent(const Vec<2>& n, int) { return {{-n[1], n[0]}}; }
 Vec<3> tangent(const Vec<3>& n, int k) { return both_across(n)[static_cast<std::size_t>(k)]; }
 
@@ -37,7 +37,7 @@ void Contacts<D>::against(std::size_t body, std::ptrdiff_t other, const Vec<D>& 
     c.body = body, c.other = other, c.at = at, c.normal = normal, c.moves = moves, c.gap = gap;
     const Body<D>& b = bodies[body];
     c.friction = b.friction, c.restitution = b.restitution;
-    if (other >= 0) {  // the geometric mean, and the livelier of the two
+    if (other >= 0) {  // the geometric mean of friction, the larger restitution
         const Body<D>& o = bodies[static_cast<std::size_t>(other)];
         c.friction = std::sqrt(b.friction * o.friction);
         c.restitution = std::max(b.restitution, o.restitution);
@@ -45,8 +45,8 @@ void Contacts<D>::against(std::size_t body, std::ptrdiff_t other, const Vec<D>& 
     list_.push_back(c);
 }
 
-/// Of the contacts of one pair, listed from `first` on, those that hold it: the deepest, and of the others that are about as deep the ones
-/// furthest from those that are kept already.
+/// Selects the supporting contacts of one pair, listed from `first` on: the deepest, and of those about as deep the ones farthest from the
+/// contacts already selected.
 template <int D>
 void Contacts<D>::reduce(std::size_t first, const std::vector<Body<D>>& bodies) {
     constexpr std::size_t most = D == 2 ? 2 : 4;
@@ -87,7 +87,7 @@ void Contacts<D>::touch_walls(const std::vector<Body<D>>& bodies, std::size_t b,
         }
 }
 
-/// Balls of one body against the distance of a solid, which may be another body.
+/// Contact spheres of one body against the signed distance of a solid, which may be another body.
 template <int D>
 void Contacts<D>::touch_solid(const std::vector<Body<D>>& bodies, std::size_t b, std::size_t solid, const Surroundings<D>& around) {
     const geometry::Solids<D>& solids = *around.solids;
@@ -147,7 +147,7 @@ void Contacts<D>::resolve(std::vector<Body<D>>& bodies, const Mobility& mobility
         Contact& c = list_[i];
         Row<D>& row = rows_.list()[i * D];
         const real approach = rows_.relative(row, velocities);
-        // What falls from less than a step's fall is at rest, not bouncing.
+        // an approach slower than two steps of free fall counts as rest, without a bounce
         const bool known = c.bounces && carried_;
         c.bounces = c.bounces || (c.restitution > 0 && approach * dt < -std::max(c.gap, 0.0) && approach < -2 * gravity * dt);
         if (!known) c.rebound = -c.restitution * approach;

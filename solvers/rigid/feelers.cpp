@@ -9,10 +9,10 @@ namespace weir::rigid {
 
 namespace {
 
-constexpr int along_edge = 4, around_rim = 16;  // points
+constexpr int along_edge = 4, around_rim = 16;  // points per edge and per rim
 constexpr std::size_t on_mesh = 160;
 
-/// Edges and rims are rounded by this part of the smallest extent: exact against a plane, and a corner that stands on another's edge feels
+/// Rounding radius of edges and rims, relative to the smallest extent: exact against a plane, and a corner on another body's edge touches
 /// its face.
 constexpr real rounded = 0.02;
 
@@ -36,7 +36,7 @@ void edges_of_box(Vec<D> min, Vec<D> max, std::vector<Feeler<D>>& list) {
     }
 }
 
-/// Any direction across a unit vector.
+/// Any unit vector perpendicular to u.
 Vec<3> across(const Vec<3>& u) {
     const int least =
         std::abs(u[0]) < std::abs(u[1]) ? (std::abs(u[0]) < std::abs(u[2]) ? 0 : 2) : (std::abs(u[1]) < std::abs(u[2]) ? 1 : 2);
@@ -65,8 +65,8 @@ void rims_of_cylinder(Vec<D> from, Vec<D> to, real radius, std::vector<Feeler<D>
     }
 }
 
-/// Corners of a mesh: the outermost in 26 directions, which stand on what is flat, then the one furthest from all that were taken. Each
-/// ball lies inside by as much as the distance there lets it.
+/// Contact spheres of a mesh: the outermost vertices in 26 directions, on which flat sides rest, then repeatedly the vertex farthest from
+/// all selected ones. Each sphere lies inside as far as the distance there allows.
 std::vector<Feeler<3>> corners_of_mesh(const geometry::Shape<3>& shape) {
     const geometry::PosedMesh& posed = *shape.mesh();
     const auto& points = posed.mesh->triangles().points;
@@ -97,13 +97,13 @@ std::vector<Feeler<3>> corners_of_mesh(const geometry::Shape<3>& shape) {
     return list;
 }
 
-/// Those for which f holds.
+/// Keeps the spheres for which f holds.
 template <int D, class F>
 void keep(std::vector<Feeler<D>>& list, F&& f) {
     list.erase(std::remove_if(list.begin(), list.end(), [&](const Feeler<D>& x) { return !f(x); }), list.end());
 }
 
-/// Points of a union's parts that lie inside another part touch nothing.
+/// Spheres of a union's part inside another part are removed.
 template <int D>
 std::vector<Feeler<D>> of_union(const scene::Table& shape, real rounding) {
     const auto whole = geometry::make_shape<D>(shape);
@@ -114,7 +114,7 @@ std::vector<Feeler<D>> of_union(const scene::Table& shape, real rounding) {
     return list;
 }
 
-/// A ball with a hole still touches as a ball; corners that were cut away do not.
+/// A ball with a hole still collides as a ball; corners that were cut away do not.
 template <int D>
 std::vector<Feeler<D>> of_difference(const scene::Table& shape, real rounding) {
     std::vector<Feeler<D>> list = feelers_of<D>(shape.table("from"));

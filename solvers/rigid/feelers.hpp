@@ -1,5 +1,5 @@
-// Where bodies may touch: balls inside them that reach their surface. Of balls and capsules these are exact; edges and rims of boxes and
-// cylinders are rows of small balls, exact against planes.
+// Contact spheres: balls inside bodies that touch their surface. For balls and capsules they are exact. Edges and rims of boxes and
+// cylinders are rows of small spheres, exact against planes.
 #pragma once
 #include "rigid/body.hpp"
 

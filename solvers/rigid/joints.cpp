@@ -73,7 +73,7 @@ Key joints_key() {
 
 namespace {
 
-/// The row of one body's turning past another's, about an axis (2D: about z).
+/// The row of one body's rotation relative to another's, about an axis (2D: about z).
 template <int D>
 Row<D> turning_row(const Joint<D>& joint, const Vec<3>& axis) {
     Row<D> row;
@@ -154,7 +154,7 @@ std::array<Vec<D>, 2> Joints<D>::ends(const Joint<D>& joint, const std::vector<B
     return {bodies[joint.body].pose().to_world(joint.at), other ? other->pose().to_world(joint.anchor) : joint.anchor};
 }
 
-/// Both pushes act in one point, half way between the ends, so that no angular momentum is made.
+/// Both forces act at one point, half way between the ends, so that angular momentum is conserved.
 template <int D>
 void Joints<D>::hold_point(const Joint<D>& joint, const std::vector<Body<D>>& bodies, real dt, std::vector<Row<D>>& rows) const {
     const auto end = ends(joint, bodies);
@@ -168,7 +168,7 @@ template <int D>
 void Joints<D>::hold_axis(const Joint<D>& joint, const std::vector<Body<D>>& bodies, real dt, std::vector<Row<D>>& rows) const {
     if constexpr (D == 3) {
         const Vec<3> own = turned(&bodies[joint.body], joint.axis), theirs = turned(other_of(joint, bodies), joint.axis);
-        const Vec<3> off = cross(own, theirs);  // the turn that is missing
+        const Vec<3> off = cross(own, theirs);  // the rotation error
         for (const Vec<3>& t : both_across(theirs)) {
             rows.push_back(turning_row<D>(joint, t));
             rows.back().target = dot(off, t) / dt;
@@ -197,7 +197,7 @@ void Joints<D>::hold_turning(const Joint<D>& joint, const std::vector<Body<D>>& 
         rows.push_back(turning_row<D>(joint, {}));
         rows.back().target = ((other ? other->orientation[0] : 0) - bodies[joint.body].orientation[0]) / dt;
     } else {
-        // Of the turn R of the body past the other side, half of what is not symmetric: its axis times the sine of its angle.
+        // half of the skew part of the relative rotation R: its axis times the sine of its angle
         Vec<3> off{};
         for (int a = 0; a < 3; ++a) off += 0.5 * cross(turned(&bodies[joint.body], Vec<3>::unit(a)), turned(other, Vec<3>::unit(a)));
         for (int a = 0; a < 3; ++a) {
@@ -207,7 +207,7 @@ void Joints<D>::hold_turning(const Joint<D>& joint, const std::vector<Body<D>>& 
     }
 }
 
-/// A slack line is not damped.
+/// A slack line has no damping.
 template <int D>
 void Joints<D>::pull(const Joint<D>& joint, const std::vector<Body<D>>& bodies, real dt, std::vector<Row<D>>& rows) const {
     const auto end = ends(joint, bodies);
@@ -216,7 +216,7 @@ void Joints<D>::pull(const Joint<D>& joint, const std::vector<Body<D>>& bodies, 
     const Vec<D> along = length > 0 ? line / length : Vec<D>::unit(1);
     rows.push_back(row_at<D>(bodies, joint.body, joint.other, end[0], along));
     Row<D>& row = rows.back();
-    real rate = 0;  // as it was when the ends came to where they are
+    real rate = 0;  // rate of the stretch that led to the present ends
     for (std::size_t k = 0; k < freedoms<D>; ++k) {
         rate += row.sees[k] * bodies[joint.body].velocity[k];
         if (const Body<D>* other = other_of(joint, bodies)) rate += row.sees[freedoms<D> + k] * other->velocity[k];

@@ -66,7 +66,7 @@ Moments<D> of_cylinder(const Vec<D>& from, const Vec<D>& to, real r) {
     return m;
 }
 
-/// A cylinder and two halves of a ball (a disc), whose own centres lie 3r/8 (4r/3π) beyond its ends.
+/// A cylinder and two half balls (half discs), whose centroids lie 3r/8 (4r/3π) beyond its ends.
 template <int D>
 Moments<D> of_capsule(const Vec<D>& from, const Vec<D>& to, real r) {
     const real length = norm(to - from);
@@ -80,7 +80,7 @@ Moments<D> of_capsule(const Vec<D>& from, const Vec<D>& to, real r) {
     return m;
 }
 
-/// Of a mesh by the divergence theorem, placed: lengths by the scale s, moments by s^5 R S R^T.
+/// Moments of a mesh by the divergence theorem, transformed: lengths by the scale s, moments by s^5 R S R^T.
 template <int D>
 Moments<D> of_mesh(const geometry::PosedMesh& posed) {
     Moments<D> m;
@@ -111,7 +111,7 @@ struct Sums : std::array<real, 1 + D + D*(D + 1) / 2> {
     }
 };
 
-/// Nested adaptive Simpson rules over all axes but the last, in coordinates of the box, which is the unit cube there.
+/// Nested adaptive Simpson rules over all axes except the last, in coordinates of the unit cube of the box.
 template <int D>
 class Quadrature {
 public:
@@ -172,7 +172,7 @@ private:
         return shape_.distance(x);
     }
 
-    /// Steps as far as the distance says that nothing changes, at least a thousandth of the box; bisects changes of sign.
+    /// Steps as far as the signed distance guarantees no change, at least a thousandth of the box; bisects changes of sign.
     Sums<D> along_ray(const Vec<D>& x) const {
         constexpr real least = 1e-3;
         Sums<D> sum;
@@ -192,7 +192,7 @@ private:
         return sum;
     }
 
-    /// Regula falsi, Illinois' variant.
+    /// Regula falsi, Illinois variant.
     real root(const Vec<D>& x, real a, real b, real fa, real fb) const {
         for (int i = 0; i < 60 && b - a > 1e-14; ++i) {
             const real c = std::clamp((a * fb - b * fa) / (fb - fa), a, b), fc = distance(x, c);
@@ -274,7 +274,7 @@ Moments<D> integrate(const geometry::Shape<D>& shape, const Bounds<D>& box, real
     Moments<D> m;
     m.volume = volume * sums[0];
     if (!(sums[0] > 0)) return m;
-    Vec<D> unit{};  // the centre in the unit cube
+    Vec<D> unit{};  // the centroid in the unit cube
     for (int a = 0; a < D; ++a) unit[a] = sums[1 + static_cast<std::size_t>(a)] / sums[0];
     std::size_t at = 1 + D;
     for (int a = 0; a < D; ++a) {

@@ -1,5 +1,5 @@
-// Volume, centre and second moments of shapes: by closed formulas for box, ball, capsule, cylinder and meshes, else by adaptive quadrature
-// of what rays along the last axis find inside the shape's signed distance.
+// Volume, centroid and second moments of shapes: by closed formulas for box, ball, capsule, cylinder and meshes, otherwise by adaptive
+// quadrature over rays along the last axis inside the shape's signed distance.
 #pragma once
 #include "core/types.hpp"
 #include "geometry/shape.hpp"
@@ -9,7 +9,7 @@
 
 namespace weir::rigid {
 
-/// What quadrature may be wrong by, of the volume of the box around a shape.
+/// Quadrature error relative to the volume of the shape's bounding box.
 inline constexpr real quadrature_tolerance = 3e-7;
 
 /// Of unit density. second[a][b] = ∫ (x − centre)_a (x − centre)_b.
@@ -20,7 +20,7 @@ struct Moments {
     std::array<Vec<D>, D> second{};
 };
 
-/// A box around a shape; infinite for shapes without end.
+/// A bounding box of a shape; infinite for unbounded shapes.
 template <int D>
 struct Bounds {
     Vec<D> min = Vec<D>::constant(infinity), max = Vec<D>::constant(-infinity);
@@ -34,7 +34,7 @@ Bounds<D> bounds_of(const scene::Table& shape);
 template <int D>
 Moments<D> moments_of(const scene::Table& shape);
 
-/// The same by quadrature, whatever the shape.
+/// The same by quadrature, for any shape.
 template <int D>
 Moments<D> integrate(const geometry::Shape<D>& shape, const Bounds<D>& bounds, real tolerance = quadrature_tolerance);
 

@@ -11,7 +11,7 @@ namespace weir::rigid {
 
 namespace {
 
-/// Of a body's radius: as deep as contacts leave bodies at rest (contacts.cpp).
+/// Relative to a body's radius: the depth at which contacts leave bodies at rest (contacts.cpp).
 constexpr real touching = 1e-3;
 
 constexpr const char* advice = "bodies begin clear of walls, solids and each other, or touch them";
@@ -23,8 +23,8 @@ std::string label(const scene::Scene& scene, std::size_t b) {
     return table.has("name") ? path + " (" + scene::quote(table.text("name")) + ")" : path;
 }
 
-/// The largest ball that lies in both: its radius, by a lattice over a box and then ever smaller steps from its best point. Where one
-/// distance decides, a part of the other leads on.
+/// Radius of the largest ball inside both: sampled on a lattice over a box, then refined from its best point with decreasing steps. Where
+/// one distance is limiting, a fraction of the other guides the search.
 template <int D>
 real common_radius(const geometry::Shape<D>& body, const geometry::Shape<D>& other, const Bounds<D>& box) {
     constexpr int points = D == 2 ? 24 : 12;
@@ -52,7 +52,7 @@ real common_radius(const geometry::Shape<D>& body, const geometry::Shape<D>& oth
     return std::max(0.0, inside(best, 0));
 }
 
-/// The solids of a scene where they stand at t = 0.
+/// The solids of a scene at t = 0.
 template <int D>
 struct Posed final : geometry::Shape<D> {
     geometry::ShapePtr<D> shape;

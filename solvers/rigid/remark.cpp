@@ -10,7 +10,7 @@ namespace weir::rigid {
 
 namespace {
 
-/// The lightest foams that things are made of [kg/m³]: whoever names a density beyond it thinks of water.
+/// Density of the lightest solid foams [kg/m³]: scenes with denser bodies probably mean water.
 constexpr real foam = 20;
 
 template <int D>

@@ -1,4 +1,4 @@
-// What a scene with bodies says without meaning it.
+// Warnings about bodies of a scene that are probably unintended.
 #pragma once
 #include "scene/scene.hpp"
 
@@ -6,7 +6,7 @@
 
 namespace weir::rigid {
 
-/// Of bodies that sink because the scene names no density for its fluid, which is then that of air; empty where there are none.
+/// A warning about bodies that sink because the scene gives no fluid density, which is then that of air; otherwise empty.
 std::string remark_on_density(const scene::Scene& scene);
 
 }  // namespace weir::rigid

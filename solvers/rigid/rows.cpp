@@ -7,17 +7,17 @@ namespace weir::rigid {
 
 namespace {
 
-/// Sweeps over all rows end when no impulse changes a row's velocity by more than this part of the fastest point's, or here.
+/// Sweeps end when no impulse changes a row's velocity by more than this part of the fastest point's, or after most_sweeps.
 constexpr int most_sweeps = 400;
 constexpr real still = 1e-10;
 
 }  // namespace
 
-/// Positions and velocities leapfrog: with v₀ the rate of the stretch s that led to it and v the one that leads on, the tension is that of
-/// the mean (x₋₁ + 2 x₀ + x₁)/4 of three places, T = k (s + dt (v − v₀)/4) + c v. This keeps the swing of any line without damping at any
-/// step (Newmark 1959, β = 1/4, on a staggered grid of times: the map of (x, v) has the determinant 1). A line whose period steps do not
-/// resolve is not to ring from step to step: as z = dt √(k/m) grows beyond 2 the weights 1/4 and 1/4 go to 1 and 0, those of Euler's
-/// implicit step. With b = 1 − 3 c their sum is at least 1/2, which is stable for any z and any number of lines.
+/// Positions and velocities are staggered (leapfrog). With v₀ the rate of the stretch s that led to it and v the next one, the tension is
+/// that of the mean (x₋₁ + 2 x₀ + x₁)/4 of three positions, T = k (s + dt (v − v₀)/4) + c v. Undamped oscillations of a line then persist
+/// for any step (Newmark 1959, β = 1/4, with staggered times: the map of (x, v) has the determinant 1). A line whose period is not resolved
+/// must not oscillate from step to step. As z = dt √(k/m) grows beyond 2 the weights 1/4 and 1/4 change to 1 and 0, those of implicit
+/// Euler. With b = 1 − 3 c their sum is at least 1/2, which is stable for any z and any number of lines.
 template <int D>
 void tighten(Row<D>& row) {
     const Spring& line = row.spring;
@@ -28,7 +28,7 @@ void tighten(Row<D>& row) {
     row.softness = 1 / (line.dt * firm);
 }
 
-/// By Cholesky's factors, column by column of the identity.
+/// By Cholesky factorization, column by column of the identity.
 void invert(const Mobility& matrix, const std::vector<char>& free, Mobility& inverse) {
     const std::size_t n = matrix.size;
     std::vector<std::size_t> at;
@@ -159,7 +159,7 @@ real Rows<D>::relative(const Row<D>& row, const std::vector<real>& velocities) c
     return v;
 }
 
-/// At most so fast moves the body's point: velocities and spins have different units, so that the larger of them means nothing.
+/// Upper bound of the speed of the body's point: velocities and angular velocities have different units and cannot be compared directly.
 template <int D>
 real Rows<D>::speed(const Row<D>& row, const std::vector<real>& velocities) const {
     constexpr std::size_t n = freedoms<D>;
@@ -178,7 +178,7 @@ void Rows<D>::push(std::size_t row, real impulse, std::vector<real>& velocities)
         for (std::size_t v = runs_[r].begin; v < runs_[r].end; ++v) velocities[v] += impulse * response[v];
 }
 
-/// One sweep of Gauss-Seidel; gained_ is what it added to each impulse. Answers the largest change of a row's velocity.
+/// One Gauss-Seidel sweep; gained_ is the change of each impulse. Returns the largest change of a row's velocity.
 template <int D>
 real Rows<D>::sweep(std::vector<real>& velocities) {
     real change = 0;
@@ -196,7 +196,7 @@ real Rows<D>::sweep(std::vector<real>& velocities) {
     return change;
 }
 
-/// No wall pulls and no line pushes; friction is at most the coefficient times what presses.
+/// Walls only push and lines only pull; friction is at most the coefficient times the normal impulse.
 template <int D>
 real Rows<D>::limited(const Row<D>& row, real impulse) const {
     if (row.limit == Limit::pushes) return std::max(0.0, impulse);
@@ -206,7 +206,7 @@ real Rows<D>::limited(const Row<D>& row, real impulse) const {
     return std::clamp(impulse, -most, most);
 }
 
-/// Further along the last direction, as conjugate gradients do; the velocities follow from the impulses anew.
+/// Extrapolates along the last direction, as in conjugate gradients; velocities are recomputed from the impulses.
 template <int D>
 void Rows<D>::go_on(real beta, std::vector<real>& velocities) {
     velocities = free_;

@@ -1,6 +1,5 @@
-// Constraints on the velocities of bodies, one number each, and the impulses that keep them: projected Gauss-Seidel in a fixed order, each
-// sweep a step of nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe & Erleben 2010), so that stacks of light and heavy
-// bodies converge too.
+// Scalar constraints on the velocities of bodies, and their impulses: projected Gauss-Seidel in a fixed order, accelerated by nonsmooth
+// nonlinear conjugate gradients (Silcowitz-Hansen, Niebe & Erleben 2010), which also converges for stacks of light and heavy bodies.
 #pragma once
 #include "rigid/body.hpp"
 
@@ -8,7 +7,7 @@
 
 namespace weir::rigid {
 
-/// A dense symmetric matrix, row by row: velocities of all bodies, `freedoms<D>` each, from impulses on them.
+/// A dense symmetric matrix, row by row: velocities of all bodies, `freedoms<D>` each, per unit impulse.
 struct Mobility {
     std::size_t size = 0;
     std::vector<real> entries;
@@ -20,47 +19,47 @@ struct Mobility {
     real operator()(std::size_t row, std::size_t column) const { return entries[row * size + column]; }
 };
 
-/// Of bodies in the air: the inverse of their masses; what is held does not move.
+/// For bodies in air: the inverse of their masses; fixed velocities have zero rows.
 template <int D>
 void dry_mobility(const std::vector<Body<D>>& bodies, Mobility& mobility);
-/// The inverse of a symmetric matrix, of the rows and columns that are free; zero in the others.
+/// The inverse of the free rows and columns of a symmetric matrix; zero in the others.
 void invert(const Mobility& matrix, const std::vector<char>& free, Mobility& inverse);
 
-/// What an impulse may be.
+/// Bounds of an impulse.
 enum class Limit {
     none,
     pushes,  // never negative
     pulls,   // never positive
-    rubs,    // at most friction times that of the row `normal`
+    rubs,    // at most friction times the impulse of the row `normal`
 };
 
-/// What a line gives way by.
+/// The compliance of a line.
 struct Spring {
-    real stiffness = 0, damping = 0;  // [N/m], [N s/m]; no stiffness: the row is no line
+    real stiffness = 0, damping = 0;  // [N/m], [N s/m]; zero stiffness: the row is not a line
     real stretch = 0, rate = 0, dt = 0;
 };
 
-/// v = target − softness × impulse, where v is the velocity of a body past another along one direction.
+/// v = target − softness × impulse, where v is the relative velocity of two bodies along one direction.
 template <int D>
 struct Row {
     std::size_t body = 0;
-    std::ptrdiff_t other = -1;                 // −1: nothing that moves by itself
-    std::array<real, 2 * freedoms<D>> sees{};  // v by the velocities of both
-    Vec<D> moves{};                            // velocity of the other side where that is prescribed
+    std::ptrdiff_t other = -1;                 // −1: the other side has prescribed motion or is at rest
+    std::array<real, 2 * freedoms<D>> sees{};  // v per unit of the velocities of both
+    Vec<D> moves{};                            // velocity of the other side where it is prescribed
     real target = 0, softness = 0;
     Limit limit = Limit::none;
     real friction = 0;
     std::size_t normal = 0;
-    Spring spring{};    // where it is a line: target and softness follow from it and the response
-    real response = 0;  // change of v by a unit impulse
+    Spring spring{};    // for a line: target and softness are computed from it and the response
+    real response = 0;  // change of v per unit impulse
 };
 
-/// Two directions across a unit vector, and each other.
+/// Two unit vectors perpendicular to a unit vector and to each other.
 std::array<Vec<3>, 2> both_across(const Vec<3>& n);
-/// How a body's rigid velocity moves its point, along a direction.
+/// Velocity of a body's point along a direction, per unit of its rigid velocities.
 template <int D>
 Twist<D> sees(const Body<D>& body, const Vec<D>& point, const Vec<D>& along);
-/// The row of a point of a body past the same point of another.
+/// The row of the relative velocity of two bodies at a common point.
 template <int D>
 Row<D> row_at(const std::vector<Body<D>>& bodies, std::size_t body, std::ptrdiff_t other, const Vec<D>& point, const Vec<D>& along);
 
@@ -68,16 +67,16 @@ template <int D>
 class Rows {
 public:
     void clear() { list_.clear(), impulse_.clear(), given_.clear(); }
-    /// Of the same number of rows again, the impulses that were found are where it begins.
+    /// With an unchanged number of rows, the previous impulses are the initial guess.
     void set(std::vector<Row<D>>& rows, const Mobility& mobility);
     std::vector<Row<D>>& list() { return list_; }
     const std::vector<real>& impulses() const { return impulse_; }
-    /// The velocities have the impulses found so far: what is found next comes on top of them, and limits hold for the whole.
+    /// Declares that the velocities include the impulses found so far: further impulses are added, and bounds apply to the sum.
     void carry_on() { given_ = impulse_; }
-    /// Of the body's point past the other side.
+    /// Velocity of the body's point relative to the other side.
     real relative(const Row<D>& row, const std::vector<real>& velocities) const;
     void solve(std::vector<real>& velocities);
-    /// What the rows push the bodies by, to `freedoms<D>` numbers a body.
+    /// Adds the impulses of the rows to `freedoms<D>` numbers per body.
     void add_impulses(std::vector<real>& impulses) const;
 
 private:
@@ -89,16 +88,15 @@ private:
     void find_runs(const real* response);
 
     std::vector<Row<D>> list_;
-    std::vector<real> impulse_, direction_, gained_;  // of each row
-    std::vector<real> given_;                         // that part of each impulse which the velocities have already
-    std::vector<real> responses_;                     // of each row, the change of all velocities
-    /// Velocities that a row changes at all: without a fluid between them, or with one that knows nothing of the others, those of its own
-    /// bodies alone.
+    std::vector<real> impulse_, direction_, gained_;  // per row
+    std::vector<real> given_;                         // the part of each impulse already included in the velocities
+    std::vector<real> responses_;                     // per row, the change of all velocities
+    /// The velocities that a row changes: without fluid, or without coupling through it, only those of its own bodies.
     struct Run {
         std::size_t begin = 0, end = 0;
     };
     std::vector<Run> runs_;
-    std::vector<std::size_t> runs_end_;  // of each row, in runs_
+    std::vector<std::size_t> runs_end_;  // per row, index in runs_
     std::vector<real> free_;             // velocities without any impulse
     std::size_t size_ = 0;
 };

@@ -25,7 +25,7 @@ real asked_time(real every, std::int64_t k) {
 std::int64_t first_after(real every, real t) {
     const real now = t + same_time(t);
     auto k = static_cast<std::int64_t>(std::min(std::floor(now / every), exact_integers));
-    if (!(every > 4 * same_time(t))) return k + 1;    // closer than times are told apart: each step reaches some
+    if (!(every > 4 * same_time(t))) return k + 1;    // closer than the time tolerance: each step reaches several
     while (k > 0 && asked_time(every, k) > now) --k;  // the quotient may have been rounded up
     while (t >= asked_time(every, k) - same_time(asked_time(every, k))) ++k;
     return k;

@@ -11,7 +11,7 @@ namespace weir::sim {
 
 namespace {
 
-constexpr real tolerated = 0.01;  // of volume, mass, energy or heat: beyond it there is a warning
+constexpr real tolerated = 0.01;  // of volume, mass, energy or heat: a larger part gives a warning
 
 const Integral* find(const std::vector<Integral>& list, std::string_view name) {
     const auto at = std::find_if(list.begin(), list.end(), [&](const Integral& i) { return i.name == name; });
@@ -34,14 +34,14 @@ bool solids_move(const scene::Scene& scene) {
     return std::any_of(solids.begin(), solids.end(), [](const scene::Table& solid) { return solid.has("motion"); });
 }
 
-/// Effects that take energy or only hand it on.
+/// Returns whether an effect adds no energy: it dissipates or transfers energy only.
 bool is_harmless(const std::string& effect) {
     constexpr std::array list{"gravity",           "viscosity",    "volume_control", "xsph",   "artificial_viscosity",
                               "density_diffusion", "rest_density", "friction",       "damping"};
     return std::find(list.begin(), list.end(), effect) != list.end();
 }
 
-/// The least potential energy that the fluid could have in the domain, as if it all lay in the lowest corner.
+/// Lower bound of the fluid's potential energy in the domain: all mass in the lowest corner.
 real lowest_energy(const scene::Scene& scene, const GridView& grid, const std::vector<Integral>& start) {
     const scene::Table* gravity = scene.effect("gravity");
     if (!gravity || !gravity->has("g")) return 0;
@@ -52,7 +52,7 @@ real lowest_energy(const scene::Scene& scene, const GridView& grid, const std::v
     return lowest * (mass ? mass->value : scene.root().number_or("fluid.density", 1000) * value_or_zero(start, "volume"));
 }
 
-/// What the solver accounts for since the start; not known where nothing counts it.
+/// Net inflow that the solver recorded since the start; no value where it is not recorded.
 std::optional<real> inflow_of_volume(const scene::Scene& scene, const std::vector<Integral>& start, const std::vector<Integral>& end) {
     for (const char* ledger : {"volume_target", "poured_volume"})
         if (const Integral* before = find(start, ledger), *after = find(end, ledger); before && after) return after->value - before->value;
@@ -79,7 +79,7 @@ void explain(Balanced& b, real scale) {
 }
 
 std::optional<Balanced> volume(const scene::Scene& scene, const std::vector<Integral>& start, const std::vector<Integral>& end) {
-    const bool particles = find(end, "mass") != nullptr;  // whose volume is their mass over the density
+    const bool particles = find(end, "mass") != nullptr;  // the volume of particles is their mass over the density
     auto b = balanced(particles ? "mass" : "volume", start, end);
     if (!b) return b;
     if (!particles)
@@ -130,7 +130,7 @@ void warn_of_energy(const Balanced& b, std::vector<std::string>& warnings) {
                     percent(*b.unexplained), b.start, b.unit, *b.highest, b.unit));
 }
 
-/// What was put right in the fluid, as counted since the start.
+/// Corrections applied to the fluid, counted since the start.
 std::vector<Integral> corrections(const std::vector<Integral>& start, const std::vector<Integral>& end) {
     std::vector<Integral> list;
     for (const char* name :
@@ -145,7 +145,7 @@ real least_side(const std::vector<double>& min, const std::vector<double>& max, 
     return least;
 }
 
-/// In cells; infinite where the shape has no one thickness.
+/// In cells; infinite where the shape has no unique thickness.
 real thickness(const scene::Table& solid, const GridView& grid) {
     const std::string shape = solid.text("shape");
     real cell = 0;
@@ -242,7 +242,7 @@ BalanceOfRun Balance::of_run(const Simulation& simulation) const {
                    .scale = std::max(*before - lowest_energy(scene, grid, start_), std::abs(*before)),
                    .highest = std::max(highest_energy_, *after),
                    .furthest = {}};
-        const bool whole = !find(end, "bodies_kinetic_energy") || find(end, "potential_energy");  // of a fluid that bodies displace
+        const bool whole = !find(end, "bodies_kinetic_energy") || find(end, "potential_energy");  // with bodies: of displaced fluid
         if (whole && b.scale > 0 && energy_cannot_grow(scene)) b.unexplained = (*b.highest - b.start) / b.scale;
         warn_of_energy(b, run.warnings);
         run.quantities.push_back(std::move(b));

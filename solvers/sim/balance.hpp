@@ -1,5 +1,5 @@
-// The balance of a run: what the solver's integrals were at its start and are at its end, and what of the change came in or went out. What
-// neither accounts for is the run's error. Integrals are taken at the start, in every 16th step, at frames and at the end.
+// The balance of a run: the solver's integrals at its start and its end, and the net inflow. The change that the inflow does not explain is
+// the run's error. Integrals are computed at the start, in every 16th step, at frames and at the end.
 #pragma once
 #include "core/solver.hpp"
 #include "sim/simulation.hpp"
@@ -14,25 +14,25 @@ namespace weir::sim {
 struct Balanced {
     std::string name, unit;
     real start = 0, end = 0;
-    std::optional<real> inflow;       // net, what sources, sides and evaporation account for; not known: nothing counts it
-    std::optional<real> unexplained;  // part of `scale` that the end has beyond the start and the inflow
-    real scale = 0;                   // what 100% are
-    std::optional<real> highest;      // of all that were taken
-    std::optional<real> furthest;     // unexplained part of any that was taken
+    std::optional<real> inflow;       // net, from sources, sides and evaporation; no value: not recorded
+    std::optional<real> unexplained;  // (end - start - inflow) / scale; for energy, the highest value replaces the end
+    real scale = 0;                   // reference value of 100%
+    std::optional<real> highest;      // maximum of all samples
+    std::optional<real> furthest;     // largest unexplained part of any sample
 };
 
-/// Numbers of a run that tell how far to trust it.
+/// Numbers that show the reliability of a run.
 struct BalanceOfRun {
     real from = 0, to = 0;  // [s]
     std::vector<Balanced> quantities;
-    std::vector<Integral> corrected;                 // what was put right: particles moved to a wall, markers sown anew, ...
-    real divergence = not_applicable;                // largest of any step [1/s]
-    real cell_change = not_applicable;               // largest part of a cell's volume that a step has made or lost
-    std::vector<std::pair<std::string, real>> thin;  // solids thinner than two cells, and how many cells they are thick
-    std::vector<std::string> warnings;               // what is beyond 1%
+    std::vector<Integral> corrected;                 // corrections: particles moved to a wall, reseeded markers, ...
+    real divergence = not_applicable;                // maximum over the steps [1/s]
+    real cell_change = not_applicable;               // largest relative volume error of a cell in one step
+    std::vector<std::pair<std::string, real>> thin;  // solids thinner than two cells, and their thickness in cells
+    std::vector<std::string> warnings;               // one for each error beyond 1%
 };
 
-/// Takes a run's balance. All ranks call its functions together.
+/// Records a run's balance. All its functions are collective.
 class Balance {
 public:
     explicit Balance(const Simulation& simulation);
@@ -50,13 +50,13 @@ private:
     real divergence_ = not_applicable, cell_change_ = not_applicable;
 };
 
-/// Kinetic, potential and elastic energy, that of bodies included, as far as a solver states them; none where it states no kinetic one.
+/// Kinetic, potential and elastic energy, including bodies, as far as a solver reports them; no value without kinetic energy.
 std::optional<real> total_energy(const std::vector<Integral>& integrals);
 
-/// Whether all work on the fluid is gravity's or friction's, so that the total energy cannot grow; false where something else may do work.
+/// Returns whether only gravity and friction do work on the fluid, so that the total energy cannot grow.
 bool energy_cannot_grow(const scene::Scene& scene);
 
-/// Whether nothing comes in or goes out: no emitters or sinks, no open sides, no brush, no rain.
+/// Returns whether there is no inflow or outflow: no emitters or sinks, no open sides, no brush, no rain.
 bool is_closed(const scene::Scene& scene);
 
 /// Boxes, balls, capsules and cylinders among the solids that are thinner than two cells, by key, and their thickness in cells.

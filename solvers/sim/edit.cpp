@@ -1,4 +1,4 @@
-// A hand in the run between two steps: fields that are written, particles that come and go, and who is called to look on.
+// Steering a running simulation between two steps: writing fields, adding and removing particles, calling observers.
 #include "core/error.hpp"
 #include "core/slabs.hpp"
 #include "sim/simulation.hpp"
@@ -24,7 +24,7 @@ void check_values(const std::string& name, const std::vector<real>& values, std:
     }
 }
 
-/// For as long as it lives the simulation knows which field is written.
+/// Scope in which the simulation records the field being written.
 class Edited {
 public:
     Edited(std::string& which, std::string name) : which_(which) { which_ = std::move(name); }
@@ -36,12 +36,12 @@ private:
     std::string& which_;
 };
 
-/// A rank may hold a part of the state, and whoever writes knows all of it or nothing.
+/// Edits need the whole state, but a rank may hold only a part of it.
 void one_process_only(const std::string& what) {
     if (slabs().several()) throw BadInput(fmt::format("{} in one process only, and there are {}", what, slabs().ranks()));
 }
 
-/// A place has as many coordinates as the scene has dimensions.
+/// Checks that a point has as many coordinates as the scene has dimensions.
 void check_points(std::span<const Vec<3>> points, const std::string& what, const GridView& grid, bool inside) {
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int a = 0; a < 3; ++a) {
@@ -78,7 +78,7 @@ void Simulation::refuse_while_edited(const char* what) const {
     if (!edited_.empty()) throw BadInput(fmt::format("\"{}\" is being edited: {} after that, not meanwhile", edited_, what));
 }
 
-/// All of it, or nothing.
+/// Applies the whole change or none of it.
 void Simulation::change_state(const std::function<void(Solver&)>& change) {
     Checkpoint before;
     solver_->save(before);
@@ -109,7 +109,7 @@ void Simulation::edit(std::string_view name, const std::function<void(FieldEdit&
         throw BadInput(fmt::format("\"{}\" has {} components, not {}", at.name, at.data.size(), field.data.size()));
     for (std::size_t c = 0; c < at.data.size(); ++c) check_values(at.name, field.data[c], at.data[c].size(), at.min[c], at.max[c]);
     change_state([&](Solver& solver) {
-        const EditableField to = editable_named(full_name(at.set, at.name));  // a copy of the state may have moved it
+        const EditableField to = editable_named(full_name(at.set, at.name));  // a copy of the state may have relocated it
         for (std::size_t c = 0; c < to.data.size(); ++c) std::copy(field.data[c].begin(), field.data[c].end(), to.data[c].begin());
         solver.edited(to);
     });

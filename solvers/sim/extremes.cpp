@@ -14,7 +14,7 @@ namespace weir::sim {
 
 namespace {
 
-/// A value of one component of a field, where it is.
+/// A value of one field component and its place.
 struct Extreme {
     real value = 0;  // |u|, or the value itself
     std::array<real, 3> at{};
@@ -34,7 +34,7 @@ Extreme on_grid(const GridView& grid, const FieldView& view, std::size_t compone
     return e;
 }
 
-/// NaN counts as largest.
+/// NaN compares as largest.
 bool beyond(real value, real than) { return value > than || (std::isnan(value) && !std::isnan(than)); }
 
 Extreme largest_in_grid(const FieldSet& fields, const FieldView& view) {
@@ -61,7 +61,7 @@ Extreme largest_of_points(const FieldSet& fields, const FieldView& view) {
     return most;
 }
 
-/// Of all ranks where each has a part.
+/// Global maximum over the ranks.
 Extreme largest(const FieldSet& fields, const FieldView& view) {
     Extreme most = view.where == Where::particle ? largest_of_points(fields, view) : largest_in_grid(fields, view);
     if (slabs().several())

@@ -13,7 +13,7 @@ namespace weir::sim {
 
 namespace {
 
-/// Infinity and NaN are the doubles whose exponent bits are all set. As integers, so that the loop runs in vector registers.
+/// Infinity and NaN are the doubles whose exponent bits are all set. The comparison of integers lets the loop be vectorized.
 bool all_finite(std::span<const real> values) {
     constexpr std::uint64_t exponent = 0x7ff0000000000000ull;
     std::uint64_t bad = 0;
@@ -21,7 +21,7 @@ bool all_finite(std::span<const real> values) {
     return bad == 0;
 }
 
-/// The same in blocks over all threads; a block is large enough to be worth a thread.
+/// The same in blocks over all threads; a block is large enough to amortize the cost of a thread.
 bool all_finite_threaded(std::span<const real> values) {
     constexpr std::size_t block = 1u << 16;
     const auto blocks = static_cast<int>((values.size() + block - 1) / block);

@@ -1,4 +1,4 @@
-// Is everything still a number? Asked after every step.
+// Check after every step that all values are finite.
 #pragma once
 #include "core/solver.hpp"
 

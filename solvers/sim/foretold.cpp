@@ -25,32 +25,32 @@ namespace weir::sim {
 namespace {
 
 constexpr double lanes_row = 32;             // cells: rows of fields are padded to whole multiples of it
-constexpr double short_row = 64;             // cells: kept as it is
-constexpr double fewest = 4;                 // cells along an axis of a copy
-constexpr double particles_of_copy = 16384;  // of a copy made of particles, whose steps take longest
-constexpr int samples = 1 << 17;             // of cells: a part of a thousandth is known to a tenth of it
-constexpr double alike = 0.02;               // of the liquid: less than a tenth of what is claimed
-constexpr double corrected = 0.3;            // of the particles: so many more or fewer have about as many neighbours
-constexpr double widest_copy = 3.9;  // times as wide as they are: tall cells refuse those that are more than four times as long as thin
-constexpr double most_bytes_a_cell = 8000;  // that any solver holds: SPH's neighbours at three spacings are half of it
+constexpr double short_row = 64;             // cells: rows up to this length are not shortened
+constexpr double fewest = 4;                 // minimum number of cells along an axis of a copy
+constexpr double particles_of_copy = 16384;  // in a copy made of particles, whose steps take longest
+constexpr int samples = 1 << 17;             // number of cells: a part of a thousandth is estimated within a tenth of it
+constexpr double alike = 0.02;               // relative to the liquid: less than a tenth of the claimed error
+constexpr double corrected = 0.3;            // relative to the particles: the number of neighbours changes little within it
+constexpr double widest_copy = 3.9;          // ratio of width to height: tall cells reject domains longer than four times their thickness
+constexpr double most_bytes_a_cell = 8000;   // upper bound for any solver: SPH's neighbours at three spacings take half of it
 
 double product(const std::vector<double>& list) { return std::accumulate(list.begin(), list.end(), 1.0, std::multiplies<>()); }
 
-/// Cells that touch the boundary, each face counted once: ghosts and coarsest levels grow with it.
+/// Number of boundary faces of the cells: ghosts and coarsest multigrid levels scale with it.
 double surface(const std::vector<double>& cells) {
     double sum = 0;
     for (const double n : cells) sum += product(cells) / n;
     return sum;
 }
 
-/// How often n halves, up to `most` times.
+/// Number of times n can be halved, up to `most`.
 int halvings(double n, int most) {
     int count = 0;
     for (; count < most && std::fmod(n, 2) == 0; n /= 2) ++count;
     return count;
 }
 
-/// About `target` cells that halve as often as n does, as far as so few can.
+/// About `target` cells that can be halved as often as n, as far as so few can.
 double halving_like(double n, double target) {
     const double t = std::max(fewest, target);
     double power = 1;
@@ -60,14 +60,14 @@ double halving_like(double n, double target) {
     return std::min(n, all ? power * (2 * std::round((t / power - 1) / 2) + 1) : power);
 }
 
-/// About `target` cells of which a row is padded by about the same part as one of n, and that halve as often, as far as it matters.
+/// About `target` cells whose rows have about the same relative padding as n and can be halved about as often.
 double padded_like(double n, double target) {
     if (n <= short_row) return n;
     constexpr int often = 4;
     const auto padding = [](double m) { return lanes_row * std::ceil(m / lanes_row) / m; };
     double best = n, least = infinity;
     for (double m = std::max(lanes_row, std::floor(0.6 * target)); m <= std::max(short_row, 1.6 * target) && m < n; ++m) {
-        // padding weighs what it adds to a field; a row that halves less often brings another pressure solve
+        // the padding adds to the size of a field; fewer halvings select another pressure solver
         const double differs =
             std::abs(padding(m) - padding(n)) + std::abs(halvings(m, often) - halvings(n, often)) + 0.1 * std::abs(std::log(m / target));
         if (differs < least) least = differs, best = m;
@@ -104,7 +104,8 @@ double wet_part_of(const scene::Scene& scene) {
     double cells = 1;
     for (int a = 0; a < D; ++a) cells *= n[a];
     const bool all = cells <= samples;
-    // Roberts' sequence: the powers of the root of g^(D+1) = g + 1 fill a box more evenly than chance (error 1/samples, not its root)
+    // Roberts' sequence: the powers of the root of g^(D+1) = g + 1 fill a box more evenly than random points (error 1/samples instead of
+    // its root)
     const double g = D == 2 ? 1.32471795724474602596 : 1.22074408460575947536;
     const auto inside = [](const auto& shapes, const Vec<D>& x) {
         return std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s->contains(x); });
@@ -127,7 +128,7 @@ double wet_part_of(const scene::Scene& scene) {
     return wet / count;
 }
 
-/// Not below x, with so few digits that its products with numbers of cells are exact: cells that are cubes stay cubes to the last bit.
+/// At least x, with few enough digits that its products with cell counts are exact: cubic cells stay cubic to the last bit.
 double short_number(double x) {
     constexpr int bits = 30;
     const double unit = std::ldexp(1.0, std::ilogb(x) - bits);
@@ -136,7 +137,7 @@ double short_number(double x) {
 
 std::string list_text(const std::vector<double>& list) { return fmt::format("[{}]", fmt::join(list, ", ")); }
 
-/// A pool over so much of the domain, to a part of one layer of its cells.
+/// A pool that fills this part of the domain, including a partial layer of cells.
 std::string pool_text(const std::vector<double>& origin, const std::vector<double>& size, const std::vector<double>& cells, double part) {
     const auto box = [&](double width, double from, double to) {
         std::vector<double> low = origin, high = origin;
@@ -181,7 +182,7 @@ private:
 
 /// Builds a scene and takes one step of it, as long as its first.
 Held hold(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
-    const WholeGrids whole;  // over ranks too: what one process would hold
+    const WholeGrids whole;  // in parallel too: what one process would allocate
     Held held{.cells = scene.root().numbers("grid.cells"), .solver = kind_named(scene.solver(), kinds).make(scene)};
     Solver& solver = *held.solver;
     held.fields = static_cast<const Solver&>(solver).fields();
@@ -189,13 +190,13 @@ Held hold(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds
     try {
         const real advised = scene.has("time.dt") ? scene.number("time.dt") : solver.advised_dt();
         solver.step(std::min({advised, scene.root().number_or("time.max_dt", infinity), scene.number("time.end")}));
-    } catch (const NumericalFailure&) {  // what a copy cannot do the scene may; what it needs has been taken
+    } catch (const NumericalFailure&) {  // a copy may fail where the scene does not; its memory is allocated by then
     }
     held.bytes = static_cast<double>(solver.bytes());
     return held;
 }
 
-/// Seen on a copy of a few cells, or of some more where so few make no scene.
+/// Determined from a copy of a few cells, or of more where so few make no valid scene.
 bool consists_of_particles(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
     for (const double few : {1024.0, 16384.0}) try {
             const auto solver = kind_named(scene.solver(), kinds).make(small_copy(scene, kinds, few, Copy::similar));
@@ -205,7 +206,7 @@ bool consists_of_particles(const scene::Scene& scene, const std::vector<scene::S
     return false;
 }
 
-/// Bytes of so many cells, from those of two copies: so much a cell, and so much a cell of the surface.
+/// Extrapolates bytes from two copies: bytes per cell plus bytes per boundary face.
 double grown(const std::vector<double>& cells, const Held& fine, const Held& coarse) {
     const double n = product(cells), s = surface(cells);
     const double n0 = product(fine.cells), s0 = surface(fine.cells), n1 = product(coarse.cells), s1 = surface(coarse.cells);
@@ -215,14 +216,14 @@ double grown(const std::vector<double>& cells, const Held& fine, const Held& coa
     return a * n + b * s;
 }
 
-/// A factorisation fills more than cells: by the power that two copies show.
+/// A factorization grows faster than the cells: with the exponent fitted to two copies.
 double filled(const std::vector<double>& cells, const Held& fine, const Held& coarse) {
     const double n0 = product(fine.cells), n1 = product(coarse.cells);
     const double power = std::log(fine.bytes / coarse.bytes) / std::log(n0 / n1);
     return fine.bytes * std::pow(product(cells) / n0, std::clamp(power, 1.0, 2.0));
 }
 
-/// What part of a scene's memory is of liquid: so much less a half as high pool takes.
+/// The part of a scene's memory that scales with the liquid: the difference to a pool of half the height.
 double part_of_liquid(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
     const auto& root = scene.root();
     const auto pool = [&](double part) {
@@ -258,14 +259,14 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
     if (product(n) <= cells) return scene;
     const auto copy = copy_cells_of(n, cells, how);
     const auto schemas = scene::schemas_of(kinds);
-    if (how == Copy::like_columns) {  // the same box and the same liquid in it
+    if (how == Copy::like_columns) {  // the same box with the same liquid
         auto overrides = scene.overrides();
         overrides.push_back({"grid.cells", list_text(copy)});
         return scene::parse(scene.source(), scene.file(), schemas, overrides);
     }
-    double coarser = 1;  // one factor for all axes: particles want cubes
+    double coarser = 1;  // one factor for all axes: particles need cubic cells
     for (std::size_t a = 0; a < n.size(); ++a) coarser = std::max(coarser, n[a] / copy[a]);
-    bool cubes = true;  // to the last bit: a pressure solver has simpler coefficients for these
+    bool cubes = true;  // to the last bit: a pressure solver has simpler coefficients for cubic cells
     for (std::size_t a = 0; a < n.size(); ++a) cubes = cubes && size[a] / n[a] == size[0] / n[0];
     std::vector<double> box = size;
     for (std::size_t a = 0; a < n.size(); ++a) {
@@ -285,7 +286,7 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
     return parsed();
 }
 
-/// What a copy takes to make the scene's surface: so much a particle, or a cell of a level set.
+/// Memory for the scene's surface mesh, extrapolated from a copy per particle, or per cell of a level set.
 double surface_bytes(const scene::Scene& scene, const Held& copy, const Foretold& f) {
     const auto surface = reconstruction::can_contour() ? reconstruction::reconstruction_of(scene) : nullptr;
     if (!surface) return 0;
@@ -315,7 +316,7 @@ Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind
         f.bytes = times * fine.bytes;
         return f;
     }
-    if (whole) {  // columns as they are, but wider: a quarter of so many would be too flat
+    if (whole) {  // whole columns, but wider: a quarter as many would be too flat
         f.bytes = fine.bytes / product(fine.cells) * f.cells;
         return f;
     }
@@ -326,7 +327,7 @@ Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind
 
 namespace {
 
-/// Where no copy can be built, what any solver holds at least: about ten numbers a cell.
+/// Where no copy can be built: the minimum of any solver, about ten numbers per cell.
 Foretold foretold_or_least(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
     constexpr double least = 80;
     try {

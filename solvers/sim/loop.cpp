@@ -12,7 +12,7 @@ namespace weir::sim {
 
 namespace {
 
-/// A copy of the state costs about as much memory traffic as a few passes of a step: every 50 steps that is lost in the noise.
+/// A copy of the state costs about the memory traffic of a few passes; every 50 steps this is negligible.
 constexpr std::int64_t good_state_every = 50;
 
 std::string brief(real value) {
@@ -28,14 +28,14 @@ Checkpoint state_of(const Simulation& simulation, const std::string& run) {
     return state;
 }
 
-/// The last state known to be good, kept in memory: a failed step leaves whatever it reached.
+/// The last good state, kept in memory: a failed step leaves an unspecified state.
 struct GoodState {
     Checkpoint state;
     std::int64_t step = 0;
     real time = 0;
     std::string run;
     void keep(const Simulation& simulation) {
-        state = {};  // frees its memory before the next one takes as much
+        state = {};  // frees its memory before the next one allocates as much
         state = state_of(simulation, run);
         step = simulation.steps();
         time = simulation.time();
@@ -59,7 +59,8 @@ struct GoodState {
     throw located;
 }
 
-/// Can each rank read the file, at worst as a whole, beside all others on this machine? As one of them says no, nobody does.
+/// Returns whether each rank can read the file, possibly as a whole, together with all other ranks of this machine. One rank that cannot
+/// makes all return false.
 bool all_can_read(const std::filesystem::path& file) {
     std::error_code none;
     const auto bytes = std::filesystem::file_size(file, none);
@@ -67,7 +68,7 @@ bool all_can_read(const std::filesystem::path& file) {
     return slabs().largest(can ? 0 : 1) == 0;
 }
 
-/// And over ranks cuts anew what goes on, where the state asks for it.
+/// In parallel, a run that goes on is also repartitioned where the state requires it (load balancing).
 void save(Simulation& simulation, const std::filesystem::path& folder, const std::string& run, bool goes_on) {
     bool cut_anew = false;
     {
@@ -89,7 +90,7 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
     GoodState good;
     good.run = options.run;
     good.keep(simulation);
-    bool before_end = false;  // the good state is the one before the steps that are shortened for the end
+    bool before_end = false;  // the good state precedes the steps that are shortened for the end
     while (!simulation.finished()) {
         const auto start = clock::now();
         StepReport report;
@@ -106,7 +107,7 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
         const bool asked = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 || finished);
         const int stops = options.stop_requests();
         const bool stop = !finished && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
-        if (asked && finished && before_end && !simulation.steady()) {  // so that a later end can be asked for
+        if (asked && finished && before_end && !simulation.steady()) {  // a later end can then be requested
             put_ended(good.state, simulation.end_time());
             good.state.write(checkpoint_file(options.folder));
         } else if (asked || stop) {

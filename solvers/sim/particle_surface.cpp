@@ -1,6 +1,6 @@
 // Volumes of particles are spread by the quadratic B-spline of their spacing (the "triangular-shaped cloud" of Hockney & Eastwood 1981). On
-// a lattice the weights sum to one wherever the line stands, and to one half at the face of a half-space. So a plane surface is found
-// exactly at any offset between the particles, and noise of their places is averaged over three of them along each axis.
+// a lattice the weights sum to one for any position of the line, and to one half at the face of a half-space. So a plane surface is located
+// exactly at any offset between the particles. Noise of their positions is averaged over three particles along each axis.
 #include "sim/particle_surface.hpp"
 
 #include "sim/sampling.hpp"
@@ -16,8 +16,8 @@ namespace weir::sim {
 namespace {
 
 constexpr real support = 1.5;           // of the spline [spacings]
-constexpr int per_spacing = 16;         // samples of the profile; between them it is linear: an error of at most 1/16^2 / 8 of a spacing
-constexpr int below = 2 * per_spacing;  // samples of the liquid that a surface bounds: two layers, where one alone is less than full
+constexpr int per_spacing = 16;         // samples of the profile; linear interpolation between them: error at most 1/16^2 / 8 of a spacing
+constexpr int below = 2 * per_spacing;  // samples of the liquid below a surface: two layers, since a single layer is not full
 
 /// u in spacings.
 real spline(real u) {
@@ -25,8 +25,8 @@ real spline(real u) {
     return u < 0.5 ? 0.75 - u * u : u < support ? 0.5 * (support - u) * (support - u) : 0;
 }
 
-/// Weight of a particle at p for the line at x across one axis. Behind the sides of the domain its mirror images stand for the liquid that
-/// the walls keep out.
+/// Weight of a particle at p for the line at x across one axis. Mirror images behind the sides of the domain represent the liquid that the
+/// walls exclude.
 real weight_across(real p, real x, real lower, real upper, real h) {
     return spline((p - x) / h) + spline((2 * lower - p - x) / h) + spline((2 * upper - p - x) / h);
 }
@@ -41,7 +41,7 @@ real weight_of(const FieldSet& fields, const std::vector<std::span<const real>>&
     return weight;
 }
 
-/// Density of the particles' volumes along the line; sample i stands at lower + i h / per_spacing.
+/// Density of the particles' volumes along the line; sample i lies at lower + i h / per_spacing.
 std::vector<real> profile(const FieldSet& fields, const Vec<3>& x, int axis) {
     const auto& position = fields.find(particle_set_name, "position")->data;
     const GridView& grid = fields.grid;
@@ -60,8 +60,8 @@ std::vector<real> profile(const FieldSet& fields, const Vec<3>& x, int axis) {
     return density;
 }
 
-/// Less than this many particles on a line, in the two spacings below a surface, are no liquid: what one shows of itself half a spacing
-/// from the line along each axis across, but for the ninth of its spline that reaches above the surface.
+/// Minimum count of particles on a line, within two spacings below a surface, that are liquid. It is the weight of one particle half a
+/// spacing from the line along each other axis, without the ninth of its spline above the surface.
 real least_count(int dim) { return 0.88 * std::pow(0.5, dim - 1); }
 
 }  // namespace
@@ -75,14 +75,14 @@ real highest_of_particles(const FieldSet& fields, const Vec<3>& x, int axis) {
         if (!(*here > 0)) continue;
         const real half = 0.5 * std::min(1.0, *std::max_element(lowest, here + 1));
         if (*here < half || std::accumulate(lowest, here + 1, 0.0) < per_spacing * least_count(fields.grid.dim)) continue;
-        const real beyond = here + 1 == density.end() ? half : *(here + 1);  // at the domain's end the liquid ends
+        const real beyond = here + 1 == density.end() ? half : *(here + 1);  // the liquid ends at the end of the domain
         const real part = *here > half && beyond < half ? (*here - half) / (*here - beyond) : 0;
         return fields.grid.origin[along] + step * (static_cast<real>(i) + part);
     }
     return fields.grid.origin[along];
 }
 
-/// Each particle near the line has its own length, by the same weights.
+/// Sums the lengths of the particles near the line, with the same weights.
 real depth_of_particles(const FieldSet& fields, const Vec<3>& x, int axis) {
     const auto& position = fields.find(particle_set_name, "position")->data;
     real depth = 0;

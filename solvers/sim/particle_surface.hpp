@@ -1,4 +1,4 @@
-// The free surface of particles on a line along an axis: where the density of their own volumes falls to half of what it is below.
+// The free surface of particles on a line along an axis: where the density of their volumes falls to half of its value below.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
@@ -9,7 +9,7 @@ namespace weir::sim {
 /// none is near the line.
 real highest_of_particles(const FieldSet& fields, const Vec<3>& x, int axis);
 
-/// How much of the line lies in their liquid [m].
+/// Length of the line inside the particles' liquid [m].
 real depth_of_particles(const FieldSet& fields, const Vec<3>& x, int axis);
 
 }  // namespace weir::sim

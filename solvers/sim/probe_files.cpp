@@ -16,7 +16,7 @@ std::string exact(real value) {
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// Positions stand in comment lines above the head: plots skip them, and a reader needs no second file.
+/// Positions are comment lines above the header: plots skip them, and no second file is needed.
 std::string head(const ProbeSeries& probe) {
     std::string text = "# probe " + probe.name + ", kind " + probe.kind + '\n';
     for (std::size_t i = 0; i < probe.positions.size(); ++i) {
@@ -45,7 +45,8 @@ void append(const std::filesystem::path& path, const std::string& text, std::ios
     if (!file.flush()) throw OutputError("cannot write " + path.string() + ": " + std::strerror(errno));
 }
 
-/// The bytes of the head and so many rows; 0 where the file is of another probe or has fewer. A row that a killed run left half is none.
+/// Bytes of the header and `count` rows; 0 where the file belongs to another probe or has fewer rows. An incomplete last row of a killed
+/// run does not count.
 std::uintmax_t bytes_of_rows(const std::filesystem::path& path, const std::string& head, std::int64_t count) {
     std::ifstream file(path, std::ios::binary);
     std::string there(head.size(), '\0');
@@ -58,7 +59,7 @@ std::uintmax_t bytes_of_rows(const std::filesystem::path& path, const std::strin
 
 }  // namespace
 
-/// Whether the file has the rows that the series has released, and no other.
+/// Returns whether the file has exactly the rows that the series has released.
 bool ProbeFiles::keeps_released(const ProbeSeries& probe, const std::filesystem::path& earlier) const {
     if (probe.released == 0) return false;
     const auto own = file_of(probe), other = earlier / own.filename();

@@ -1,4 +1,4 @@
-// Probes as CSV: <folder>/<name>.csv, a head of column names with units, then one row a sample, numbers in full precision.
+// Probes as CSV: <folder>/<name>.csv, a header of column names with units, then one row per sample, numbers in full precision.
 #pragma once
 #include "sim/probes.hpp"
 
@@ -11,10 +11,10 @@ namespace weir::sim {
 class ProbeFiles {
 public:
     explicit ProbeFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    /// New files. Of a run that goes on, rows that the series have released are kept from the file that is there, or taken from the one in
-    /// folder `earlier`; where neither has them, the new file begins with the rows after them. Throws OutputError.
+    /// Creates the files. For a continued run, released rows of the series are kept from the present file, or copied from the file in
+    /// folder `earlier`. Where neither has them, the new file begins with the rows after them. Throws OutputError.
     void begin(const std::vector<ProbeSeries>& probes, const std::filesystem::path& earlier = {});
-    /// Appends what was measured since the last call. Throws OutputError.
+    /// Appends the samples since the last call. Throws OutputError.
     void update(const std::vector<ProbeSeries>& probes);
 
 private:
@@ -22,7 +22,7 @@ private:
     bool keeps_released(const ProbeSeries& probe, const std::filesystem::path& earlier) const;
 
     std::filesystem::path folder_;
-    std::vector<std::int64_t> written_;  // rows of each probe
+    std::vector<std::int64_t> written_;  // number of rows of each probe
 };
 
 }  // namespace weir::sim

@@ -24,17 +24,17 @@ std::string component_name(const std::string& field, int components, int compone
     return components == 1 ? field : field + '_' + "xyz"[component];
 }
 
-/// The values of a cell field, added one after another.
+/// The sum of a cell field's values, in order.
 real sum_of(const FieldSet& fields, const FieldView& view, std::size_t component) {
     return added_by_owners(fields, view, real{0}, [&](real& sum) {
         for (const real value : own_values(fields, view, component)) sum += value;
     });
 }
 
-/// A point inside a solid, and not on its surface.
+/// Returns whether a point lies inside a solid, not on its surface.
 bool is_inside(real distance, const GridView& grid) { return distance < -1e-9 * grid.spacing[0]; }
 
-/// A grid field at fixed points; not a number where a solid covers one.
+/// A grid field at fixed points; NaN where a solid covers a point.
 class Points final : public ProbeKind {
 public:
     Points(const FieldView& field, std::vector<Vec<3>> points, const scene::Scene& scene, std::string name)
@@ -90,14 +90,14 @@ private:
     FieldView field_;
     std::vector<Vec<3>> points_;
     std::string name_;
-    std::unique_ptr<SolidsAround> solids_;  // none: the scene has no solids
+    std::unique_ptr<SolidsAround> solids_;  // nullptr: the scene has no solids
     mutable std::string remark_;
     mutable bool told_ = false;
     int components_ = field_.components();
 };
 
-/// On a line along an axis (y, which notation.md calls up, where the scene says none): the height of the uppermost liquid above the
-/// domain's lower side, be it a drop, and the depth, how much of the line lies in liquid.
+/// On a line along an axis (by default y, the upward axis of notation.md): the height of the uppermost liquid, including drops, above the
+/// domain's lower side; and the depth, the length of the line inside liquid.
 class Gauge final : public ProbeKind {
 public:
     Gauge(const Vec<3>& at, int axis) : at_(at), axis_(axis) {}
@@ -132,7 +132,7 @@ private:
     std::unique_ptr<SolidsAround> solids_;
 };
 
-/// An integral that the solver states, or a cell field summed over the cells times their volume.
+/// An integral reported by the solver, or a cell field integrated over the domain.
 class IntegralProbe final : public ProbeKind {
 public:
     IntegralProbe(std::string name, std::vector<std::string> columns) : name_(std::move(name)), columns_(std::move(columns)) {}
@@ -151,7 +151,7 @@ private:
     std::vector<std::string> columns_;
 };
 
-/// Pressure on the nearest wall or solid, at its point nearest to a place (wall_fit.hpp).
+/// Pressure on the nearest wall or solid, at its point closest to the given position (wall_fit.hpp).
 template <int D>
 class WallPressure final : public ProbeKind {
 public:
@@ -171,7 +171,7 @@ private:
     Vec<D> at_;
 };
 
-/// All that a solver shows of one body.
+/// All quantities that a solver reports of one body.
 class BodyTrack final : public ProbeKind {
 public:
     BodyTrack(const FieldSet& fields, std::size_t body) : body_(body) {
@@ -195,7 +195,7 @@ private:
     std::vector<std::string> names_, columns_;
 };
 
-/// The checks and the makers, one function a kind.
+/// Checks and factories, one function per kind.
 class Maker {
 public:
     Maker(const scene::Scene& scene, std::size_t number, const Solver& solver)

@@ -7,7 +7,7 @@
 
 namespace weir::sim {
 
-/// The probe that entry `number` of the scene's "probes" describes. Refuses (BadScene) what the solver cannot answer.
+/// The probe described by entry `number` of the scene's "probes". Throws BadScene where the solver does not support it.
 std::unique_ptr<ProbeKind> make_probe(const scene::Scene& scene, std::size_t number, const Solver& solver);
 
 }  // namespace weir::sim

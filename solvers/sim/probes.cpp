@@ -28,7 +28,7 @@ namespace weir::sim {
 
 namespace {
 
-/// More rows than anybody reads, and than memory holds of many columns: an interval that was meant otherwise.
+/// More rows are unreadable and, with many columns, exceed memory: the interval is probably a mistake.
 constexpr real most_rows = 1e7;
 
 void require_rows(const scene::Scene& scene, std::size_t probe, real every) {
@@ -40,7 +40,7 @@ void require_rows(const scene::Scene& scene, std::size_t probe, real every) {
 
 bool is_at(real t, real asked) { return std::abs(t - asked) <= same_time(asked); }
 
-/// Between the values at the beginning and at the end of a step; s = 0 is the beginning.
+/// Linear interpolation between the values at the beginning (s = 0) and at the end of a step.
 std::vector<real> between(const std::vector<real>& begin, const std::vector<real>& end, real s) {
     std::vector<real> row(end.size());
     for (std::size_t c = 0; c < row.size(); ++c) row[c] = (1 - s) * begin[c] + s * end[c];
@@ -68,13 +68,13 @@ Probes::Probes(const scene::Scene& scene, const Solver& solver) {
     }
 }
 
-/// The fields are asked for once, by the first probe that needs them.
+/// The fields are fetched once, by the first probe that needs them.
 std::vector<real> Probes::measured(std::size_t probe, const Solver& solver, FieldSet& fields) const {
     if (fields.fields.empty()) fields = solver.fields();
     return kinds_[probe]->measure(solver, fields);
 }
 
-/// A probe that a continued run has and the first run had not: its first row is of now, where now is one of its times.
+/// A probe that a continued run adds: its first row is at the present time, where this is one of its times.
 void Probes::join(std::size_t probe, const Solver& solver, FieldSet& fields) {
     Clock& clock = clocks_[probe];
     clock.joins = false;

@@ -1,4 +1,4 @@
-// Every solver of the program, by name: one line each in registry.cpp. Reader, messages, describe, run and validate find it here.
+// Registry of all solvers by name: one line each in registry.cpp. The reader, messages, describe, run and validate use it.
 #pragma once
 #include "scene/solver_kind.hpp"
 
@@ -9,12 +9,12 @@
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry();
-/// Their schemas, as the scene reader wants them.
+/// Their schemas, for the scene reader.
 const std::vector<scene::SolverSchema>& schemas();
 /// The solver of that name, which a checked scene always has; std::logic_error otherwise.
 const scene::SolverKind& kind_named(std::string_view name, const std::vector<scene::SolverKind>& kinds = registry());
 
-/// Refuses, by its key, what cannot run over so many ranks; see SolverKind::over_ranks.
+/// Rejects, by its key, what does not run on this number of ranks; see SolverKind::over_ranks.
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
 
 }  // namespace weir::sim

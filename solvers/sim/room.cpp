@@ -16,11 +16,11 @@ namespace weir::sim {
 
 namespace {
 
-/// Of the liquid: what volumes by samples, and lattices of particles, may be wrong by.
+/// Relative tolerance: the error of sampled volumes and particle lattices.
 constexpr real told_apart = 0.02;
 constexpr int moments = 64;
 
-/// Places all over the domain, and how much of the volume that each stands for is behind a surface.
+/// Sample points of the whole domain, and the volume fraction of each that lies inside a surface.
 template <int D>
 struct Samples {
     Index<D> count{};
@@ -30,7 +30,7 @@ struct Samples {
         const Vec<D> size = scene.vec<D>("grid.size");
         for (int a = 0; a < D; ++a) count[a] = std::min(cells[a], D == 2 ? 128 : 40), step[a] = size[a] / count[a];
     }
-    /// f of each place.
+    /// Integral of f over the sample points.
     template <class F>
     real volume(F&& f) const {
         real one = 1;

@@ -1,11 +1,11 @@
-// Whether solids that move leave room for the liquid of a closed domain: more liquid than room is refused before the run, as inflow without
-// outflow is. What solids shut in a part of the domain shows in the run.
+// Checks that moving solids leave enough volume for the liquid of a closed domain. Too little volume is rejected before the run, as inflow
+// without outflow is. Liquid enclosed by solids in a part of the domain is detected only during the run.
 #pragma once
 #include "scene/scene.hpp"
 
 namespace weir::sim {
 
-/// Throws BadScene where the liquid of a scene has less room at some time of the run than its own volume.
+/// Throws BadScene where the free volume at some time of the run is smaller than the volume of the liquid.
 void require_room(const scene::Scene& scene);
 
 }  // namespace weir::sim

@@ -1,4 +1,4 @@
-// Which run a checkpoint and the files of a folder belong to.
+// Identifies the run that a checkpoint and the files of a folder belong to.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "scene/scene.hpp"
@@ -8,14 +8,14 @@
 
 namespace weir::sim {
 
-/// A digest of the scene as understood: runs of the same scene have the same id, whatever their threads and ranks, as their files have the
-/// same bytes.
+/// A digest of the parsed scene. Runs of the same scene have the same id for any number of threads and ranks, as their files have the same
+/// bytes.
 std::string run_id(const scene::Scene& scene);
-/// Of a run of this scene that begins where run `continued` was after so many steps, in a folder of its own. That run itself where the
-/// scene is its scene.
+/// The id of a run of this scene that continues run `continued` after `steps` steps in a folder of its own. Returns `continued` where the
+/// scene is the same.
 std::string branch_id(const scene::Scene& scene, const std::string& continued, std::int64_t steps);
 void put_run_id(Checkpoint& to, const std::string& run);
-/// The run that wrote the checkpoint. One that no run wrote (Simulation::save) is of the run of its scene. Throws BadInput.
+/// The run that wrote the checkpoint. A checkpoint that no run wrote (Simulation::save) belongs to the run of its scene. Throws BadInput.
 std::string run_id_of(const Checkpoint& checkpoint);
 
 }  // namespace weir::sim

@@ -29,7 +29,7 @@ Lattice Lattice::of(const FieldView& field, const GridView& grid, int component)
 
 namespace {
 
-/// Multilinear; `beyond` [cells]: how far beyond the outermost samples they are continued, each row by its last two.
+/// Multilinear interpolation; `beyond` [cells]: distance of linear extrapolation past the outermost samples.
 real multilinear(std::span<const real> values, const Lattice& lattice, const Vec<3>& x, real beyond) {
     std::array<int, 3> lower{}, upper{};
     std::array<real, 3> s{};

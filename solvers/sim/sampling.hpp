@@ -1,4 +1,4 @@
-// Values of cell and face fields at points: multilinear between the nearest samples, and the nearest one beyond the outermost.
+// Values of cell and face fields at points: multilinear interpolation; constant extrapolation past the outermost samples.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
@@ -8,7 +8,7 @@
 
 namespace weir::sim {
 
-/// Where the samples of one component stand: n along each axis, the first at `first`. One sample along z in 2D.
+/// The sample positions of one component: n along each axis, the first at `first`. One sample along z in 2D.
 struct Lattice {
     std::array<int, 3> n{1, 1, 1};
     Vec<3> first{};
@@ -28,11 +28,11 @@ struct Lattice {
     }
 };
 
-/// The value at x of samples on a lattice.
+/// Interpolates the samples of a lattice at x.
 real sample(std::span<const real> values, const Lattice& lattice, const Vec<3>& x);
-/// The same, but linear beyond the outermost samples too: from them to the walls, half a cell away.
+/// The same, with linear extrapolation past the outermost samples: to the walls, half a cell away.
 real sample_to_wall(std::span<const real> values, const Lattice& lattice, const Vec<3>& x);
-/// The first of the two planes across an axis from which that is found.
+/// The lower one of the two planes across an axis that are interpolated.
 int plane_below(const Lattice& lattice, int axis, const Vec<3>& x);
 /// One component of a cell or face field at x.
 real sample(const FieldView& field, const GridView& grid, int component, const Vec<3>& x);

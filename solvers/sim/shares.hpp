@@ -1,4 +1,4 @@
-// What each of several ranks has of a scene.
+// The partition of a scene among several ranks.
 #pragma once
 #include "core/halo.hpp"
 #include "sim/registry.hpp"
@@ -8,11 +8,11 @@
 
 namespace weir::sim {
 
-/// What each of so many ranks has of a scene that begins, in words and as solvers are asked for it.
+/// The part of each rank at the start of a scene, as text and as an argument for solvers.
 struct Shares {
     scene::Shared shared = scene::Shared::by_planes;
-    Cut cut{};  // of planes; none for one rank, where particles are shared (their cut moves with them), and where every rank does all
-    std::string by_all{};  // what of a step every rank does alone
+    Cut cut{};             // of planes; empty for one rank, for shared particles (their partition moves with them), and for replicated work
+    std::string by_all{};  // passes of a step with replicated work
     bool nothing_shared() const { return shared == scene::Shared::by_planes && cut.empty(); }
 };
 Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());

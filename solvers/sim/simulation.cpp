@@ -27,14 +27,14 @@ namespace weir {
 
 namespace {
 
-/// A step may be this much longer than asked for, so that a sum of rounded steps leaves no sliver before a frame: n steps round n times,
-/// by n ε t / 2 at most, which is n² ε / 2 of a step; 1e-6 is beyond what a hundred thousand leave.
+/// A step may exceed its limit by this factor, so that a sum of rounded steps leaves no sliver before a frame. n steps round n times, by at
+/// most n ε t / 2, which is n² ε / 2 of a step; 1e-6 covers a hundred thousand steps.
 constexpr real stretch = 1 + 1e-6;
 
-/// The end that a run has reached, in a checkpoint of the state before the steps that were shortened for it.
+/// Checkpoint block with the end that a run reached; the state is that before the steps that were shortened for it.
 constexpr const char* ended_at = "sim.ended";
 
-/// Where the cells lie, in a checkpoint: a run goes on in its own domain.
+/// Checkpoint block with the domain: a run continues in its own domain.
 constexpr const char* domain_block = "sim.domain";
 
 std::vector<real> domain_of(const scene::Scene& scene) {
@@ -48,7 +48,7 @@ std::vector<real> domain_of(const scene::Scene& scene) {
 }
 
 void require_same_domain(const scene::Scene& scene, const Checkpoint& from) {
-    if (!from.has(domain_block)) return;  // a file from before there was one
+    if (!from.has(domain_block)) return;  // files of older versions have no such block
     std::vector<real> there;
     from.get(domain_block, there);
     if (const std::vector<real> here = domain_of(scene); here != there)
@@ -61,16 +61,16 @@ void require_same_domain(const scene::Scene& scene, const Checkpoint& from) {
 
 void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
 
-/// Of steps, frames or changes: none is beyond what a double counts.
+/// A count of steps, frames or changes; all fit in a double.
 std::int64_t get_count(const Checkpoint& from, const std::string& name) {
     const auto count = from.get_value<std::int64_t>(name);
     Checkpoint::require_within(name, count, 0, std::int64_t{1} << 53);
     return count;
 }
 
-/// What was read may be of no run: every number is one, and time has begun.
+/// Checks that a state from a file is valid: every number is finite, and the time is not negative.
 void require_sound(const Simulation& simulation) {
-    constexpr real far = 1e6;  // a program may step on behind the end, but not so far
+    constexpr real far = 1e6;  // an embedding program may step past the end, but not this far
     if (!(simulation.time() >= 0 && simulation.time() <= far * simulation.end_time()))
         throw BadInput(fmt::format("the checkpoint is of no run: its time is {} s, and the end of its scene is {} s",
                                    scene::number_text(simulation.time()), scene::number_text(simulation.end_time())));
@@ -82,7 +82,7 @@ void require_sound(const Simulation& simulation) {
     }
 }
 
-/// The rows of a probe up to now are there, but for some where it has not been looked at since it was added.
+/// Checks that all rows of a probe up to now exist, except those before the probe was added.
 void require_rows(const Checkpoint& from, const scene::Scene& scene, real time) {
     constexpr std::int64_t most_missing = 10000000;
     for (const scene::Table& probe : scene.root().tables("probes")) {
@@ -106,7 +106,7 @@ long cells_of(const scene::Scene& scene) {
     return cells;
 }
 
-/// That a scene of so many cells has work for.
+/// Number of threads that the cells of a scene have enough work for.
 int threads_for(const scene::Scene& scene) {
     const ThreadsWorth worth(cells_of(scene));
     return weir::threads();
@@ -128,7 +128,7 @@ void refuse_ignored(const scene::Scene& scene, const scene::SolverKind& kind) {
     if (auto ignored = scene::ignored_keys(scene, kind.schema); !ignored.empty()) scene.refuse(std::move(ignored));
 }
 
-/// Looked at before anything of it is built.
+/// Checks that run before any part of the scene is built.
 scene::Scene fitting(scene::Scene scene, const std::vector<scene::SolverKind>& kinds) {
     geometry::require_meshes(scene);
     sim::require_memory(scene, kinds);
@@ -146,7 +146,7 @@ void check_output_fields(const scene::Scene& scene, const FieldSet& fields) {
                          scene::known(known));
 }
 
-/// Nobody has asked for anything yet: what is not asked for from here on would be ignored.
+/// Resets the record of keys that were read: keys not read from here on are reported as ignored.
 scene::Scene unread(scene::Scene scene) {
     scene.forget_reading();
     return scene;
@@ -193,8 +193,8 @@ void Simulation::read_times() {
     guard_ = scene_.text("time.guard") != "off";
 }
 
-/// The solver is made anew of the changed scene and given the state, as a restart does: nothing in a solver needs to know of changes, and
-/// what it derives from its scene fits the scene.
+/// The solver is rebuilt from the changed scene and gets the old state, as in a restart. Solvers need no code for changes, and derived data
+/// match the scene.
 void Simulation::steer(const scene::Override& change) {
     refuse_while_edited("a key changes");
     scene::Scene changed = unread(scene_.steered(change, {kind_.schema}));
@@ -210,7 +210,7 @@ void Simulation::steer(const scene::Override& change) {
     read_times();
 }
 
-/// By one that has the same state.
+/// Replaces the solver by one that has the same state.
 void Simulation::replace(std::unique_ptr<Solver> solver) {
     if (const Hand* hand = solver_->hand()) solver->hand()->keys = hand->keys;
     solver->passes().reset();
@@ -218,13 +218,13 @@ void Simulation::replace(std::unique_ptr<Solver> solver) {
     solver_ = std::move(solver);
 }
 
-/// Empty where the present one will do.
+/// Empty where the present partition is good enough.
 Cut Simulation::better_cut(const Checkpoint& state) const {
     const Cut& present = shares_->cut;
     if (present.empty() || !kind_.work_of_planes) return {};
-    constexpr double worth = 0.9;  // a solver is made anew for it, which takes as long as some steps
+    constexpr double worth = 0.9;  // the solver is rebuilt for it, which takes as long as some steps
     const auto work = kind_.work_of_planes(scene_, &state);
-    if (static_cast<int>(work.size()) != present.planes()) return {};  // of another scene, which the solver refuses
+    if (static_cast<int>(work.size()) != present.planes()) return {};  // of another scene, which the solver rejects
     Cut cut = cut_by_work(work, present.ranks());
     const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
     return most(cut) < worth * most(present) ? cut : Cut{};
@@ -260,12 +260,12 @@ void Simulation::set_at(real time, const scene::Override& change) {
     if (!(time >= this->time() && time < infinity))
         throw BadInput(fmt::format("{} cannot change at {} s: the run is at {} s", change.key, scene::number_text(time),
                                    scene::number_text(this->time())));
-    scene_.steered(change, {kind_.schema});  // refuses what it would then
+    scene_.steered(change, {kind_.schema});  // throws for changes that are not allowed
     const auto later = [](real t, const Change& other) { return t < other.time; };
     changes_.insert(std::upper_bound(changes_.begin() + changed_, changes_.end(), time, later), {time, change});
 }
 
-/// Those that are due.
+/// Applies the changes that are due.
 void Simulation::meet_changes() {
     for (; static_cast<std::size_t>(changed_) < changes_.size(); ++changed_) {
         const auto& next = changes_[static_cast<std::size_t>(changed_)];
@@ -281,7 +281,7 @@ StepReport Simulation::step_until(real t) {
     refuse_while_edited("the simulation steps");
     meet_changes();
     const StepReport report = step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
-    for (std::size_t i = 0; i < observers_.size(); ++i) {  // one may add another
+    for (std::size_t i = 0; i < observers_.size(); ++i) {  // an observer may add another
         const std::int64_t every = observers_[i].every;
         if (every == 0 ? !at_frame_ : steps_ % every != 0) continue;
         const Observer observer = observers_[i].observer;
@@ -324,7 +324,7 @@ StepReport Simulation::step_towards(real target) {
     return report;
 }
 
-/// In parallel (MPI) a step waits for other processes, and its time says nothing about threads.
+/// In parallel (MPI) a step waits for other processes; its time then says nothing about threads.
 void Simulation::choose_threads(const sim::StepTime& step) {
     if (slabs().several()) return;
     threads_.add(step);
@@ -338,7 +338,7 @@ void Simulation::measure() {
 
 bool Simulation::reached(real t) const { return time() >= t - sim::same_time(t); }
 
-/// What steps are shortened for: the end or a change, whichever comes first, and a frame where the scene says so.
+/// The time for which steps are shortened: the end or the next change, whichever comes first, and frames with output.at = "exact".
 real Simulation::next_target() const {
     real target = meets_frames_ ? next_frame() : end_;
     for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
@@ -346,7 +346,7 @@ real Simulation::next_target() const {
     return target;
 }
 
-/// The same as if the scene had no end.
+/// The same without the end of the scene.
 real Simulation::next_target_but_end() const {
     real target = meets_frames_ && every_ < infinity ? sim::asked_time(every_, sim::first_after(every_, time())) : infinity;
     for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
@@ -360,7 +360,7 @@ bool Simulation::shortens_for_end() const {
     return within_limit(wanted_dt(next_target()), stable) != within_limit(wanted_dt(next_target_but_end()), stable);
 }
 
-/// The next frame, or the end where that comes first. A frame that rounding puts just before the end is the end.
+/// The next frame, or the end where that comes first. A frame that rounding puts just before the end equals the end.
 real Simulation::next_frame() const {
     if (every_ == infinity || finished()) return end_;
     const real frame = sim::asked_time(every_, sim::first_after(every_, time()));
@@ -369,7 +369,7 @@ real Simulation::next_frame() const {
 
 real Simulation::uncut_dt() const { return fixed_dt_ > 0 ? fixed_dt_ : std::min(solver_->advised_dt(), max_dt_); }
 
-/// A step that has fallen to a millionth of the longest one and to a billionth of the time between frames ends a run that would never end.
+/// Such a step makes no progress: less than a millionth of the longest step and a billionth of the frame interval.
 bool Simulation::hopeless(real dt) const { return dt < 1e-6 * longest_dt_ && dt < 1e-9 * std::min(end_, every_); }
 
 void Simulation::refuse_step(const char* which, real dt) const {
@@ -388,7 +388,7 @@ real Simulation::wanted_dt(real target) const {
     return !fixed && 2 * dt > remaining ? remaining / 2 : dt;  // two equal steps rather than one step and a sliver
 }
 
-/// The step itself, bit for bit, where it is stable; else the longest of its equal parts that are.
+/// The step itself, bit for bit, where it is stable; otherwise the largest equal part of it that is stable.
 real Simulation::within_limit(real dt, const StepLimit& limit) const {
     if (!(dt > limit.dt * stretch)) return dt;
     const real part = dt / std::ceil(dt / limit.dt);
@@ -396,7 +396,7 @@ real Simulation::within_limit(real dt, const StepLimit& limit) const {
     return part;
 }
 
-/// Of each kind the first: what the same words say with other numbers has been said.
+/// Reports only the first concern of each kind; texts that differ only in their numbers are of the same kind.
 void Simulation::tell_concern(const std::string& concern) {
     const std::string kind = concern.substr(0, concern.find_first_of("0123456789"));
     if (std::find(concerns_.begin(), concerns_.end(), kind) != concerns_.end()) return;
@@ -428,8 +428,8 @@ void Simulation::save(Checkpoint& to) const {
     solver_->save(to);
 }
 
-/// The scene as it stood when the checkpoint was made. One that was read from the checkpoint has the changes in it, and perhaps others
-/// behind them that the user wants.
+/// Restores the scene at the time of the checkpoint. A scene that was read from the checkpoint already contains its changes, and possibly
+/// later overrides by the user.
 void Simulation::resume_changes(const Checkpoint& from) {
     const auto met = from.has("sim.changed") ? get_count(from, "sim.changed") : 0;
     for (; changed_ < met && static_cast<std::size_t>(changed_) < changes_.size(); ++changed_) {
@@ -461,7 +461,7 @@ void Simulation::restore(const Checkpoint& from) {
         throw;
     } catch (const std::bad_alloc&) {
         throw;
-    } catch (const std::exception& error) {  // a size that no vector has, too
+    } catch (const std::exception& error) {  // also for invalid vector sizes
         throw BadInput(std::string("the checkpoint does not fit the scene: ") + error.what());
     }
 }
@@ -470,7 +470,7 @@ void put_ended(Checkpoint& to, real end) { to.put_value(ended_at, end); }
 
 namespace {
 
-/// key=value, each with a zero at its end.
+/// key=value pairs, each terminated by a zero byte.
 std::vector<scene::Override> get_overrides(const Checkpoint& from) {
     std::vector<scene::Override> overrides;
     const std::string lines = get_text(from, "sim.overrides");

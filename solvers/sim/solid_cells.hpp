@@ -1,4 +1,4 @@
-// Which cells of a grid the solids of a scene take, for those who draw its fields.
+// Cells of a grid covered by the solids of a scene, for drawing its fields.
 #pragma once
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
@@ -9,7 +9,7 @@
 
 namespace weir::sim {
 
-/// 1 for each of the cells [begin, end), which are whole planes, whose centre lies in a solid, or in a body, at a time, x fastest; no
+/// 1 for each of the cells [begin, end), which must be whole planes, whose centre lies in a solid or body at time t; x fastest. An empty
 /// function where the scene has neither.
 std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t, std::size_t begin, std::size_t end)> solid_cells(
     const scene::Scene& scene);

@@ -1,4 +1,4 @@
-// Where the solids and bodies of a scene are, for those who measure beside them.
+// Distance to the solids and bodies of a scene, for measurements near them.
 #pragma once
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
@@ -10,15 +10,15 @@ namespace weir::sim {
 class SolidsAround {
 public:
     virtual ~SolidsAround() = default;
-    /// Where they are at time t [s]; bodies where the fields show them.
+    /// Moves them to time t [s]; bodies where the fields contain them.
     virtual void place(const FieldSet& fields, real t) = 0;
-    /// To the nearest of them [m], negative inside.
+    /// Signed distance to the nearest of them [m], negative inside.
     virtual real distance(const Vec<3>& x) const = 0;
-    /// The same to solids that never move.
+    /// The same to solids without motion.
     virtual real distance_to_still(const Vec<3>& x) const = 0;
 };
 
-/// Nothing where the scene has neither solids nor bodies.
+/// nullptr where the scene has neither solids nor bodies.
 std::unique_ptr<SolidsAround> solids_around(const scene::Scene& scene);
 
 }  // namespace weir::sim

@@ -11,8 +11,8 @@ namespace weir::sim {
 
 namespace {
 
-/// The uppermost zero of phi(i), i = end-1 .. begin of n, as a fractional index; -1 where all are air, or liquid reaches beyond `end`.
-/// Beyond the outermost centres nothing is known, so a liquid outermost cell is full.
+/// The uppermost zero of phi(i), i = end-1 .. begin of n, as a fractional index; -1 where all cells are air, or where the liquid extends
+/// beyond `end`. There are no values beyond the outermost centres, so a liquid outermost cell counts as full.
 template <class Phi>
 real uppermost_zero(int begin, int end, int n, const Phi& phi) {
     for (int i = end - 1; i >= begin; --i) {
@@ -29,7 +29,7 @@ real coordinate(const Lattice& lattice, int axis, real index) {
     return lattice.first[axis] + index * lattice.spacing[static_cast<std::size_t>(axis)];
 }
 
-/// A number that is known where x stands; where each rank holds its own planes alone, all get it from the owner of the place.
+/// A number computed by the owner of x; with distributed storage all ranks receive it.
 template <class F>
 real known_at(const FieldSet& fields, const Vec<3>& x, F&& number) {
     if (!fields.cut) return number();
@@ -37,14 +37,14 @@ real known_at(const FieldSet& fields, const Vec<3>& x, F&& number) {
     return of_owners({owner == slabs().rank() ? number() : 0}, {owner})[0];
 }
 
-/// Length of [i, i + 1] on which the line from a to b is negative.
+/// Length of [i, i + 1] on which the linear interpolant from a to b is negative.
 real negative_part(real a, real b) {
     if (a < 0 && b < 0) return 1;
     if (!(a < 0) && !(b < 0)) return 0;
     return a < 0 ? a / (a - b) : b / (b - a);
 }
 
-/// φ at the centres of the cells that the line through x meets; where each rank holds its own planes alone, all get what the owners know.
+/// φ at the centres of the cells on the line through x; with distributed storage all ranks receive the owners' values.
 class Along {
 public:
     Along(const FieldSet& fields, const Vec<3>& x, int axis)
@@ -75,7 +75,7 @@ private:
     std::vector<real> known_;
 };
 
-/// The cells whose φ this rank is to look at: its own where each holds its own planes alone, else all.
+/// The cells whose φ this rank reads: its own with distributed storage, otherwise all.
 struct OwnCells {
     std::array<int, 3> begin{}, end;
     explicit OwnCells(const FieldSet& fields) : end(Lattice::of_cells(fields.grid).n) {
@@ -85,7 +85,7 @@ struct OwnCells {
     }
 };
 
-/// Of lines through cell centres.
+/// Maximum over the lines through cell centres.
 real front_of_level_set(const FieldSet& fields, std::span<const real> phi, int axis) {
     const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
     const Lattice lattice = Lattice::of_cells(fields.grid);
@@ -104,7 +104,7 @@ real front_of_level_set(const FieldSet& fields, std::span<const real> phi, int a
     return largest_of_owners(fields, farthest);
 }
 
-/// The farthest particle and its own volume, half a spacing, as far as there is room for it.
+/// The farthest particle plus its radius, half a spacing, limited by the distance to solids.
 real front_of_particles(const FieldSet& fields, int axis, const Room& room) {
     const auto& position = fields.find(particle_set_name, "position")->data;
     const auto a = static_cast<std::size_t>(axis);
@@ -127,7 +127,7 @@ struct WaterColumns {
 };
 WaterColumns columns_of(const FieldSet& fields) { return {fields.find(column_depth_name), fields.find(surface_height_name)}; }
 
-/// f(I) for the columns that this rank is to look at.
+/// f(I) for the columns that this rank reads.
 template <class F>
 void for_each_own_column(const FieldSet& fields, F&& f) {
     const OwnCells cells(fields);
@@ -136,14 +136,14 @@ void for_each_own_column(const FieldSet& fields, F&& f) {
         for (I[0] = cells.begin[0]; I[0] < cells.end[0]; ++I[0]) f(I);
 }
 
-/// Of those columns, and `least`.
+/// Maximum of those columns and of `least`.
 real largest(const FieldSet& fields, std::span<const real> values, real least) {
     const Lattice lattice = Lattice::of_cells(fields.grid);
     for_each_own_column(fields, [&](const std::array<int, 3>& I) { least = std::max(least, values[lattice.linear(I)]); });
     return largest_of_owners(fields, least);
 }
 
-/// Films thinner than this part of the deepest water are no front: a scheme that keeps depths positive lets traces run ahead.
+/// Films thinner than this part of the deepest water are not the front: positivity-preserving schemes spread traces ahead of it.
 constexpr real film = 1e-3;
 
 real front_of_columns(const FieldSet& fields, const WaterColumns& water, int axis) {
@@ -202,7 +202,7 @@ real front(const FieldSet& fields, int axis, const Room& room) {
     if (const WaterColumns water = columns_of(fields)) return front_of_columns(fields, water, axis);
     const auto a = static_cast<std::size_t>(axis);
     real farthest = fields.grid.origin[a];
-    if (const FieldView* height = fields.find("", surface_height_name)) {  // there is liquid below every point
+    if (const FieldView* height = fields.find("", surface_height_name)) {  // a height field: there is liquid below every point
         if (axis != 1) return upper_corner(fields.grid)[axis];
         return largest(fields, height->data[0], farthest);
     }

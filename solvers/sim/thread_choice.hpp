@@ -1,11 +1,11 @@
-// How many threads the steps of a simulation use, chosen by measured time. Where other processes are busy, threads that wait for one
-// another take longer than one thread alone.
+// Chooses the number of threads for the steps of a simulation by measured time. Where other processes are busy, threads that wait for one
+// another may take longer than a single thread.
 #pragma once
 #include <string>
 
 namespace weir::sim {
 
-/// While it lives, every ThreadChoice keeps its largest count: for programs that measure the time of steps.
+/// Scope in which every ThreadChoice keeps its largest count: for programs that measure the time of steps.
 class NoThreadTrials {
 public:
     NoThreadTrials();
@@ -36,27 +36,27 @@ private:
 /// since. Results do not depend on the number of threads; only time does.
 class ThreadChoice {
 public:
-    /// `most`: the threads that the work is enough for.
+    /// `most`: the number of threads that there is enough work for.
     explicit ThreadChoice(int most) : most_(most), chosen_(most), count_(most) {}
 
     /// Threads for the next step.
     int count() const { return count_; }
-    /// Adds a step that was done on count() threads.
+    /// Adds the time of a step on count() threads.
     void add(const StepTime& step);
-    /// One line for the user, once for each choice: threads have cost time, or have waited longer than they have worked. Else empty.
+    /// One line for the user, once per choice: threads made steps slower, or waited longer than they worked. Otherwise empty.
     std::string warning();
 
     /// Steps on each count in a trial.
     static constexpr int steps_of_trial = 2;
-    /// Ends a trial: times the step of the other count.
+    /// Ratio of step times that ends a trial.
     static constexpr double hopeless = 2;
-    /// Part of a step's present time, for a change.
+    /// A change requires a step time below this part of the present one.
     static constexpr double worth = 0.9;
-    /// Part of the time that trials may cost.
+    /// Fraction of the run time that trials may cost.
     static constexpr double cost_allowed = 0.02;
-    /// Steps between trials, at least.
+    /// Minimum number of steps between trials.
     static constexpr int steps_between = 100;
-    /// Steps that wait, in a row, for a warning.
+    /// Number of consecutive waiting steps that gives a warning.
     static constexpr int steps_of_waiting = 8;
 
 private:

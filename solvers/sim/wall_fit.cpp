@@ -15,9 +15,9 @@ namespace weir::sim {
 namespace {
 
 constexpr real reach = 2.6;    // spacings: two layers of samples along any direction, three along the axes
-constexpr real contact = 1.5;  // spacings: liquid whose nearest sample is farther away does not touch the wall
-constexpr real support = 4.0;  // spacings: from where particles press on the wall
-constexpr real window = 2.0;   // spacings: radius of what is felt as the wall's point
+constexpr real contact = 1.5;  // spacings: liquid does not touch the wall where its nearest sample is farther away
+constexpr real support = 4.0;  // spacings: range within which particles push on the wall
+constexpr real window = 2.0;   // spacings: radius of the averaging window around the wall's point
 
 template <int D>
 struct Sample {
@@ -44,7 +44,7 @@ Wall<D> nearest_wall(const GridView& grid, const geometry::Solids<D>& solids, co
             best.at[a] = side, best.normal[a] = upper ? -1 : 1;
         }
     if (solids.empty() || std::abs(solids.distance(x)) >= nearest) return best;
-    const real eps = 1e-3 * grid.spacing[0];  // of the normal's central differences: small beside a cell, large beside rounding
+    const real eps = 1e-3 * grid.spacing[0];  // for central differences of the normal: small beside a cell, large beside rounding
     const Vec<D> normal = solids.normal(x, eps);
     return {x - solids.distance(x) * normal, normal};
 }
@@ -68,8 +68,8 @@ std::pair<std::array<int, 3>, std::array<int, 3>> box_around(const Lattice& latt
     return {lo, hi};
 }
 
-/// Centres of cells within reach that hold liquid (all do, where there is no level set) and are outside solids. Where each rank holds its
-/// own planes alone, each gives those of its planes: in the order of the ranks that is the order of the grid.
+/// Centres of liquid cells within reach and outside solids (all cells are liquid where there is no level set). With distributed storage
+/// each rank returns those of its planes: in rank order they are in the order of the grid.
 template <int D>
 std::vector<Sample<D>> cells_beside(const FieldSet& fields, const geometry::Solids<D>& solids, const Vec<D>& wall) {
     const GridView& grid = fields.grid;
@@ -96,8 +96,8 @@ std::vector<Sample<D>> cells_beside(const FieldSet& fields, const geometry::Soli
     return fields.cut ? of_all_ranks(list) : list;
 }
 
-/// How much of a particle's pressure reaches the wall's point: along the normal the part of Wendland's kernel (1995, C2, support of four
-/// spacings) that stands in a plane as far away as the wall, along the wall a window of two spacings.
+/// Weight of a particle's pressure at the wall's point. Along the normal: the integral of Wendland's kernel (1995, C2, support of four
+/// spacings) over a plane at the particle's distance. Along the wall: a window of two spacings.
 constexpr real along_normal = support / 42;  // the integral of the first over the distance [spacings]
 constexpr real in_window(real along2) { return along2 < 1 ? (1 - along2) * (1 - along2) : 0; }
 
@@ -109,10 +109,10 @@ real share_of_wall(const Vec<D>& offset, const Vec<D>& normal) {
     return u5 * (1 - 1.5 * u + 4.0 / 7 * u * u) * in_window((dot(offset, offset) - away * away) / (window * window));
 }
 
-/// The window's integral over the wall [spacings^(D-1)], of what has fluid before it: the rest lies behind another wall.
+/// The window's integral over the part of the wall that borders on fluid [spacings^(D-1)]; the rest lies behind another wall.
 template <int D>
 real open_window(const GridView& grid, const geometry::Solids<D>& solids, const Wall<D>& wall) {
-    constexpr int samples = 32;  // along an axis: an edge in between is known to a sixteenth of a spacing
+    constexpr int samples = 32;  // along an axis: an edge in between is located within a sixteenth of a spacing
     Vec<D> first{}, second{};    // along the wall
     if constexpr (D == 2) {
         first = {{-wall.normal[1], wall.normal[0]}};
@@ -140,12 +140,12 @@ real open_window(const GridView& grid, const geometry::Solids<D>& solids, const 
     return sum * step * (D == 3 ? step : 1);
 }
 
-/// The force of the particles on the wall around its point, per area. Where the spray of a wave touches the wall with a few particles,
-/// these push with what they carry, and no gradient among them is carried on to the wall. Behind a wall the pressure goes on as in liquid
-/// at rest (Adami, Hu & Adams 2012, eq. 27).
+/// The force of the particles per area of the wall around its point. Where the spray of a wave touches the wall with a few particles, these
+/// push with their own pressure, without a gradient extrapolated to the wall. Behind a wall the pressure is extrapolated hydrostatically
+/// (Adami, Hu & Adams 2012, eq. 27).
 template <int D>
 real force_of_particles(const FieldSet& fields, const geometry::Solids<D>& solids, const Wall<D>& wall) {
-    // Sums over a lattice differ from the integral by less than this: liquid that fills the space is averaged, and a lattice at rest exact.
+    // Sums over a lattice differ from the integral by less than this: above it sums are normalized, so a lattice at rest is exact.
     constexpr real full = 0.97;
     const auto& position = fields.find(particle_set_name, "position")->data;
     const auto pressure = fields.find(particle_set_name, "pressure")->data[0], density = fields.find(particle_set_name, "density")->data[0];
@@ -156,7 +156,7 @@ real force_of_particles(const FieldSet& fields, const geometry::Solids<D>& solid
             offset[d] = (position[static_cast<std::size_t>(d)][i] - wall.at[d]) / fields.grid.spacing[static_cast<std::size_t>(d)];
         real share = share_of_wall(offset, wall.normal);
         if (share == 0) continue;
-        if (density[i] > 0) share *= fields.rest_density / density[i];  // cells that it takes up
+        if (density[i] > 0) share *= fields.rest_density / density[i];  // the number of cells that it fills
         real carried_on = pressure[i];
         for (int d = 0; d < D; ++d) carried_on -= fields.weight[d] * offset[d] * fields.grid.spacing[static_cast<std::size_t>(d)];
         force += share * carried_on, filled += share;
@@ -165,7 +165,7 @@ real force_of_particles(const FieldSet& fields, const geometry::Solids<D>& solid
     return force / std::max(filled, full * along_normal * open_window(fields.grid, solids, wall));
 }
 
-/// The fit at the wall's point itself; the weighted mean where the samples do not tell a gradient.
+/// The fit at the wall's point itself; the weighted mean where the samples do not determine a gradient.
 template <int D>
 real fit(const std::vector<Sample<D>>& list) {
     Eigen::Matrix<real, D + 1, D + 1> normal = Eigen::Matrix<real, D + 1, D + 1>::Zero();
@@ -177,7 +177,7 @@ real fit(const std::vector<Sample<D>>& list) {
         normal += s.weight * row * row.transpose();
         right += s.weight * s.value * row;
     }
-    // Where samples lie in one plane, or there are few, the gradient across it is not told: a pivot far below the weights in the matrix.
+    // where samples are coplanar or few, the normal gradient is undetermined: a pivot far below the weights in the matrix
     Eigen::FullPivLU<Eigen::Matrix<real, D + 1, D + 1>> lu(normal);
     lu.setThreshold(1e-6);
     return lu.isInvertible() ? lu.solve(right)[0] : right[0] / normal(0, 0);

@@ -115,7 +115,7 @@ void CharacteristicAdvection<D>::semi_lagrangian(const Motion& m) const {
     });
 }
 
-/// q̂ for nodes of this kind, with the values of those that are no unknowns: faces on closed sides; and room for the bounds.
+/// q̂ for nodes of this kind; nodes that are no unknowns (faces on closed sides) keep their values. Also allocates the bounds.
 template <int D>
 void CharacteristicAdvection<D>::prepare(const Motion& m, int planes_of_bounds) {
     if (room_.size() < m.quantities.size()) room_.resize(m.quantities.size());
@@ -141,9 +141,9 @@ typename CharacteristicAdvection<D>::Motion CharacteristicAdvection<D>::Motion::
     return one;
 }
 
-/// Points less than a cell away lie between neighbouring planes: a plane is corrected as soon as the next one is predicted, while what both
-/// read is still in the cache. The first and last plane of each thread's share wait for their neighbours, so that the bounds of three
-/// planes are kept at once: those of the first, and of the last two.
+/// Traced points less than a cell away lie between neighbouring planes: a plane is corrected as soon as the next one is predicted, while
+/// the data are in cache. The first and last plane of each thread's range wait for the neighbouring thread. So the bounds of three planes
+/// are stored per thread: those of the first plane and of the last two.
 template <int D>
 void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
     const int planes = m.quantities[0].source->extent()[D - 1];
@@ -174,7 +174,7 @@ void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
     });
 }
 
-/// q̂ = A(q), and the bounds that the corrected value must keep; those of plane k are stored as plane k - bounds_from.
+/// q̂ = A(q), and the bounds of the corrected value; those of plane k are stored as plane k - bounds_from.
 template <int D>
 void CharacteristicAdvection<D>::predict(const Motion& m, int bounds_from) {
     const int axis = m.nodes.axis;
@@ -217,8 +217,8 @@ void CharacteristicAdvection<D>::correct(const Motion& m, int bounds_from) const
     });
 }
 
-/// The limits are pure functions of their arguments: g++ 12 mishandles variables captured in simd loops (clamped values were wrong by as
-/// much as the correction, found by the rotating_gaussian case).
+/// The limiters are pure functions of their arguments: g++ 12 miscompiles variables captured in simd loops (limited values were wrong by as
+/// much as the correction; the rotating_gaussian case detects it).
 template <int D>
 void CharacteristicAdvection<D>::limit(const Room& room, std::size_t at, const real* before, const real* hat, const real* returned,
                                        int count, real* out) const {

@@ -1,5 +1,5 @@
-// Advection along characteristics: semi-Lagrangian (Stam 1999) and MacCormack's two-pass correction of it (Selle, Fedkiw, Kim, Liu &
-// Rossignac 2008), for a velocity component or a cell field alike.
+// Advection along characteristics: semi-Lagrangian (Stam 1999) and its two-pass MacCormack correction (Selle, Fedkiw, Kim, Liu & Rossignac
+// 2008), for velocity components and cell fields.
 #pragma once
 #include "core/grid.hpp"
 #include "scene/scene.hpp"
@@ -13,7 +13,7 @@ namespace weir::staggered {
 
 enum class Scheme { semi_lagrangian, maccormack, conservative };
 enum class Interpolation { linear, cubic, monotone_cubic };
-/// What MacCormack does with a value outside the nodes that surround the departure point (Selle et al. 2008, section 3.3).
+/// The limiter of MacCormack for values outside the range of the nodes around the departure point (Selle et al. 2008, section 3.3).
 enum class Limiter { clamp, revert, none };
 enum class Flux { central, van_leer };
 
@@ -29,7 +29,7 @@ struct AdvectionOptions {
     static std::vector<scene::Key> keys();
 };
 
-/// A quantity with its ghosts and its conditions on the sides, and where it goes.
+/// A quantity with its ghosts, its boundary conditions, and the destination of its values.
 template <int D>
 struct Carried {
     const Padded<D>* source;
@@ -41,21 +41,21 @@ template <int D>
 class CharacteristicAdvection {
 public:
     explicit CharacteristicAdvection(const AdvectionOptions& options) : options_(options) {}
-    /// q(I) = source(departure point of I) on `nodes`, plus what it is given on arrival; source must have its ghosts.
+    /// q(I) = source(departure point of I) on `nodes`, plus explicit terms at the arrival point; source must have its ghosts filled.
     void advect(const Padded<D>& source, const Boundary<D>& boundary, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
                 Grid<real, D>& q, const PressurePush<D>* on_arrival = nullptr);
-    /// The same of several quantities on the same nodes: their paths are followed once.
+    /// The same for several quantities on the same nodes: trajectories are traced once.
     void advect(const std::vector<Carried<D>>& quantities, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
                 const PressurePush<D>* on_arrival = nullptr);
     std::size_t bytes() const;
 
 private:
-    /// Of what is carried as the i-th of several.
+    /// Scratch of the i-th quantity.
     struct Room {
-        std::array<Padded<D>, D + 1> predicted;  // q̂, one per kind of node: they differ in extent
-        std::vector<real> low, high;             // of the nodes around each departure point, by planes
+        std::array<Padded<D>, D + 1> predicted;  // q̂, one per kind of node, since their extents differ
+        std::vector<real> low, high;             // of the nodes around each departure point, plane by plane
     };
-    /// What moves how far in which time.
+    /// The arguments of one advection: quantities, nodes, trajectories, time step.
     struct Motion {
         const std::vector<Carried<D>>& quantities;
         Nodes<D> nodes;

@@ -11,27 +11,30 @@ using rigid::Twist;
 
 namespace {
 
-/// A body without mass, where nothing else resists either, falls and turns as one of this part of the fluid's mass would: nothing lighter
-/// is told apart from it, as its added mass is some tenths at least; of turning, which free slip may leave without any, somewhat more.
+/// Lower bounds of mass and inertia, relative to those of the displaced fluid: a massless body without other resistance moves as one of
+/// this mass. Its added mass is some tenths at least, so lighter bodies do not differ. The bound of the inertia is larger: with free slip
+/// the added inertia may be zero.
 constexpr real least_mass = 1e-9, least_inertia = 1e-4;
 
-/// Turns of pressure and velocities before the added mass is measured, a solve for each freedom, instead of learnt; and after that.
+/// Limits of the partitioned coupling iterations: before the added mass is measured (one solve per degree of freedom) instead of estimated,
+/// and after that.
 constexpr int most_turns = 12, most_turns_measured = 6;
 
-/// What a turn leaves of the pressure's residual, against the right-hand side and against what the last change of the velocities added.
+/// Stop tolerance of the pressure solve in one coupling iteration, relative to the right-hand side and to the last change of the
+/// velocities.
 constexpr real first_turn = 1e-2, of_change = 1e-2;
 
-/// A change tells the added mass if it is this much larger than the residual that was left before it.
+/// A change updates the estimate of the added mass if it exceeds the previous residual by this factor.
 constexpr real differs = 5;
 
-/// Of the tolerance: what the pressure may leave where it decides alone, so that the change of the velocities after it is of round-off.
+/// Part of the tolerance for the pressure solve where the system is monolithic: the following change of the velocities is then round-off.
 constexpr real alone = 0.9;
 
-/// A body whose added mass is up to this much of its own is part of the pressure's matrix, which it makes as much harder to solve; a
-/// lighter one takes turns with the pressure.
+/// Largest ratio of added mass to mass for bodies in the pressure matrix, whose condition number grows with it. Lighter bodies are coupled
+/// by partitioned iterations.
 constexpr real most_added = 60;
 
-/// Of a cell: how deep a body may dive into liquid that has not felt it yet.
+/// In cells: largest penetration of a body into liquid before the first pressure solve that includes it.
 constexpr real unfelt = 0.1;
 
 }  // namespace
@@ -80,7 +83,7 @@ void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solid
     rigid::Surroundings<D> around = bodies_.surroundings(solids.solids());
     around.reach = 1e-3 * norm(h_);
     contacts_.find(bodies_.all(), around);
-    contacts_.mark(bodies_.all());  // what stands on something does not fall to begin with
+    contacts_.mark(bodies_.all());  // bodies at rest on a support do not start with the velocity of free fall
 }
 
 template <int D>
@@ -93,13 +96,13 @@ void BodiesInFlow<D>::stick(MacState<D>& s, bool holds_closed) {
         grip_->riders[i].held = bodies_[i].held;
     }
     s.grip = grip_.get();
-    // Friction comes before the pressure and takes the one of before: the fluid stands still under its weight to begin with.
+    // friction precedes the pressure solve and uses the previous pressure: initially the hydrostatic one
     for_each_cell(s.extent(), [&](const Index<D>& I) {
         if (s.cells(I) == Cell::fluid) s.p(I) = s.rho * dot(gravity_, s.u.cell_centre(I));
     });
 }
 
-/// The velocity is the body's, which the pressure of before takes for fluid like any other: it has to have fallen like any other.
+/// Sets body velocities in the cells they cover: the previous pressure includes the weight there, so that velocity must include free fall.
 template <int D>
 void BodiesInFlow<D>::leave(MacState<D>& s, real dt) const {
     for (int a = 0; a < D; ++a) {
@@ -127,10 +130,10 @@ void BodiesInFlow<D>::continue_pressure(MacState<D>& s) const {
     });
 }
 
-/// The pressure, weights and contacts come after friction; what they gave in the last step is what they are expected to give in this one,
-/// so that a body that moves steadily rubs at the speed that it has (van Kan 1986 does so with the fluid's old pressure). Without contacts:
-/// a blow does not repeat itself. Nor of turning: there is no pressure on what is round, and light bodies of other shapes have so little
-/// inertia that what is foretold wrongly throws them.
+/// The friction step precedes the pressure solve, weights and contacts; it estimates their impulses by those of the last step. A body in
+/// steady motion then has the correct friction (van Kan 1986 uses the old pressure of the fluid likewise). Contacts are excluded, because
+/// impacts do not repeat. Torques are excluded: round bodies get none from pressure, and light bodies of other shapes have so little
+/// inertia that errors of the estimate are unstable.
 template <int D>
 void BodiesInFlow<D>::grip(const MacState<D>& s, const SolidPlacement<D>& solids, real dt) {
     if (!grip_) return;
@@ -159,7 +162,7 @@ void BodiesInFlow<D>::fly(SolidPlacement<D>& solids, real dt) {
     bodies_.place(solids.solids());
 }
 
-/// Of a dry body and the liquid: the least of what the one and the other are away from a place beside the body.
+/// Distance between a dry body and the liquid: minimum over points beside the body of the sum of both distances.
 template <int D>
 real BodiesInFlow<D>::gap(const MacState<D>& s, const Grid<real, D>& phi, real cap, const Body<D>& body) const {
     const geometry::Pose<D> pose = body.pose();
@@ -208,7 +211,7 @@ void BodiesInFlow<D>::restore(const Checkpoint& from, SolidPlacement<D>& solids)
     bodies_.place(solids.solids());
 }
 
-/// What bodies close of the grid as they stand.
+/// Finds the faces and cells that the bodies close in their present position.
 template <int D>
 void BodiesInFlow<D>::find_cuts(const MacState<D>& s, const SolidPlacement<D>& solids) {
     for (std::size_t b = 0; b < bodies_.count(); ++b) {
@@ -216,7 +219,7 @@ void BodiesInFlow<D>::find_cuts(const MacState<D>& s, const SolidPlacement<D>& s
         const Body<D>& body = bodies_[b];
         const geometry::Pose<D> pose = body.pose();
         for (Cut& c : cuts_[b]) {
-            phi_[c.cell] = 0;  // it was the cell's place in the list
+            phi_[c.cell] = 0;  // it held the cell's index in the list
             Vec<D> middle;
             const Index<D> I = index_of<D>(s.extent(), c.cell);
             for (int a = 0; a < D; ++a) middle[a] = s.u.origin[a] + h_[a] * (I[a] + 0.5);
@@ -233,7 +236,7 @@ void BodiesInFlow<D>::find_cuts(const MacState<D>& s, const SolidPlacement<D>& s
     }
 }
 
-/// The cell's entry, found again by its place in the list, which phi_ keeps meanwhile.
+/// The cell's entry; phi_ holds its index in the list meanwhile.
 template <int D>
 typename BodiesInFlow<D>::Cut& BodiesInFlow<D>::cut(std::size_t cell, std::size_t body) {
     auto& list = cuts_[body];
@@ -244,15 +247,15 @@ typename BodiesInFlow<D>::Cut& BodiesInFlow<D>::cut(std::size_t cell, std::size_
     return list[static_cast<std::size_t>(phi_[cell]) - 1];
 }
 
-/// The faces whose velocity is that of a body, in the order of the grid, and the cells that they belong to.
+/// Finds the faces with the body's velocity, in the order of the grid, and the cells on both sides.
 template <int D>
 void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t b) {
     const std::size_t own = solids.count() - bodies_.count() + b;
     const Body<D>& body = bodies_[b];
     faces_[b].clear(), cuts_[b].clear();
     near_.reserve(solids.count());
-    const Vec<D> reach = Vec<D>::constant(body.radius) + 3.0 * h_;          // of the faces that are looked at
-    solids.find_near({body.at - reach, body.at + reach}, norm(h_), near_);  // a solid that cuts one is as near as that
+    const Vec<D> reach = Vec<D>::constant(body.radius) + 3.0 * h_;          // of the faces that are searched
+    solids.find_near({body.at - reach, body.at + reach}, norm(h_), near_);  // every solid that cuts such a face is within this distance
     for (int a = 0; a < D; ++a) {
         const auto& open = s.solid.open[static_cast<std::size_t>(a)];
         Index<D> lo, hi;
@@ -294,7 +297,7 @@ void BodiesInFlow<D>::set_velocities(MacState<D>& s) const {
         }
 }
 
-/// Adds scale Σ D_k V_k of a body.
+/// Adds scale Σ D_k V_k of one body.
 template <int D>
 void BodiesInFlow<D>::scatter(std::size_t body, const Twist<D>& velocity, real scale, Grid<real, D>& to) const {
     for (const Cut& c : cuts_[body]) {
@@ -304,7 +307,7 @@ void BodiesInFlow<D>::scatter(std::size_t body, const Twist<D>& velocity, real s
     }
 }
 
-/// ΔV Σ p D_k of a pressure that is zero outside the fluid.
+/// ΔV Σ p D_k for a pressure that is zero outside the fluid.
 template <int D>
 Twist<D> BodiesInFlow<D>::push(std::size_t body, const Grid<real, D>& p) const {
     Twist<D> sum{};
@@ -313,7 +316,7 @@ Twist<D> BodiesInFlow<D>::push(std::size_t body, const Grid<real, D>& p) const {
     return sum;
 }
 
-/// The fluid's force and torque: its pressure at the wall.
+/// The force and torque of the fluid's pressure on the body's surface.
 template <int D>
 Twist<D> BodiesInFlow<D>::force(const MacState<D>& s, std::size_t body) const {
     Twist<D> sum = push(body, s.p);
@@ -322,7 +325,7 @@ Twist<D> BodiesInFlow<D>::force(const MacState<D>& s, std::size_t body) const {
     return sum;
 }
 
-/// Of the body's surface as the cells see it: what of Σ |D| stands in fluid.
+/// The liquid volume fraction of the body's surface as resolved by the cells: the part of Σ |D| in fluid cells.
 template <int D>
 real BodiesInFlow<D>::wet_part(const MacState<D>& s, std::size_t body) const {
     real all = 0, wet = 0;
@@ -334,13 +337,13 @@ real BodiesInFlow<D>::wet_part(const MacState<D>& s, std::size_t body) const {
     return all > 0 ? wet / all : 0;
 }
 
-/// What fluid of the body's density would push the body up by on this grid, and turn it: a body as dense as the fluid is balanced exactly.
-/// In the air a body has its own weight.
+/// Weight minus the discrete buoyancy of fluid with the body's density, as force and torque: a body as dense as the fluid is balanced
+/// exactly. In air a body has its full weight.
 template <int D>
 Twist<D> BodiesInFlow<D>::weight(std::size_t b) const {
     const Body<D>& body = bodies_[b];
     const Vec<D> r = body.pose().to_world(body.moments.centre) - body.at, own = body.mass * gravity_;
-    Twist<D> sum{}, even{};  // even: of the same density throughout, exact
+    Twist<D> sum{}, even{};  // even: for uniform density, exact
     for (std::size_t a = 0; a < D; ++a) sum[a] = even[a] = own[a];
     if (body.wet == 0) return sum;
     if constexpr (D == 2)
@@ -370,8 +373,8 @@ rigid::Block<D> BodiesInFlow<D>::mass_of(std::size_t b) const {
     return m;
 }
 
-/// ρ ℓ ∫ (n, r × n)(n, r × n)ᵀ dS over the wet surface: of a ball and of a disc this is the added mass in unbounded fluid if ℓ is half the
-/// radius and the radius.
+/// ρ ℓ ∫ (n, r × n)(n, r × n)ᵀ dS over the wet surface. For ℓ of half the radius (ball) or the radius (disc) it equals the added mass in
+/// unbounded fluid.
 template <int D>
 rigid::Block<D> BodiesInFlow<D>::mass_of_wet_surface(const MacState<D>& s, std::size_t body) const {
     rigid::Block<D> m{};
@@ -387,7 +390,7 @@ rigid::Block<D> BodiesInFlow<D>::mass_of_wet_surface(const MacState<D>& s, std::
     return m;
 }
 
-/// m_kl = ρ ΔV D_k·φ_l, A φ_l = h² D_l, and the mobility that belongs to it.
+/// m_kl = ρ ΔV D_k·φ_l, A φ_l = h² D_l, and the corresponding mobility.
 template <int D>
 void BodiesInFlow<D>::measure_added_mass(const MacState<D>& s, poisson::Solver<D>& solver) {
     rigid::Mobility added;
@@ -408,7 +411,7 @@ void BodiesInFlow<D>::measure_added_mass(const MacState<D>& s, poisson::Solver<D
             }
         }
     phi_.fill(0);
-    for (std::size_t i = 0; i < added.size; ++i)  // what the solver's tolerance leaves
+    for (std::size_t i = 0; i < added.size; ++i)  // symmetrizes the error of the solver's tolerance
         for (std::size_t j = 0; j < i; ++j) added(i, j) = added(j, i) = 0.5 * (added(i, j) + added(j, i));
     added_.learn(added);
     for (std::size_t i = 0; i < added.size; ++i)
@@ -416,7 +419,7 @@ void BodiesInFlow<D>::measure_added_mass(const MacState<D>& s, poisson::Solver<D
     rigid::invert(added, free_, mobility_);
 }
 
-/// What the bodies are as they stand, and where their velocities will be if they go on changing as in the last step.
+/// Initializes the bodies' masses, forces and velocities; the next velocities are extrapolated with the last step's acceleration.
 template <int D>
 void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
@@ -447,8 +450,8 @@ void BodiesInFlow<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& sce
                          "numbers of the list bodies, from 0 to " + std::to_string(bodies_.count() - 1));
 }
 
-/// dv/dt = rate (target − v) of the mass of the body and of the water in its place, v at the end of the step: stable for any step. What
-/// depends on v counts as mass.
+/// Interactive forcing: dv/dt = rate (target − v) for the mass of the body and of the displaced liquid, implicit in v, so stable for any
+/// step. The factor of v is added to the mass.
 template <int D>
 void BodiesInFlow<D>::be_held(const MacState<D>& s, real dt) {
     const auto brush = hand_->at<D>(s.time);
@@ -503,7 +506,7 @@ void BodiesInFlow<D>::find_contacts(const geometry::Solids<D>& solids, real dt) 
         for (std::size_t k = 0; k < n; ++k) (k < D ? speed : turning) += std::abs(next_[b * n + k]);
         fastest = std::max(fastest, speed + turning * bodies_[b].radius);
     }
-    // What the first turn says of a light body may be many times what it comes to: what is in its way then is what holds it back.
+    // a light body's first velocity may be many times the converged one: obstacles within that range are included
     around.reach = 2 * dt * fastest + 1e-2 * norm(h_);
     contacts_.find(bodies_.all(), around);
 }
@@ -518,8 +521,9 @@ void BodiesInFlow<D>::touch(const geometry::Solids<D>& solids, real dt, bool ane
     contacts_.add_impulses(others_);
 }
 
-/// Bodies that are heavy enough for it become part of the pressure's matrix: with V = base + dt M⁻¹ (push of p), where `base` is what all
-/// else gives them, A p = b − h² ρ/dt Σ D_k V_k is (A + U C Uᵀ) p = b − h² ρ/dt Σ D_k base_k with U = ΔV D and C = h² ρ/ΔV M⁻¹.
+/// Adds bodies to the pressure matrix where their added mass is not too large. With V = base + dt M⁻¹ (pressure impulse), where `base`
+/// contains all other impulses, A p = b − h² ρ/dt Σ D_k V_k becomes (A + U C Uᵀ) p = b − h² ρ/dt Σ D_k base_k with U = ΔV D and C = h² ρ/ΔV
+/// M⁻¹.
 template <int D>
 bool BodiesInFlow<D>::join_matrix(const MacState<D>& s) {
     matrix_.clear();
@@ -545,7 +549,7 @@ bool BodiesInFlow<D>::join_matrix(const MacState<D>& s) {
     return any;
 }
 
-/// The impulses of all but the pressure's part that p decides.
+/// All impulses except the part of the pressure that depends on p.
 template <int D>
 Twist<D> BodiesInFlow<D>::impulse_without_pressure(const MacState<D>& s, std::size_t body, real dt) const {
     Twist<D> sum{};
@@ -555,7 +559,7 @@ Twist<D> BodiesInFlow<D>::impulse_without_pressure(const MacState<D>& s, std::si
     return sum;
 }
 
-/// What contacts are expected to give: where something touched a body in the last step, what would keep it going on as it does.
+/// Estimates the contact impulses: where a body had contact in the last step, the impulse that keeps its velocity.
 template <int D>
 void BodiesInFlow<D>::expect_others(const MacState<D>& s, real dt) {
     std::fill(others_.begin(), others_.end(), 0.0);
@@ -566,8 +570,8 @@ void BodiesInFlow<D>::expect_others(const MacState<D>& s, real dt) {
     }
 }
 
-/// Of a body that is part of the matrix what its velocity is without the pressure, of others the next velocity goes into the right-hand
-/// side. Answers by what that changes it, ‖δb‖₂.
+/// Updates the right-hand side: with the velocity without pressure for bodies in the matrix, with the next velocity for others. Returns the
+/// norm of its change, ‖δb‖₂.
 template <int D>
 real BodiesInFlow<D>::adopt(const MacState<D>& s, real dt, Grid<real, D>* b) {
     real sum = 0, squares = 0;
@@ -598,7 +602,7 @@ real BodiesInFlow<D>::adopt(const MacState<D>& s, real dt, Grid<real, D>* b) {
     return std::sqrt(sum);
 }
 
-/// The velocities that belong to the pressure found, and by how much they differ from those before.
+/// Computes the velocities of the new pressure and their change.
 template <int D>
 void BodiesInFlow<D>::follow_pressure(const MacState<D>& s, real dt) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
@@ -633,8 +637,8 @@ real BodiesInFlow<D>::square_of(const MacState<D>& s, const Grid<real, D>& b) co
     });
 }
 
-/// The pressure as far as `tolerance` says, of ‖b‖ with the velocities that were expected. A matrix that bodies are part of may not let
-/// itself be solved: they take turns then.
+/// One pressure solve to `tolerance`, relative to ‖b‖ of the extrapolated velocities. If the solve with bodies in the matrix fails, they
+/// switch to partitioned coupling.
 template <int D>
 void BodiesInFlow<D>::turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b) {
     const poisson::Report* report = nullptr;
@@ -663,7 +667,7 @@ void BodiesInFlow<D>::leave_matrix() {
     std::fill(joined_.begin(), joined_.end(), 0);
 }
 
-/// Do all bodies that the fluid touches belong to the matrix, and touches nothing else any of them? Then the pressure decides all.
+/// Returns whether the system is monolithic: all wet bodies are in the matrix and no body has a contact.
 template <int D>
 bool BodiesInFlow<D>::fluid_decides(const geometry::Solids<D>& solids, real dt) {
     for (std::size_t i = 0; i < bodies_.count(); ++i)
@@ -672,7 +676,7 @@ bool BodiesInFlow<D>::fluid_decides(const geometry::Solids<D>& solids, real dt) 
     return contacts_.empty();
 }
 
-/// The velocities found are the bodies'.
+/// Stores the converged velocities in the bodies.
 template <int D>
 void BodiesInFlow<D>::take_velocities(MacState<D>& s, SolidPlacement<D>& placement, real dt) {
     velocity_ = next_;
@@ -704,7 +708,7 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
     adopt(s, dt, b);
     b_squared_ = coupled ? square_of(s, *b) : 0, whole_ = std::sqrt(b_squared_);
     const real enough = coupled ? 0.5 * tolerance : tolerance;
-    real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: of the residual, before the last change
+    real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: residual before the last change
     if (coupled && join_matrix(s)) {
         if (fluid_decides(placement.solids(), dt)) aim = alone * tolerance;
         expect_others(s, dt);
@@ -723,7 +727,7 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
         const real added = adopt(s, dt, b);
         left = aim, change = added == 0 ? 0 : added / whole_;
         if (!coupled || aim + change <= tolerance) break;
-        again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so far off that turns lead away
+        again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so poor that the iteration diverges
         if (again) {
             next_ = before_;
             std::fill(others_.begin(), others_.end(), 0.0);

@@ -14,15 +14,15 @@ using poisson::Cell;
 
 namespace {
 
-/// Growth is told from round-off and from what fractions of faces leave if it is this part of all that is swept.
+/// Relative to the swept volume: smaller growth is round-off or the error of face fractions.
 constexpr real told_apart = 1e-3;
 
-/// What bounds one cell's fluid.
+/// The boundary of one cell's fluid.
 template <int D>
 struct Around {
     real growth = 0, swept = 0;
     bool open = false;
-    std::array<std::ptrdiff_t, 2 * D> next{};  // cells that fluid flows to; −1: none
+    std::array<std::ptrdiff_t, 2 * D> next{};  // neighbours that fluid can flow to; −1: none
 };
 
 template <int D>
@@ -58,7 +58,7 @@ Around<D> around(const MacState<D>& s, const Index<D>& I) {
     return all;
 }
 
-/// The solid that sweeps most of what is swept in all.
+/// The solid with the largest swept volume.
 template <int D>
 std::size_t who_sweeps(const MacState<D>& s, const geometry::Solids<D>& solids) {
     std::vector<real> by(std::max<std::size_t>(solids.count(), 1), 0.0);
@@ -78,7 +78,7 @@ std::size_t who_sweeps(const MacState<D>& s, const geometry::Solids<D>& solids) 
                                     by.begin());
 }
 
-/// Over ranks, all fluid as one region.
+/// In parallel: all fluid as one region.
 template <int D>
 Squeezed<D> find_in_all(const MacState<D>& s) {
     const auto sum = [&](auto&& f) {
@@ -149,7 +149,7 @@ bool move_as_told(const geometry::Solids<D>& solids) {
     return false;
 }
 
-/// A region of L cells leaves about 1/L of the rate at which a solid crosses cells.
+/// A region of L cells has an error of about 1/L of the rate at which a solid crosses cells.
 template <int D>
 void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence) {
     constexpr real part = 1e-5;

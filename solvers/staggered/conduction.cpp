@@ -14,15 +14,16 @@ using poisson::Cell;
 
 constexpr real most_stages = 1e5;  // of a step
 
-/// Of the face between two cells; negative are those of cells on the plateau. From a whole cell heat comes to the front inside such a cell
-/// through its own state alone: with the mean of both, a melt that conducts well is kept from its ice by ice that is not in the way.
+/// Conductivity of the face between two cells; negative values are those of cells on the plateau (two-phase cells). Heat from a
+/// single-phase cell reaches the front inside a two-phase cell only through its own phase. With the mean of both, ice that is not in the
+/// path would insulate well-conducting melt from its front.
 inline real face_conductivity(real a, real b) {
     const real p = std::abs(a), q = std::abs(b), sum = p + q;
     const real mean = sum > 0 ? 2 * p * q / sum : 0;
     return a < 0 && b > 0 ? q : b < 0 && a > 0 ? p : mean;
 }
 
-/// Conditions of a correction, or of a conductivity: nothing passes but around a periodic axis.
+/// Boundary conditions of a correction or of a conductivity: zero flux, or periodic.
 template <int D>
 Boundary<D> without_values(Boundary<D> boundary) {
     for (auto& axis : boundary.end)
@@ -31,7 +32,7 @@ Boundary<D> without_values(Boundary<D> boundary) {
     return boundary;
 }
 
-/// max_over, a row at a time.
+/// max_over, row by row.
 template <int D, class F>
 real max_of_rows(const Index<D>& extent, F&& f) {
     return ordered_max(extent[D - 1], [&](int outer) {
@@ -72,7 +73,7 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
     }
 }
 
-/// Conductances stay what they are while all is liquid and the cells stay what they are.
+/// Conductances are constant while everything is liquid and the cell flags do not change.
 template <int D>
 void Conduction<D>::prepare(const Grid<real, D>& H, const Given& given) {
     const bool liquid = is_liquid(H, given);
@@ -105,7 +106,7 @@ bool Conduction<D>::is_liquid(const Grid<real, D>& H, const Given& given) const 
     return lacks <= 0;
 }
 
-/// Of cells, into T_[1], which nothing needs before the first stage; negative on the plateau.
+/// Conductivity of cells, stored in T_[1], which is unused before the first stage; negative on the plateau.
 template <int D>
 void Conduction<D>::set_conductivities(const Grid<real, D>& H, const Given& given) {
     const matter::Melting m = melting_;
@@ -126,7 +127,7 @@ void Conduction<D>::set_conductivities(const Grid<real, D>& H, const Given& give
     });
 }
 
-/// Away from fronts and solids a row of faces conducts as one number, and mostly what it did: then there is nothing to write.
+/// Away from fronts and solids all faces of a row have one conductance, usually unchanged: then nothing is written.
 template <int D>
 void Conduction<D>::set_conductances(int a) {
     const Padded<D>& conductivity = T_[1];
@@ -154,7 +155,7 @@ void Conduction<D>::set_conductances(int a) {
     });
 }
 
-/// Where all faces of a row's cells conduct alike, a stage reads them as D numbers.
+/// Where all faces of a row's cells have equal conductance, a stage reads D numbers for them.
 template <int D>
 void Conduction<D>::find_rows_alike() {
     for_each_cell(alike_.extent(), [&](const Index<D>& row) {
@@ -170,7 +171,7 @@ void Conduction<D>::find_rows_alike() {
     });
 }
 
-/// Of all faces of a cell of that row [W/(m³ K)].
+/// The sum over all faces of a cell of that row [W/(m³ K)].
 template <int D>
 real Conduction<D>::conducts_most(const Index<D>& row) const {
     real most = 0;
@@ -196,7 +197,7 @@ void Conduction<D>::exchange_through(int axis, int end, real coefficient) {
     rule(axis, end).kind = EndRule::Kind::dirichlet;
 }
 
-/// A half cell and an exchange one after the other let pass 1/(h/(2k) + 1/α) for a kelvin: the half cell's own 2k/h over 1 + 2k/(α h).
+/// A half cell and a heat-transfer coefficient α in series conduct 1/(h/(2k) + 1/α): the half cell's 2k/h divided by 1 + 2k/(α h).
 template <int D>
 void Conduction<D>::weaken_exchanges() {
     for (int a = 0; a < D; ++a)
@@ -214,8 +215,8 @@ void Conduction<D>::weaken_exchanges() {
         }
 }
 
-/// By the principle of the maximum, nothing freezes where all is liquid, no side is colder than the melting point and no source takes heat
-/// away.
+/// By the maximum principle nothing freezes where everything is liquid, no side is colder than the melting point and no source removes
+/// heat.
 template <int D>
 bool Conduction<D>::may_freeze(const Grid<real, D>& source) const {
     bool freezes = !all_liquid_ || !source.empty();
@@ -224,8 +225,8 @@ bool Conduction<D>::may_freeze(const Grid<real, D>& source) const {
     return freezes;
 }
 
-/// The scheme is stable while dt times the largest eigenvalue of the conduction, at most twice what leaves a cell for a kelvin, is within
-/// s (s + 5)/3. A cell's heat capacity is the lesser one where it may have that in the course of the step.
+/// The scheme is stable while dt times the largest eigenvalue of the conduction operator is within s (s + 5)/3. The eigenvalue is at most
+/// twice a cell's sum of conductances. A cell near the transition uses the smaller of its heat capacities.
 template <int D>
 int Conduction<D>::stages_for(real dt, const Grid<real, D>& source) const {
     const real c = may_freeze(source) ? std::min(melting_.c_solid, melting_.c_liquid) : melting_.c_liquid;
@@ -249,7 +250,7 @@ real Conduction<D>::euler_step(Grid<real, D>& H, const Given& given, real dt) {
     return stages(H, given, dt, 1);
 }
 
-/// Six half-distances of walls at the most, and faces that conduct up to twice as well as the worse of their cells.
+/// At most six half distances to walls, and faces that conduct up to twice as well as the worse of their cells.
 template <int D>
 real Conduction<D>::longest_euler_step() const {
     const real best = std::max(melting_.k_solid, melting_.k_liquid);

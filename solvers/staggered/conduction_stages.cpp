@@ -1,6 +1,6 @@
-// The stages of a step of conduction (conduction.hpp), several in one pass through memory: D_j of a plane needs D_{j−1} of it and of its
-// two neighbours, and takes the place of D_{j−2}, which nothing needs any more. Where all is liquid and stays so, temperature is linear in
-// the change of the enthalpy, and what all cells conduct is one number: a stage is then a stencil on D/c, with R(H) of the first.
+// The stages of a conduction step (conduction.hpp), several in one pass through memory. D_j of a plane needs D_{j−1} of it and of its two
+// neighbours, and replaces D_{j−2}, which is no longer needed. Where everything is and stays liquid, temperature is linear in the change of
+// the enthalpy and the conductivity is constant. A stage is then a stencil on D/c, with R(H) of the first stage.
 #include "poisson/wavefront.hpp"
 #include "staggered/conduction.hpp"
 #include "staggered/rows.hpp"
@@ -11,7 +11,7 @@ namespace weir::staggered {
 
 namespace {
 
-constexpr std::size_t cache = 1536 * 1024;  // of one core [bytes]: passes are cut so that their planes stay in it
+constexpr std::size_t cache = 1536 * 1024;  // of one core [bytes]: a pass has as many stages as keep its planes in it
 
 /// f(first) for the first cell of each row of a plane.
 template <int D, class F>
@@ -24,7 +24,7 @@ void for_each_row_of(const Index<D>& extent, int plane, F&& f) {
     }
 }
 
-/// Beyond a side there is one layer, as far behind the side as the cell before it is in front.
+/// The single ghost layer beyond a side, mirrored at the side.
 inline real beyond(const EndRule& rule, bool values, real inside) {
     return rule.kind == EndRule::Kind::dirichlet ? (values ? 2 * rule.value : 0) - inside : inside;
 }
@@ -70,14 +70,14 @@ struct EvenFlow {
     }
 };
 
-/// Where a stage of a row reads and writes.
+/// Source and destination of one row of a stage.
 struct StageRow {
     real mu, nu, push;
     const real* before;  // D_{j−1}
     real* d;             // D_{j−2}, and then D_j
 };
 
-/// D_j from the rates R(H + D_{j−1}), each given on to then(i, D_j). D_0 is nothing, and what stands in its place is not read.
+/// D_j from the rates R(H + D_{j−1}); calls then(i, D_j) for each. For D_0 = 0 the destination is not read.
 template <class Rate, class Then>
 inline void recur(int number, const StageRow& at, int count, const Rate& rate, const Then& then) {
     if (number == 1) {
@@ -104,8 +104,8 @@ void Conduction<D>::continue_row(Padded<D>& T, const Index<D>& first, bool value
     row[n] = joins ? row[0] : beyond(ends[1], values, row[n - 1]);
 }
 
-/// What a stage reads beyond a plane that has just been written; around the last axis, where it is periodic, comes later. `values`: of
-/// temperatures; else of their changes, which are none on a side that has a temperature.
+/// Fills the ghosts of a plane that was just written; the ghost planes of a periodic last axis are filled later. `values`: of temperatures;
+/// otherwise of their changes, which are zero on a side with a fixed temperature.
 template <int D>
 void Conduction<D>::continue_plane(Padded<D>& T, int plane, bool values) const {
     const Index<D> n = T.extent();
@@ -141,7 +141,7 @@ void Conduction<D>::continue_around(Padded<D>& T) const {
     for_each_row_of(T.extent(), planes - 1, [&](const Index<D>& I) { std::copy_n(T.at(I), T.extent()[0], T.at(I) - all); });
 }
 
-/// What comes through the sides of the domain into the cells of a plane.
+/// Heat flux through the sides of the domain into the cells of a plane.
 template <int D>
 real Conduction<D>::through_sides(const Padded<D>& T, int plane) const {
     const Index<D> n = T.extent();
@@ -179,7 +179,7 @@ void Conduction<D>::take_temperature(const Stage& stage, int plane) {
     continue_plane(T_[0], plane, true);
 }
 
-/// What comes to a row of cells beside conduction [W/m³].
+/// Heat sources of a row of cells besides conduction [W/m³].
 template <int D>
 void Conduction<D>::other_rates(const Stage& stage, const Index<D>& first, int count, real* rate) {
     if (stage.given.source.empty())
@@ -192,7 +192,7 @@ void Conduction<D>::other_rates(const Stage& stage, const Index<D>& first, int c
     for (int i = 0; i < count; ++i) rate[i] += stage.elsewhere * (H[i] - from[i]);
 }
 
-/// D_j, and T of H + D_j; of the last stage H itself.
+/// D_j and T of H + D_j; the last stage writes H.
 template <int D>
 void Conduction<D>::add_stage(const Stage& stage, int plane) {
     const matter::Melting m = melting_;
@@ -200,7 +200,7 @@ void Conduction<D>::add_stage(const Stage& stage, int plane) {
     const auto now = static_cast<std::size_t>(stage.number % 2);
     const Padded<D>& T = T_[1 - now];
     Padded<D>& to = T_[now];
-    const bool alone = stage.given.source.empty() && !stage.given.before;  // conduction, with nothing beside it
+    const bool alone = stage.given.source.empty() && !stage.given.before;  // conduction without other terms
     for_each_row_of(stage.H.extent(), plane, [&](const Index<D>& row) {
         const Vec<D>& alike = alike_(row);
         for_each_block(row, stage.H.extent()[0], [&](const Index<D>& first, int width) {
@@ -226,7 +226,7 @@ void Conduction<D>::add_stage(const Stage& stage, int plane) {
     if (!stage.last) continue_plane(to, plane, true);
 }
 
-/// D_j/c in the place of temperatures; R(H) of the first stage stays where D_j is otherwise.
+/// Stores D_j/c in place of temperatures; R(H) of the first stage stays in the array of D_j.
 template <int D>
 void Conduction<D>::add_linear_stage(const Stage& stage, int plane) {
     const real c = melting_.c_liquid;
@@ -253,7 +253,7 @@ void Conduction<D>::add_linear_stage(const Stage& stage, int plane) {
     if (!stage.last) continue_plane(to, plane, false);
 }
 
-/// As many as leave their planes in the cache, and a slab of planes to each thread.
+/// As many stages as keep their planes in cache, and a slab of planes per thread.
 template <int D>
 int Conduction<D>::most_stages_at_once() const {
     if (boundary_.end[D - 1][0].kind == EndRule::Kind::periodic) return 1;
@@ -274,7 +274,7 @@ real Conduction<D>::stages(Grid<real, D>& H, const Given& given, real dt, int co
         const real mu = (2.0 * j + 3) / (j + 4);
         return Stage{H, given, j, j == count, mu, (1.0 - j) / (j + 4), mu * w, rho_ / dt};
     };
-    real arrived = 0, arrived_before = 0, at_start = 0;  // D_j, D_{j−1} of what comes from outside [J kg/m^D]; R(H) of it
+    real arrived = 0, arrived_before = 0, at_start = 0;  // D_j and D_{j−1} of the heat from outside [J kg/m^D]; R(H) of it
     for (int done = 0; done <= count;) {
         const int pass = std::min(at_once, count + 1 - done);
         const auto work = [&](int s, int plane) {

@@ -41,7 +41,7 @@ void add_momentum_flux(const PaddedVelocity<D>& before, const Vec<D>& h, const N
 
 namespace {
 
-/// The open part of a face; of those beyond the sides, all.
+/// The open fraction of a face; 1 beyond the sides.
 template <int D>
 real open_at(const MacState<D>& s, int b, Index<D> F) {
     for (int d = 0; d < D; ++d)
@@ -50,7 +50,7 @@ real open_at(const MacState<D>& s, int b, Index<D> F) {
     return open.contains(F) ? open(F) : 1;
 }
 
-/// Both faces along b whose flow crosses one end of the control volume of face I along a.
+/// The two faces along b whose fluxes cross one end of the control volume of face I along a.
 template <int D>
 std::array<Index<D>, 2> crossed(int a, int b, const Index<D>& I, int end) {
     const Index<D> F = end == 0 ? I : I + e<D>(b);
@@ -95,7 +95,7 @@ real CutFaces<D>::rate(const MacState<D>& s, int a, const Index<D>& I) const {
     const real here = s.before[a](I);
     real carried = 0, widest = 0, volume = open_at(s, a, I);
     for (int b = 0; b < D; ++b) {
-        real pair = 0;  // added first, so that a mirror changes nothing
+        real pair = 0;  // added first: mirror symmetry is bitwise
         for (int end = 0; end < 2; ++end) {
             const auto [F, G] = crossed(a, b, I, end);
             const real open[2] = {open_at(s, b, F), open_at(s, b, G)}, area = 0.5 * (open[0] + open[1]);
@@ -131,7 +131,7 @@ std::size_t CutFaces<D>::bytes() const {
 
 namespace {
 
-/// The value that a flux carries across the face between q0 and q1 (qm, q2 beyond them), moving with u.
+/// The value of q at the face between q0 and q1 (qm, q2 beyond them), advected with velocity u.
 inline real central(real, real, real q0, real q1, real) { return 0.5 * (q0 + q1); }
 inline real van_leer(real u, real qm, real q0, real q1, real q2) {
     const real up = u > 0 ? q0 : q1, ahead = q1 - q0;
@@ -203,7 +203,7 @@ void StageBlend<D>::blend(const Substep& stage, const Padded<D>& before, Grid<re
 #pragma omp simd
         for (int i = 0; i < count; ++i) {
             const real rate = now[i] - old[i];
-            const real last = stage.zeta == 0 ? 0 : increment[i];  // the first stage must not see what the last step left
+            const real last = stage.zeta == 0 ? 0 : increment[i];  // the first stage must not use the rate of the last step
             now[i] = old[i] + (stage.gamma * rate + stage.zeta * last);
             increment[i] = rate;
         }

@@ -8,7 +8,7 @@ namespace {
 
 const char* const letters[3] = {"x", "y", "z"};
 
-/// Part of a face's control volume that is fluid: halves on closed or open sides, the second copy of a periodic face not at all.
+/// Fluid fraction of a face's control volume: a half on closed or open sides, zero for the second copy of a periodic face.
 template <int D>
 real face_share(const MacState<D>& s, int a, const Index<D>& I) {
     const real open = s.solid.any() ? s.solid.open[static_cast<std::size_t>(a)](I) : 1;
@@ -46,7 +46,7 @@ real enstrophy(const MacState<D>& s) {
     real sum = 0;
     for (int a = 0; a < D; ++a) {
         for (int b = a + 1; b < D; ++b) {
-            const auto below = [&](Index<D> I, int axis) {  // the neighbour below along an axis, around a periodic one
+            const auto below = [&](Index<D> I, int axis) {  // the lower neighbour along an axis, across the boundary of a periodic one
                 I[axis] = I[axis] > 0 ? I[axis] - 1 : s.u.cells[axis] - 1;
                 return I;
             };

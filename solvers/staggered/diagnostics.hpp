@@ -1,4 +1,4 @@
-// Integrals and derived fields of a MAC state: what a run reports beside its fields.
+// Integrals and derived fields of a MAC state, for reports.
 #pragma once
 #include "core/solver.hpp"
 #include "staggered/state.hpp"
@@ -18,7 +18,7 @@ real enstrophy(const MacState<D>& s);
 template <int D>
 real integral(const MacState<D>& s, const Grid<real, D>& q);
 
-/// kinetic_energy, enstrophy, max_speed, max_divergence, momentum_x .., total_<field> for each carried field.
+/// kinetic_energy, enstrophy, max_speed, max_divergence, momentum_x .., total_<field> for each advected field.
 template <int D>
 std::vector<Integral> integrals(const MacState<D>& s);
 
@@ -28,7 +28,7 @@ void vorticity(const MacState<D>& s, std::vector<Grid<real, D>>& omega);
 
 template <int D>
 GridView grid_view(const MacVelocity<D>& u);
-/// velocity, pressure, and the carried fields.
+/// velocity, pressure, and the advected fields.
 template <int D>
 FieldSet field_set(const MacState<D>& s);
 

@@ -1,5 +1,5 @@
-// Effects on the staggered grid: a kind is a schema and a maker, and a solver is a list of kinds. One registration feeds the scene's schema
-// and the solver; what no scene names allocates nothing.
+// Effects on the staggered grid. A kind is a schema and a factory; a solver is a list of kinds. One registration serves the scene's schema
+// and the solver; an effect that no scene names allocates nothing.
 #pragma once
 #include "core/effects.hpp"
 #include "core/hand.hpp"
@@ -15,7 +15,7 @@ namespace weir::staggered {
 template <int D>
 using MacEffect = Effect<MacState<D>>;
 
-/// An effect: its keys, and what makes it from the scene's table. `cfl` is the scene's, for limits that depend on it.
+/// An effect: its keys and its factory. `cfl` is the scene's, for limits that depend on it.
 struct EffectKind {
     scene::Variant schema;
     std::function<std::unique_ptr<MacEffect<2>>(const scene::Table&, const scene::Scene&)> make_2d;
@@ -27,16 +27,16 @@ using EffectKinds = std::vector<EffectKind>;
 /// Their schemas, in registry order: the order in which effects act in a stage.
 std::vector<scene::Variant> schemas_of(const EffectKinds& kinds);
 
-/// Those of the kinds that the scene names, for a solver that runs these stages.
+/// The effects of these kinds that the scene names, for a solver that runs these stages.
 template <int D>
 Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& scene, std::vector<Stage> runs);
 
-/// du/dt = g: acts on every fluid.
+/// du/dt = g on every fluid.
 EffectKind gravity();
 
-/// What a hand can do in this scene: it heats where a substance is named, and takes hold of bodies.
+/// The kinds of interactive forcing in this scene: heat needs a substance, grab needs bodies.
 std::initializer_list<HandKind> kinds_of_hand(const scene::Scene& scene);
-/// The hand (geometry/hand.hpp), which acts at this stage.
+/// Interactive forcing (geometry/hand.hpp), applied at this stage.
 template <int D>
 std::unique_ptr<MacEffect<D>> hand_effect(std::shared_ptr<Hand> hand, Stage stage);
 
@@ -47,7 +47,7 @@ EffectKind effect_kind(scene::Variant schema) {
             [](const scene::Table& t, const scene::Scene& s) { return std::make_unique<E<3>>(t, s); }};
 }
 
-/// Mean of a cell field on the face on the lower side of I along a; on the sides of the domain the one cell that there is.
+/// Mean of a cell field on the lower face of I along a; on the sides of the domain the single adjacent cell.
 template <int D>
 real at_face(const Grid<real, D>& q, const Index<D>& I, int a) {
     const Index<D> below = I - e<D>(a);
@@ -56,7 +56,7 @@ real at_face(const Grid<real, D>& q, const Index<D>& I, int a) {
     return 0.5 * (q(below) + q(I));
 }
 
-/// A body force f [m/s²] starts motion from rest: the step after which it has moved the fluid by `cfl` cells, √(2 cfl h / f).
+/// Step limit of a body force f [m/s²] from rest: the time in which the fluid moves by `cfl` cells, √(2 cfl h / f).
 inline real acceleration_limit(real f, real h, real cfl) { return f > 0 ? std::sqrt(2 * cfl * h / f) : infinity; }
 
 }  // namespace weir::staggered

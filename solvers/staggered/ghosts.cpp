@@ -16,10 +16,10 @@ Index<D> side_extent(Index<D> extent, int axis) {
     return extent;
 }
 
-/// Tangential values that an inflow with a profile imposes, one a node of the side.
+/// Tangential values of an inflow with a profile, one per node of the side.
 template <int D>
 std::vector<real> inflow_values(const geometry::Sides<D>& sides, const MacVelocity<D>& u, int component, int axis, int end, real nu) {
-    const AllPlanes whole;  // sides are small
+    const AllPlanes whole;  // replicated work: sides are small
     const Index<D> nodes = side_extent(u[component].extent(), axis);
     Grid<real, D> values(nodes);
     for_each_cell(nodes, [&](const Index<D>& I) {
@@ -41,8 +41,8 @@ EndRule velocity_rule(const geometry::Sides<D>& sides, const MacVelocity<D>& u, 
     return {Kind::dirichlet, side.velocity[component], {}};
 }
 
-/// Fills the layers beyond one end of one axis, for `count` lines of nodes along it that are neighbours in memory: `q` is the first inner
-/// node of the first line, n the number along each, v what Dirichlet's rule imposes.
+/// Fills the ghost layers beyond one end of an axis, for `count` lines along it that are contiguous in memory. `q` is the first inner node
+/// of the first line, n the number of nodes along each, v the Dirichlet value.
 template <class Holds>
 void fill_end(real* q, std::ptrdiff_t stride, int n, int end, EndRule::Kind kind, real v, int count, Holds&& holds) {
     const std::ptrdiff_t s = end == 0 ? stride : -stride;
@@ -83,7 +83,8 @@ void wrap(real* q, std::ptrdiff_t stride, int nodes, int n, int count, Holds&& h
     for (int m = n; m < nodes + ghost_layers; ++m) copy(m % n, m);
 }
 
-/// The layers beyond both ends of `axis` for the lines from I, I + e₀ .. on. Over ranks, across the cuts, of planes that this one holds.
+/// Fills the layers beyond both ends of `axis` for the lines from I, I + e₀ .. on. In parallel, also for the ghost planes that this rank
+/// stores.
 template <int D>
 void fill_lines(Padded<D>& q, int axis, const Boundary<D>& boundary, const Index<D>& I, int count) {
     const auto& ends = boundary.end[static_cast<std::size_t>(axis)];
@@ -172,7 +173,7 @@ bool repeats(const Boundary<D>& boundary) {
     return boundary.end[D - 1][0].kind == Kind::periodic;
 }
 
-/// Beyond both ends of the last axis.
+/// Fills the planes beyond both ends of the last axis.
 template <int D>
 void fill_ends(Padded<D>& q, const Boundary<D>& boundary) {
     Index<D> rows = q.extent() + Index<D>::constant(2 * ghost_layers);

@@ -1,5 +1,5 @@
-// The hand on the grid: each face that touches fluid follows the brush, by the weight of its own place. What it gives is counted by the
-// part of a face's volume that is open and fluid, as momentum is.
+// Interactive forcing on the grid: each face that touches fluid follows the brush, weighted at the face centre. Momentum added is counted
+// with the open fluid fraction of the face's volume.
 #include "geometry/hand.hpp"
 #include "staggered/effects.hpp"
 
@@ -20,7 +20,7 @@ public:
     }
 
 private:
-    /// Those of the nodes in [lo, hi) that the brush may cover; none where hi <= lo.
+    /// The nodes in [lo, hi) that the brush may cover; none where hi <= lo.
     static Nodes<D> under(const Brush<D>& brush, const MacVelocity<D>& u, Nodes<D> nodes) {
         for (int d = 0; d < D; ++d) {
             const real shift = d == nodes.axis ? 0 : 0.5;
@@ -32,7 +32,7 @@ private:
         }
         return nodes;
     }
-    /// Part of a face's volume that is open and fluid.
+    /// Open fluid fraction of a face's volume.
     static real fluid_share(const MacState<D>& s, int a, const Index<D>& I) {
         real share = 0;
         for (const int side : {-1, 0}) {

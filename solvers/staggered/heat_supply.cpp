@@ -14,7 +14,7 @@ using poisson::Cell;
 
 std::string side_path(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
 
-/// t < moment, where a sum of rounded steps that ends at the moment counts as there.
+/// t < moment, up to rounding of a sum of steps that ends at the moment.
 bool before(real t, real moment) { return t < moment * (1 - 1e-9); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What gives heat to the fluid of a grid: heaters with a power, walls with a flux, walls that exchange heat with the surroundings.
+// Heat sources of the fluid on a grid: heaters with a power, walls with a flux, walls with heat transfer to the surroundings.
 #pragma once
 #include "core/hand.hpp"
 #include "matter/ambient.hpp"
@@ -13,26 +13,26 @@ template <int D>
 class HeatSupply {
 public:
     HeatSupply() = default;
-    /// Refuses sides and heaters that cannot be. `conduction` learns which sides exchange heat.
+    /// Rejects invalid sides and heaters. Sets the sides with heat transfer in `conduction`.
     HeatSupply(const scene::Scene& scene, const MacState<D>& s, const matter::Melting& melting, Conduction<D>& conduction);
-    /// Where cells stay what they are: a heater must have some of fluid.
+    /// For static cells: a heater must cover some fluid.
     void refuse_heaters_without_fluid(const scene::Scene& scene, const MacState<D>& s) const;
 
-    /// What is under the hand goes towards the enthalpy of its temperature; `enthalpy` is that of the cells, and both outlive this.
+    /// Interactive heating: the enthalpy under the brush relaxes to that of its temperature. `enthalpy` is the cells'; both arguments must
+    /// outlive this object.
     void follow(std::shared_ptr<Hand> hand, const matter::Melting& melting, const Grid<real, D>& enthalpy);
 
-    /// q [W/m³] in the cells of fluid from t to t + dt, empty where nothing ever gives any; and `conduction` is told how warm it is
-    /// outside, in the middle of that time. A heater gives its power to the cells of fluid that it covers; where it covers none, it gives
-    /// nothing.
+    /// q [W/m³] in fluid cells from t to t + dt, empty where the scene has no source. Sets the outside temperature of `conduction`, at the
+    /// middle of that time. A heater's power is shared by the fluid cells that it covers; if there are none, it adds no heat.
     const Grid<real, D>& at(real t, real dt, const MacState<D>& s, Conduction<D>& conduction);
-    /// No step should cross the moment at which a heater is switched, or a keyframe [s].
+    /// Time to the next switching of a heater or keyframe [s]; no step should cross it.
     real to_next_change(real t) const;
     const matter::Ambient& ambient() const { return ambient_; }
     std::size_t bytes() const;
 
 private:
     struct Heater {
-        real start, end, power;  // [s], [s], [W; in 2D a metre]
+        real start, end, power;  // [s], [s], [W; in 2D per metre of depth]
         std::vector<std::size_t> cells;
     };
     struct Flux {
@@ -49,7 +49,7 @@ private:
     std::vector<Flux> fluxes_;
     std::vector<std::array<int, 2>> exchanging_;  // axis, end
     Grid<real, D> source_;
-    std::shared_ptr<Hand> hand_;  // none: nobody heats by hand
+    std::shared_ptr<Hand> hand_;  // nullptr: no interactive heating
     const matter::Melting* melting_ = nullptr;
     const Grid<real, D>* enthalpy_ = nullptr;
 };

@@ -8,10 +8,10 @@ namespace weir::staggered {
 
 namespace {
 
-constexpr real smallest_liquid = 1e-3;  // ε: of the same size as in Voller & Prakash 1987; the drag of pure ice is C/ε
-constexpr real least_mobility = 1e-3;   // less is none: the pressure's matrix knows no weaker face
+constexpr real smallest_liquid = 1e-3;  // ε: as large as in Voller & Prakash 1987; the drag of pure ice is C/ε
+constexpr real least_mobility = 1e-3;   // smaller values are set to zero: the pressure matrix has no weaker face
 
-/// β of a face and what it leaves of the velocity there, from the liquid of the cells on both sides.
+/// β of a face and the reduced velocity there, from the liquid fraction of the cells on both sides.
 struct Face {
     real k;
     void operator()(real below, real above, real& beta, real& u) const {
@@ -49,7 +49,7 @@ void Ice<D>::find_ranges(const Grid<real, D>& liquid) {
     });
 }
 
-/// Rows of faces all beside melt, or all beside ice, have one β.
+/// Rows of faces entirely in melt, or entirely in ice, have one β.
 template <int D>
 void Ice<D>::hold_back(MacState<D>& s, const Grid<real, D>& liquid, real k) {
     const Face face{k};

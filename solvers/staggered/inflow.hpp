@@ -1,4 +1,4 @@
-// Inflow profiles by name: the velocity that enters at a point of a side.
+// Inflow profiles by name: the inflow velocity at a point of a side.
 #pragma once
 #include "geometry/sides.hpp"
 #include "staggered/velocity.hpp"

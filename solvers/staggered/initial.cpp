@@ -87,7 +87,7 @@ real slotted_disk(const Vec<2>& y, real radius, real width, real top) {
     real d = std::min(
         {to_segment(y, {{-w, foot}}, {{-w, top}}), to_segment(y, {{w, foot}}, {{w, top}}), to_segment(y, {{-w, top}}, {{w, top}})});
     const real r = norm(y);
-    const bool arc_is_near = r == 0 || !(y[1] / r * radius < foot);  // the point of the circle towards y is not in the slot's mouth
+    const bool arc_is_near = r == 0 || !(y[1] / r * radius < foot);  // the closest point of the circle is not in the slot's mouth
     if (arc_is_near) d = std::min(d, std::abs(r - radius));
     return inside ? -d : d;
 }
@@ -100,7 +100,7 @@ Key initial_keys(const std::vector<std::string>& extra_fields) {
     Key initial{.name = "initial", .type = Type::table, .keys = {velocity, field_key("temperature"), field_key("smoke")}};
     for (const auto& name : extra_fields) {
         Key key = field_key(name);
-        for (const auto& common : scene::common_keys())  // a new field knows the common shapes too
+        for (const auto& common : scene::common_keys())  // a new field also accepts the common shapes
             if (const Key* smoke = common.name == "initial" ? scene::find_key(common.keys, "smoke") : nullptr)
                 for (const auto& variant : scene::variants_of(*smoke)) key.variants.push_back(variant);
         initial.keys.push_back(key);
@@ -176,7 +176,7 @@ void set_initial_velocity(MacState<D>& s, const scene::Scene& scene) {
     sync_periodic(s.u, s.sides);
 }
 
-/// One cell after the other, since threads that ask a formula wait for one another. Refuses one that has no value somewhere, on all ranks.
+/// Serial over cells, because threads evaluating a formula would wait for one another. Throws on all ranks where a formula has no value.
 template <int D>
 static void set_by_formula(Grid<real, D>& q, const MacVelocity<D>& grid, const scene::Scene& scene, const std::string& path) {
     const auto value = scene::formula_of_place<D>(scene, path);

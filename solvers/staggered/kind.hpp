@@ -1,4 +1,4 @@
-// What the kinds of solvers on this grid share: the dimension chosen, the table "scheme".
+// Shared by the solver kinds on this grid: choice of the dimension, and the table "scheme".
 #pragma once
 #include "core/solver.hpp"
 #include "scene/scene.hpp"
@@ -9,14 +9,14 @@
 
 namespace weir::staggered {
 
-/// The solver S of the scene's dimension.
+/// Constructs the solver S of the scene's dimension.
 template <template <int> class S>
 std::unique_ptr<Solver> make(const scene::Scene& scene) {
     if (scene.dim() == 2) return std::make_unique<S<2>>(scene);
     return std::make_unique<S<3>>(scene);
 }
 
-/// The same for solvers that have no free surface: liquid in a part of the domain is a mistake there.
+/// The same for solvers without a free surface; they reject liquid in a part of the domain.
 template <template <int> class S>
 std::unique_ptr<Solver> make_without_surface(const scene::Scene& scene) {
     if (!scene.root().tables("liquid").empty())

@@ -1,5 +1,5 @@
-// Eight nodes of a row at a time, by the compilers' vector extensions: one source for SSE2, AVX2 and AVX-512. Every operation acts on each
-// lane by itself, so that results depend neither on the width of the machine nor on where a row is cut.
+// SIMD over eight nodes of a row, by the compilers' vector extensions: one source for SSE2, AVX2 and AVX-512. Operations are lane-wise, so
+// results do not depend on the vector width or on how a row is divided.
 #pragma once
 #include "core/types.hpp"
 
@@ -20,7 +20,7 @@ using Lanes = real __attribute__((vector_size(lanes * sizeof(real))));
     std::memcpy(&v, from, sizeof v);
     return v;
 }
-/// The first `count` values; the lanes behind them repeat the last one.
+/// Loads the first `count` values; the remaining lanes repeat the last one.
 [[gnu::always_inline]] inline Lanes load(const real* from, int count) {
     if (count >= lanes) return load(from);
     Lanes v;
@@ -28,7 +28,7 @@ using Lanes = real __attribute__((vector_size(lanes * sizeof(real))));
     return v;
 }
 [[gnu::always_inline]] inline void store(real* to, const Lanes& v) { std::memcpy(to, &v, sizeof v); }
-/// The first `count` lanes.
+/// Stores the first `count` lanes.
 [[gnu::always_inline]] inline void store(real* to, const Lanes& v, int count) {
     if (count >= lanes) return store(to, v);
     for (int l = 0; l < count; ++l) to[l] = v[l];
@@ -36,7 +36,7 @@ using Lanes = real __attribute__((vector_size(lanes * sizeof(real))));
 
 /// 0, 1, 2 ..
 [[gnu::always_inline]] inline Lanes counting() { return Lanes{0, 1, 2, 3, 4, 5, 6, 7}; }
-/// As std::min and std::max: the first where both are equal.
+/// As std::min and std::max: the first argument where both are equal.
 [[gnu::always_inline]] inline Lanes smaller(const Lanes& a, const Lanes& b) { return b < a ? b : a; }
 [[gnu::always_inline]] inline Lanes larger(const Lanes& a, const Lanes& b) { return a < b ? b : a; }
 [[gnu::always_inline]] inline Lanes magnitude(const Lanes& a) {
@@ -44,7 +44,7 @@ using Lanes = real __attribute__((vector_size(lanes * sizeof(real))));
     return reinterpret_cast<Lanes>(reinterpret_cast<Bits>(a) & std::int64_t{0x7fffffffffffffff});
 }
 
-/// On which side of zero all lanes are.
+/// The common sign of all lanes.
 enum class Side { below = -1, on = 0, above = 1, both = 2 };
 [[gnu::always_inline]] inline Side side_of(const Lanes& d) {
 #ifdef __AVX512F__

@@ -1,17 +1,17 @@
-// Multilinear interpolation at points less than one cell from their home node: the stencil is then known before the displacement is, so
-// that rows are read contiguously, eight points at a time and without gathers (results agree with sample.hpp to round-off). Along an axis
-// on which home and nodes are aligned the point lies between nodes −1, 0, 1 with the weights of a hat function,
+// Multilinear interpolation at points less than one cell from their home node. The stencil is then independent of the displacement, so rows
+// are read contiguously, eight points at a time and without gathers (results agree with sample.hpp to round-off). Along an axis on which
+// home and nodes are aligned the point lies between nodes −1, 0, 1 with the weights of a hat function,
 //     w₋ = max(−d, 0),  w₀ = 1 − |d|,  w₊ = max(d, 0),            |d| ≤ 1;
-// where they are half a cell apart it lies between the two nodes around the home: ½ − d and ½ + d, |d| ≤ ½.
-// A flow is smooth, so that eight neighbours mostly stand on one side of their homes along every axis. Then one of the outer nodes has no
-// weight for any of them and is not read: 8 nodes instead of 27, and the same bits.
+// where they are staggered by half a cell it lies between the two nodes around the home: ½ − d and ½ + d, |d| ≤ ½.
+// In a smooth flow eight neighbouring points mostly have displacements of one sign along every axis. Then one outer node has zero weight
+// for all of them and is not read: 8 nodes instead of 27, with bitwise equal results.
 #pragma once
 #include "staggered/lanes.hpp"
 #include "staggered/sample.hpp"
 
 namespace weir::staggered {
 
-/// A value and the range of the nodes it was made from (only those whose weight is not zero).
+/// A value and the range of the nodes with nonzero weight.
 struct Bounded {
     Lanes value, low, high;
 };
@@ -26,7 +26,7 @@ struct Bounded {
     const Lanes high = d < zero ? below.high : d > zero ? above.high : here.high;
     return {blend(d, below.value, here.value, above.value), smaller(here.low, low), larger(here.high, high)};
 }
-/// Where all points stand on the side of `other`, or all on their homes.
+/// Where all points lie on the side of `other`, or all on their homes.
 [[gnu::always_inline]] inline Lanes blend_one_side(const Lanes& d, const Lanes& here, const Lanes& other) {
     return magnitude(d) * other + (1 - magnitude(d)) * here;
 }
@@ -37,12 +37,12 @@ struct Bounded {
     return (0.5 - d) * below + (0.5 + d) * above;
 }
 
-/// Eight points that are neighbours in a row: displacements from their homes [cells], and the side of all of them.
+/// Eight neighbouring points of a row: displacements from their homes [cells], and the common sign of each component.
 template <int D>
 struct NearPoints {
     std::array<Lanes, D> d;
     std::array<Side, D> side;
-    unsigned mixed = 0;  // bits of the axes along which they stand on both sides
+    unsigned mixed = 0;  // bits of the axes with displacements of both signs
 
     [[gnu::always_inline]] void find_sides() {
         for (std::size_t a = 0; a < D; ++a) {
@@ -52,8 +52,8 @@ struct NearPoints {
     }
 };
 
-/// Interpolation at eight points. Bits of Aligned tell along which axes homes and nodes are aligned; along the others they are half a cell
-/// apart. q is the node with the index of the first home or, along those others, the lower of the two around it.
+/// Interpolation at eight points. Bits of Aligned: axes along which homes and nodes are aligned; along the others they are staggered by
+/// half a cell. q is the node with the index of the first home or, along the staggered axes, the lower of the two around it.
 template <class Value, unsigned Aligned, int D>
 class Near {
 public:
@@ -66,7 +66,7 @@ public:
     [[gnu::always_inline]] Value at(const real* q) const {
         const unsigned mixed = x.mixed & Aligned;
         if (mixed == 0) return along<D - 1, 0>(q);
-        if constexpr ((Aligned & (Aligned - 1)) != 0) {  // of several axes one is more often mixed than all
+        if constexpr ((Aligned & (Aligned - 1)) != 0) {  // with several axes one with mixed signs is more frequent than all
             if (mixed == (Aligned & 1U)) return along<D - 1, Aligned & 1U>(q);
             if (mixed == (Aligned & 2U)) return along<D - 1, Aligned & 2U>(q);
             if (mixed == (Aligned & 4U)) return along<D - 1, Aligned & 4U>(q);
@@ -97,10 +97,10 @@ private:
 
     const NearPoints<D>& x;
     std::array<std::ptrdiff_t, D> stride;
-    std::array<std::ptrdiff_t, D> step;  // to the outer node on the side of the points
+    std::array<std::ptrdiff_t, D> step;  // to the outer node on the points' side
 };
 
-/// The node that `Near` starts from, seen from the first home of a row.
+/// The first node of `Near` for the first home of a row.
 template <int D>
 const real* near_node(const RowView<D>& v) {
     const real* q = v.q;
@@ -128,7 +128,7 @@ void near_row(const RowView<D>& v, const Displacement<D>& x, int count, real* ou
         });
 }
 
-/// The value at each point of a row; nodes may be half a cell off along some axes.
+/// The value at each point of a row; nodes may be staggered along some axes.
 template <int D>
 void sample_near(const RowView<D>& v, const Displacement<D>& x, int count, real* out) {
     unsigned aligned = 0;

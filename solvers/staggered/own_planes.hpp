@@ -1,4 +1,4 @@
-// Over ranks: may each hold its own planes of a scene on a staggered grid alone, and how?
+// Distributed storage of a scene on a staggered grid: whether it is possible, and how.
 #pragma once
 #include "core/halo.hpp"
 #include "core/held_planes.hpp"
@@ -8,13 +8,14 @@
 
 namespace weir::staggered {
 
-/// Not where somebody looks at whole fields on all ranks, nor where each solves for the pressure itself.
+/// Returns whether fields have distributed storage: not where whole fields are read on all ranks, nor where the pressure solve is
+/// replicated.
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
-/// Where nobody but the scene asks for more.
+/// The same by the scene alone, without requests for whole fields.
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
-/// What of the pressure every rank does alone: the small levels where "multigrid" shares it, the matrix where PETSc does, else all.
+/// The replicated work of the pressure solve: the small levels of a distributed "multigrid", the matrix of PETSc, otherwise all.
 std::string pressure_by_all(const scene::Scene& scene, const Cut& cut);
-/// As a solver of the scene holds them, where alone with `deep` planes beyond its cuts.
+/// The storage of the scene's solver: distributed storage has `deep` ghost planes.
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, int deep, int reach = 1);
 

@@ -1,6 +1,6 @@
-// Which cells a solid parts: it runs between their corners without holding enough of them to close the faces that it crosses. Between
-// cells that are not parted a face is open only where a corner of it lies outside solids, and all such corners of a cell are joined by
-// edges that no solid crosses: so with parted cells closed a wall of any thickness is tight.
+// Cells divided by a thin solid: it passes between their corners but covers too little of them to close the faces that it crosses. Between
+// other cells a face is open only where one of its corners lies outside solids, and all such corners of a cell are connected by edges that
+// no solid crosses. So closing the divided cells makes a wall of any thickness watertight.
 #pragma once
 #include "core/types.hpp"
 #include "geometry/solids.hpp"
@@ -9,8 +9,8 @@
 
 namespace weir::staggered {
 
-/// Whether a solid crosses the line between two points outside solids, of which the distances are known. No solid reaches into the balls
-/// of these distances; where they do not cover the line, its middle is looked at. Crossings shorter than a 256th of the line are not seen.
+/// Returns whether a solid crosses the line between two points outside solids, given their distances to solids. No solid reaches into the
+/// balls of these distances; where they do not cover the line, it is bisected. Crossings shorter than a 256th of the line are not detected.
 template <int D, class Distance>
 bool is_crossed(const Distance& distance, const Vec<D>& a, const Vec<D>& b, real at_a, real at_b, real steepest, int halvings = 8) {
     if (at_a + at_b >= steepest * norm(b - a)) return false;
@@ -34,7 +34,7 @@ Vec<D> corner_of(const Vec<D>& x, const Vec<D>& h, std::size_t corner) {
     return c;
 }
 
-/// Whether the corners outside solids fall into parts that no edge of the cell joins. x: the cell's lower corner.
+/// Returns whether the corners outside solids form several components, not connected by edges of the cell. x: the cell's lower corner.
 template <int D, class Distance>
 bool has_parts(const Distance& distance, const Corners<D>& at, const Vec<D>& x, const Vec<D>& h, real steepest) {
     const real least = geometry::touching * *std::min_element(h.begin(), h.end());
@@ -58,7 +58,8 @@ bool has_parts(const Distance& distance, const Corners<D>& at, const Vec<D>& x, 
     return false;
 }
 
-/// Whether a thin solid parts a cell. The tip of a thick one does not: it fills the face behind it, and does not part the cell before it.
+/// Returns whether a thin solid divides a cell. The tip of a thick one does not: it fills the face behind it, and does not divide the cell
+/// in front.
 template <int D, class Distance>
 bool is_parted(const Distance& distance, const Corners<D>& at, const Vec<D>& x, const Vec<D>& h, real steepest) {
     if (!has_parts<D>(distance, at, x, h, steepest)) return false;

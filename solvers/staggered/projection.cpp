@@ -111,7 +111,7 @@ void PressurePush<D>::add(int a, const Index<D>& first, int count, real* values)
             return inner(begin, end, p, &s_.p(cells) - (a == 0 ? begin : 0));
         }
         if (!s_.sides.open(a, side)) return;
-        const real twice = side == 0 ? 2 : -2;  // p = 0 stands half a cell from the cell's centre
+        const real twice = side == 0 ? 2 : -2;  // p = 0 at half a cell from the cell's centre
         for (int i = begin; i < end; ++i)
             if (!w || w[i] > 0) values[i] += f * (twice * p[i]);
     };
@@ -175,7 +175,7 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
     solver_->setup(matrix_);
 }
 
-/// A cell none of whose faces lets anything through has no pressure: to the solver it is as good as solid.
+/// A cell without any open face has no pressure: the solver treats it as solid.
 template <int D>
 void Projection<D>::leave_out_ice() {
     for_each_row(Index<D>{}, matrix_.cells.extent(), [&](const Index<D>& first, int count) {
@@ -193,7 +193,7 @@ void Projection<D>::leave_out_ice() {
     });
 }
 
-/// rhs = scale ∇·u, everywhere: the solver looks only at fluid cells.
+/// rhs = scale ∇·u in all cells: the solver reads only fluid cells.
 template <int D>
 static void set_rhs(const MacState<D>& s, real scale, Grid<real, D>& rhs) {
     for_each_row(Index<D>{}, s.extent(), [&](const Index<D>& first, int count) {
@@ -221,7 +221,7 @@ static void push_by_pressure(MacState<D>& s, real dt) {
     sync_periodic(s.u, s.sides);
 }
 
-/// Over ranks: by all of them together where the method can, else by each of them.
+/// In parallel: distributed where the method supports it, otherwise replicated on each rank.
 template <int D>
 const poisson::Report& Projection<D>::solve(MacState<D>& s) {
     if (!over_ranks()) return solver_->solve(s.p, rhs_);

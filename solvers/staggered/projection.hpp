@@ -1,4 +1,5 @@
-// The pressure projection: the nearest velocity without divergence that no solid stops (Chorin 1968; Batty, Bertails & Bridson 2007;
+// The pressure projection: the closest divergence-free velocity that satisfies the solid boundary conditions (Chorin 1968; Batty, Bertails
+// & Bridson 2007;
 // Ng, Min & Gibou 2009):     Σ_faces w (p(I) − p(N)) = −h² (ρ/dt) ∇·(w u + (1 − w) u_solid),      u −= (dt/ρ) ∇p.
 #pragma once
 #include "poisson/poisson.hpp"
@@ -18,8 +19,8 @@ struct PoissonChoice {
     static scene::Key key();
 };
 
-/// Volume that leaves cell I per unit of volume and time [1/s]: through the open part of its faces with the fluid, through the rest with
-/// the solid.
+/// Volume flux out of cell I per volume [1/s]: with the fluid's velocity through the open part of its faces, with the solid's through the
+/// rest.
 template <int D>
 real flux_divergence(const MacState<D>& s, const Index<D>& I);
 /// The same for the cells first, first + 1, .. of a row.
@@ -33,7 +34,7 @@ template <int D>
 class PressurePush {
 public:
     PressurePush(const MacState<D>& s, real factor) : s_(s), factor_(factor) {}
-    /// Adds it to the values of the faces along `axis` first, first + 1, .. of a row; faces that are not free get nothing.
+    /// Adds factor ∇p to the values of the faces first, first + 1, .. of a row along `axis`; faces that are not free are unchanged.
     void add(int axis, const Index<D>& first, int count, real* values) const;
 
 private:
@@ -49,10 +50,10 @@ template <int D>
 class Projection {
 public:
     Projection(const PoissonChoice& choice, const MacState<D>& s);
-    /// To be called when solids moved.
+    /// Must be called after solids have moved.
     void set_matrix(const MacState<D>& s);
-    /// Solves for s.p, which is the first guess, and makes s.u free of divergence. `bodies`, or nullptr, get their velocities by the same
-    /// pressure.
+    /// Solves for s.p, with its present values as the initial guess, and makes s.u divergence-free. The same solve computes the velocities
+    /// of `bodies`, if given.
     const poisson::Report& project(MacState<D>& s, real dt, BodiesInFlow<D>* bodies = nullptr, SolidPlacement<D>* solids = nullptr);
     std::size_t bytes() const;
 

@@ -4,7 +4,7 @@ namespace weir::staggered {
 
 namespace {
 
-/// A number in [-1/2, 1/2) from a counter: the splitmix64 finaliser (Steele, Lea & Flood 2014), so that no state is shared by threads.
+/// A number in [-1/2, 1/2) from a counter: the splitmix64 finaliser (Steele, Lea & Flood 2014); threads share no state.
 real noise(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15ULL;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;

@@ -1,4 +1,4 @@
-// Random velocities without divergence: differences of random potentials around each face cancel around each cell, up to round-off.
+// Random divergence-free velocities: the curl of random potentials; differences cancel around each cell up to round-off.
 #pragma once
 #include "staggered/velocity.hpp"
 

@@ -7,9 +7,9 @@
 
 namespace weir::staggered {
 
-inline constexpr int row_block = 128;  // points handled at once: a few kB of scratch that stays in the first-level cache
+inline constexpr int row_block = 128;  // points processed together: a few kB of scratch that stays in the first-level cache
 
-/// The extent of what has one entry a row, and the entry of the row of I.
+/// The extent of an array with one entry per row, and the entry of the row of I.
 template <int D>
 Index<D> rows_of(Index<D> extent) {
     extent[0] = 1;

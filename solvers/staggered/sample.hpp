@@ -1,8 +1,8 @@
-// Interpolation on rows of points. A point is its home node (the one whose value is being computed) and a displacement d in cells.
+// Interpolation on rows of points. A point is its home node (whose value is being computed) plus a displacement d in cells.
 //
-// Mirror symmetry, bit for bit: along an axis the nodes stand at home + shift + integer; with k = rint(d − shift) the remainder
-// r = d − (k + shift) is exact in sign, so a mirrored point has −r, the same two weights |r| and 1 − |r|, and the same two nodes swapped.
-// Sums are taken in pairs that commute under the swap.
+// Mirror symmetry is bitwise. Along an axis the nodes lie at home + shift + integer. With k = rint(d − shift), the remainder r = d − (k +
+// shift) is exact in sign. A mirrored point then has −r, the same two weights |r| and 1 − |r|, and the same two nodes swapped. Sums are
+// taken in pairs that commute under the swap.
 #pragma once
 #include "core/parallel.hpp"
 #include "core/types.hpp"
@@ -16,22 +16,22 @@
 
 namespace weir::staggered {
 
-/// Where a row's points stand: displacement from their home nodes along each axis [cells].
+/// The positions of a row of points: displacement from their home nodes along each axis [cells].
 template <int D>
 struct Displacement {
     alignas(64) real d[D][row_block];
-    bool near = false;  // no component exceeds one cell (traces: half a cell at their middle)
+    bool near = false;  // no component exceeds one cell (traces: half a cell at the midpoint)
 };
 
-/// A padded field seen from a row of home nodes: q is the node with the index of the row's first home node; along axis d the nodes
-/// stand at home + shift[d] + integers, shift being 0 or ± ½.
+/// A padded field relative to a row of home nodes. q is the node with the index of the row's first home node; along axis d the nodes lie at
+/// home + shift[d] + integers, with shift 0 or ± ½.
 template <int D>
 struct RowView {
     const real* q;
     std::array<int, D> stride;
     std::array<real, D> shift;
 
-    /// Component or cell field living on `node_axis` (−1: cell centres) seen from homes on `home_axis`.
+    /// Component or cell field on `node_axis` (−1: cell centres), relative to homes on `home_axis`.
     RowView(const Padded<D>& field, const Index<D>& first, int node_axis, int home_axis) : q(field.at(first)) {
         for (int d = 0; d < D; ++d) {
             const auto at = static_cast<std::size_t>(d);
@@ -76,7 +76,7 @@ void sample_linear(const RowView<D>& v, const Displacement<D>& x, int count, rea
     for (int i = 0; i < count; ++i) out[i] = linear(v, x, i);
 }
 
-/// The smallest and largest of the nodes around each point whose weight is not zero.
+/// The minimum and maximum of the nodes with nonzero weight around each point.
 template <int D>
 void sample_bounds(const RowView<D>& v, const Displacement<D>& x, int count, real* low, real* high) {
 #pragma omp simd
@@ -100,14 +100,14 @@ void sample_bounds(const RowView<D>& v, const Displacement<D>& x, int count, rea
     }
 }
 
-/// Lagrange's cubic through four equidistant values; g and f = 1 − g are the weights of the middle two.
+/// Lagrange cubic through four equidistant values; g and f = 1 − g are the weights of the middle two.
 inline real lagrange_cubic(real qm, real q0, real q1, real q2, real g, real f) {
     const real fg = f * g;
     return (0.5 * (1 + f) * g * (1 + g) * q0 + 0.5 * (1 + g) * f * (1 + f) * q1) - (fg * (1 + g) * qm + fg * (1 + f) * q2) / 6;
 }
 
-/// Hermite's cubic with central slopes, each set to zero where its sign is not that of the interval: monotone (Fedkiw, Stam & Jensen
-/// 2001, appendix B).
+/// Hermite cubic with central slopes; a slope is set to zero where its sign differs from that of the interval: monotone (Fedkiw, Stam &
+/// Jensen 2001, appendix B).
 inline real monotone_cubic(real qm, real q0, real q1, real q2, real g, real f) {
     const real delta = q1 - q0, s0 = 0.5 * (q1 - qm), s1 = 0.5 * (q2 - q0);
     const real d0 = s0 * delta > 0 ? s0 : 0, d1 = s1 * delta > 0 ? s1 : 0;

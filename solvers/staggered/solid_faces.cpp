@@ -28,7 +28,7 @@ real fraction(const Grid<real, D>& corner, const Distance& distance, const MacVe
     return open < least_open_fraction ? 0 : open;
 }
 
-/// Does this rank hold a plane and those beside it?
+/// Returns whether this rank stores a plane and its neighbours.
 template <int D>
 bool is_amid(const Grid<real, D>& q, int plane) {
     bool all = true;
@@ -36,8 +36,8 @@ bool is_amid(const Grid<real, D>& q, int plane) {
     return all;
 }
 
-/// Of `count` faces of a row the fractions, 1 where all corners lie further from solids than `touching` and 0 elsewhere, and no velocity;
-/// answers whether all are 1.
+/// Open fractions of `count` faces of a row: 1 where all corners are farther from solids than `touching`, 0 elsewhere; velocities are zero.
+/// Returns whether all fractions are 1.
 template <int D>
 bool open_row(const Grid<real, D>& corner, int a, const Index<D>& I, int count, real touching, real* open, real* velocity) {
     std::array<const real*, 1 << (D - 1)> at;
@@ -61,7 +61,7 @@ Index<D> corner_of_cell(Index<D> I, std::size_t corner) {
     return I;
 }
 
-/// f(I, count) for every row along x of a box, of the planes of q that are held here, threaded over the slowest axis.
+/// f(I, count) for every row along x of a box, in the planes of q that this rank stores, threaded over the slowest axis.
 template <class T, int D, class F>
 void for_each_held_row(const Grid<T, D>& q, const Index<D>& lo, const Index<D>& hi, F&& f) {
     Index<D> ends = hi;
@@ -69,7 +69,7 @@ void for_each_held_row(const Grid<T, D>& q, const Index<D>& lo, const Index<D>& 
     if (lo[0] < hi[0]) for_each_held(q, lo, ends, [&](const Index<D>& I) { f(I, hi[0] - lo[0]); });
 }
 
-/// Component b at a face along a: itself, or the mean of the four faces around it.
+/// Component b at a face along a: its own value, or the mean of the four surrounding faces.
 template <int D>
 real component_at(const PaddedVelocity<D>& u, int b, int a, const Index<D>& I) {
     if (b == a) return u[a](I);
@@ -86,10 +86,10 @@ SolidPlacement<D>::SolidPlacement(geometry::Solids<D> solids, MacState<D>& state
     corner_ = Grid<real, D>(state.extent() + Index<D>::constant(1));
     open(state, detail::own_share.kept);
     place(state, 0);
-    placed_ = false;  // whoever keeps something of the solids in each cell has seen nothing of this yet
+    placed_ = false;  // data derived from the solids have not been updated yet
 }
 
-/// A cell is what its faces are, and a face what its corners are: those are known one plane farther each.
+/// Allocates ghost planes. Cells depend on their faces, and faces on their corners: each needs one plane more.
 template <int D>
 void SolidPlacement<D>::open(MacState<D>& s, int planes) {
     known_ = planes;
@@ -119,7 +119,7 @@ template <int D>
 void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
     const bool alone = corner_.store().windowed();
-    const AllPlanes all(!alone);  // over ranks: of what a rank holds, it finds everything
+    const AllPlanes all(!alone);  // distributed storage: each rank computes all planes that it stores
     solids_.set_time(time_ = t);
     find_changed(s);
     for (std::size_t box = 0; box < changed_.size(); ++box) {
@@ -132,8 +132,8 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (alone && moving()) rate_ = find_rate(s);
 }
 
-/// The distances at the corners of a box, as far as anybody asks for them. The two ends of a periodic axis are one place: they have the
-/// same bits, so that a face there is as open at one end as at the other.
+/// Signed distances at the corners of a box, as far as they are used. The two ends of a periodic axis get the same bits, so that face
+/// fractions agree there.
 template <int D>
 void SolidPlacement<D>::place_corners(const MacState<D>& s, std::size_t box) {
     solids_.find_near(changed_[box].region(s.u.origin, s.u.h), 2 * norm(s.u.h), near_[box]);
@@ -164,8 +164,8 @@ void SolidPlacement<D>::place_faces(MacState<D>& s, std::size_t box) const {
     }
 }
 
-/// Cells that a thin solid parts, all their faces: it blocks, whatever its thickness. Not by free bodies, whose motion answers to every
-/// cell that closes at once.
+/// Closes all faces of cells divided by a thin solid, so that it blocks the flow at any thickness. Free bodies are excluded: each cell that
+/// closes would disturb their motion.
 template <int D>
 void SolidPlacement<D>::close_parted_cells(MacState<D>& s, std::size_t box) const {
     const auto& near = near_[box];
@@ -226,7 +226,7 @@ void SolidPlacement<D>::place_cells(MacState<D>& s, std::size_t box) const {
     });
 }
 
-/// Cells that have a corner in the ball that holds a solid.
+/// Cells with a corner in the bounding ball of a solid.
 template <int D>
 CellBox<D> SolidPlacement<D>::cells_of(const MacState<D>& s, std::size_t solid) const {
     const geometry::Ball<D>& ball = solids_.ball(solid);
@@ -239,7 +239,7 @@ CellBox<D> SolidPlacement<D>::cells_of(const MacState<D>& s, std::size_t solid) 
     return box;
 }
 
-/// Everything at first, and where a solid moves of which no ball is known that holds it.
+/// The boxes to update: everything at first, and where a moving solid has no bounding ball.
 template <int D>
 void SolidPlacement<D>::find_changed(const MacState<D>& s) {
     changed_.clear();
@@ -254,7 +254,7 @@ void SolidPlacement<D>::find_changed(const MacState<D>& s) {
             both.lo[d] = std::min(both.lo[d], held_[i].lo[d]), both.hi[d] = std::max(both.hi[d], held_[i].hi[d]);
         held_[i] = now;
         if (everything) continue;
-        Index<D> margin;  // a cell that far out has its middle half a cell less away
+        Index<D> margin;  // a cell's centre lies half a cell inside its outer edge
         for (int d = 0; d < D; ++d) margin[d] = static_cast<int>(reach(s.u.h, solids_[i].shape->steepest()) / s.u.h[d] + 0.5);
         changed_.push_back(both.grown(margin, s.extent()));
     }
@@ -275,7 +275,7 @@ void SolidPlacement<D>::set_faces(MacState<D>& s) const {
     }
 }
 
-/// Closed faces of free-slip solids that have an open neighbour along the grid, with the solid's normal there.
+/// Closed faces of free-slip solids with an open neighbour along the grid, and the solid's normal there.
 template <int D>
 void SolidPlacement<D>::find_extended(const MacState<D>& s) {
     extends_ = true;
@@ -296,7 +296,7 @@ void SolidPlacement<D>::find_extended(const MacState<D>& s) {
             }
             if (open[at] > 0) continue;
             const Index<D> I = index_of<D>(open.extent(), at);
-            const bool joined = a < D - 1 && s.sides.periodic(a) && I[a] == 0;  // face 0 is the last one too
+            const bool joined = a < D - 1 && s.sides.periodic(a) && I[a] == 0;  // face 0 equals the last one
             if ((I[a] == 0 && !joined) || I[a] == s.u.cells[a] || !beside_open(I)) continue;
             const Vec<D> x = s.u.face_centre(a, I);
             if (solids_[solids_.nearest(x)].no_slip) continue;
@@ -311,14 +311,14 @@ void SolidPlacement<D>::see_velocities(const MacState<D>& s) {
         if (extends_) f.velocity = solids_.velocity(s.u.face_centre(f.axis, f.face));
 }
 
-/// The mean of the open neighbours, then without what would pass through the solid: u ← u − ((u − u_solid)·n) n. Left in, it feeds the
-/// flow beside the solid and grows.
+/// Extrapolates free-slip velocities: the mean of the open neighbours, minus the flow through the solid: u ← u − ((u − u_solid)·n) n. With
+/// the normal part the flow beside the solid would grow unstably.
 template <int D>
 void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
     if (any() && !extends_) find_extended(s);
     if (extended_.empty()) return;
     const int count = static_cast<int>(extended_.size());
-    // over ranks: where the planes beside have been brought
+    // in parallel: ghost planes must be filled
     const auto skips = [&](const Extended& f) { return !s.before[0].holds(f.face[D - 1] - 1) || !s.before[0].holds(f.face[D - 1] + 1); };
     parallel_for(0, count, [&](int i) {
         const Extended& f = extended_[static_cast<std::size_t>(i)];
@@ -327,9 +327,9 @@ void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
         real sum = 0;
         int known = 0;
         for (int b = 0; b < D; ++b) {
-            real pair = 0;  // the two neighbours along an axis are added first, so that a mirror changes nothing
+            real pair = 0;  // the two neighbours along an axis are added first: mirror symmetry is bitwise
             for (const Index<D>& N : {f.face - e<D>(b), f.face + e<D>(b)})
-                if (open.contains(N) && open(N) > 0) pair += s.before[f.axis](N), ++known;  // open: as it was
+                if (open.contains(N) && open(N) > 0) pair += s.before[f.axis](N), ++known;  // open: before this extrapolation
             sum += pair;
         }
         s.before[f.axis](f.face) = sum / known;
@@ -374,7 +374,7 @@ real SolidPlacement<D>::max_rate(const MacState<D>& s) const {
     return rate_ ? *rate_ : find_rate(s);
 }
 
-/// Over ranks, each looks at its own planes.
+/// In parallel, each rank reads its own planes.
 template <int D>
 real SolidPlacement<D>::find_rate(const MacState<D>& s) const {
     bool told = false;
@@ -383,7 +383,7 @@ real SolidPlacement<D>::find_rate(const MacState<D>& s) const {
     real rate = 0;
     for (int a = 0; a < D; ++a) {
         const auto& velocity = s.solid.velocity[static_cast<std::size_t>(a)];
-        real fastest = 0;  // of solids that moved: all others stand
+        real fastest = 0;  // of moving solids: all others are at rest
         for (const CellBox<D>& box : changed_)
             box.faces(a).rows([&](const Index<D>& I, int count) {
                 if (!is_own_plane(I[D - 1])) return;

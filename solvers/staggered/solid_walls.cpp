@@ -10,7 +10,7 @@ namespace weir::staggered {
 
 namespace {
 
-/// Where a node stands in a grid that repeats itself along periodic axes; `inside`: in the grid at all.
+/// Position of a node in a grid that is periodic along some axes; `inside`: whether it is in the grid.
 template <int D>
 struct Wrapped {
     Index<D> node;
@@ -22,20 +22,20 @@ struct Wrapped {
     }
 };
 
-/// The share of a wall's velocity that changes across the component: ∂v_b/∂x_a of a rigid motion.
+/// The tangential part of a wall velocity's gradient: ∂v_b/∂x_a of a rigid motion.
 template <int D>
 real turn_of(const geometry::Pose<D>& pose, const Vec<D>& x, int a, int b) {
     if (a == b) return 0;
     return pose.velocity_at(x + Vec<D>::unit(a))[b] - pose.velocity_at(x)[b];
 }
 
-/// Bodies that the fluid sticks to are wall_grip.hpp's.
+/// No-slip bodies are handled in wall_grip.hpp.
 template <int D>
 bool is_body(const geometry::Solid<D>& solid) {
     return solid.free && solid.no_slip;
 }
 
-/// One wall, as the geometry gives it.
+/// One wall, from the geometry.
 template <int D>
 SolidWall<D> wall_between(const MacState<D>& s, const geometry::Solids<D>& solids, int a, const Index<D>& I, const Index<D>& N, int across,
                           int way, const std::vector<geometry::Pose<D>>& last) {
@@ -68,9 +68,9 @@ bool SolidWalls<D>::found() const {
 template <int D>
 void SolidWalls<D>::find(const MacState<D>& s, const SolidPlacement<D>& placement, real now, real last) {
     const real largest = *std::max_element(s.u.h.begin(), s.u.h.end());
-    // no solid goes farther than this from where it was placed, unless it starts from rest faster than the fluid beside it
+    // bound on the displacement since the placement, unless a solid starts from rest faster than the fluid beside it
     const real margin = now > last ? (0.05 + 1.2 * (now - last) * placement.max_rate(s)) * largest : 0;
-    stick_ = false;  // the same on all ranks, whoever has walls
+    stick_ = false;  // the same on all ranks, including those without walls
     for (std::size_t k = 0; k < placement.solids().count(); ++k)
         stick_ = stick_ || (placement.solids()[k].no_slip && !placement.solids()[k].free);
     last_.resize(placement.solids().count());
@@ -83,7 +83,7 @@ void SolidWalls<D>::find(const MacState<D>& s, const SolidPlacement<D>& placemen
     any_ = true, begin_ = detail::own_share.begin, end_ = detail::own_share.end;
 }
 
-/// Faces whose centre lies in a no-slip solid move with it. Most faces are too far from any for the distance to be looked up.
+/// Faces whose centre lies in a no-slip solid move with it. Most faces are too far from any solid to need a distance.
 template <int D>
 void SolidWalls<D>::set_mask(const MacState<D>& s, const SolidPlacement<D>& placement, int a, real margin) {
     const auto at = static_cast<std::size_t>(a);
@@ -131,7 +131,7 @@ void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& pl
     CellBox<D>{free.lo, free.hi}.rows([&](Index<D> I, int count) {
         const real *m = mask.at(I), *w = &open(I);
         for (int i = 0; i < count; ++i, ++I[0]) {
-            bool amid = m[i] != 0;  // of faces that take part, as most are
+            bool amid = m[i] != 0;  // fluid faces, as most are
             for (int b = 0; b < D; ++b) amid = amid && m[i - mask.stride(b)] != 0 && m[i + mask.stride(b)] != 0;
             if (!amid && w[i] > 0) look(I);
         }
@@ -161,7 +161,7 @@ struct Slopes {
     const WallNode<D>& node;
 
     real of_wall(const SolidWall<D>& wall) const { return wall.nearer * (wall.now - s.u[a](node.node)) / s.u.h[wall.across]; }
-    /// Away from a wall; as steep as at the wall where nothing is known.
+    /// Slope away from a wall; the slope at the wall where no other value exists.
     real away_from(const SolidWall<D>& wall) const {
         for (const SolidWall<D>& other : all.walls(a, node))
             if (other.across == wall.across && other.way != wall.way) return other.no_slip ? of_wall(other) : 0;
@@ -183,7 +183,7 @@ void add_torque(SolidLoad<D>& load, int a, real force, const Vec<D>& x) {
     }
 }
 
-/// The sum of what each plane bears, in order.
+/// Sums the contribution of each plane, in order.
 template <int D, class F>
 SolidLoad<D> load_over(int planes, F&& of_plane) {
     std::vector<SolidLoad<D>> part(static_cast<std::size_t>(planes));
@@ -197,8 +197,8 @@ SolidLoad<D> load_over(int planes, F&& of_plane) {
 
 }  // namespace
 
-/// The fluid between the wall and the middle of the node's cell is θ + ½ cells high and not one: the wall bears what the difference is
-/// worth, (½ − θ) h ∂²u/∂n² more than the slope from wall to node. The rest of the stress, (∇u)ᵀ n, is that of the rigid motion.
+/// The fluid between the wall and the edge of the node's cell has a height of θ + ½ cells instead of one. The difference adds (½ − θ) h
+/// ∂²u/∂n² to the slope from wall to node. The remaining stress, (∇u)ᵀ n, is that of the rigid motion.
 template <int D>
 SolidLoad<D> SolidWalls<D>::friction(const MacState<D>& s) const {
     const auto before = [](const WallNode<D>& n, int plane) { return n.node[D - 1] < plane; };

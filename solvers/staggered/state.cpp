@@ -17,7 +17,7 @@ auto find_in(Fields& fields, std::string_view name) -> decltype(&fields.front().
     return nullptr;
 }
 
-/// The effect, and the exact flow that depends on it.
+/// The effect, and the exact solution that depends on it.
 template <int D>
 bool asks_for_viscosity(const scene::Scene& scene, const geometry::Sides<D>& sides) {
     bool asks = scene.effect("viscosity") != nullptr || scene.root().text_or("initial.velocity.name", "") == "kovasznay";

@@ -1,4 +1,4 @@
-// Everything that a MAC solver carries from step to step: velocity, pressure, what each cell is, solids on faces, carried fields.
+// The state of a MAC solver: velocity, pressure, cell flags, solids on faces, advected fields.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/effects.hpp"
@@ -15,7 +15,7 @@
 
 namespace weir::staggered {
 
-/// A cell whose value a source holds.
+/// A cell with a value prescribed by a source.
 struct Held {
     std::size_t cell;
     real value;
@@ -25,17 +25,17 @@ template <int D>
 struct NamedField {
     std::string name;
     Grid<real, D> values;
-    Padded<D> before;          // as it was when the (sub)step began, with ghosts; allocated by solvers that use it
-    Boundary<D> boundary;      // what the sides do to it
-    std::vector<Held> held{};  // throughout this step, in the order in which they are set
-    bool derived = false;      // follows from another field: not carried itself
+    Padded<D> before;          // at the start of the (sub)step, with ghosts; allocated by solvers that use it
+    Boundary<D> boundary;      // boundary conditions of the sides
+    std::vector<Held> held{};  // during this step, in the order in which they are set
+    bool derived = false;      // computed from another field: not advected itself
 
     void hold() {
         for (const Held& h : held) values[h.cell] = h.value;
     }
 };
 
-/// The solids as the faces see them (Batty, Bertails & Bridson 2007; Ng, Min & Gibou 2009). Empty grids without solids.
+/// Solids as face data (Batty, Bertails & Bridson 2007; Ng, Min & Gibou 2009). Empty grids without solids.
 template <int D>
 struct SolidFaces {
     std::array<Grid<real, D>, D> open;      // fraction of the face that is open to flow, in [0, 1]
@@ -48,34 +48,34 @@ struct WallGrip;
 template <int D>
 class SolidWalls;
 
-/// The state of a MAC solver. Cell fields exist only if an effect (or the scene) asked for them.
+/// The state of a MAC solver. Cell fields exist only if an effect or the scene requests them.
 template <int D>
 struct MacState {
     MacVelocity<D> u;                     // [m/s]
     Grid<real, D> p;                      // pressure [Pa]
     Grid<poisson::Cell, D> cells;         // fluid, solid (air: only with a free surface)
-    PaddedVelocity<D> before;             // u as it was when the (sub)step began, with ghosts; allocated by solvers that use it
-    std::array<Boundary<D>, D> boundary;  // what the sides do to each component of u
+    PaddedVelocity<D> before;             // u at the start of the (sub)step, with ghosts; allocated by solvers that use it
+    std::array<Boundary<D>, D> boundary;  // boundary conditions of each component of u
     SolidFaces<D> solid;                  // allocated only if the scene has solids
-    std::vector<NamedField<D>> fields;    // carried by the flow
+    std::vector<NamedField<D>> fields;    // advected by the flow
     std::vector<NamedField<D>> scratch;
     geometry::Sides<D> sides;
-    /// How far a face follows the pressure, in [0, 1]; empty: all of them do, as long as nothing has held one back.
+    /// The factor of the pressure gradient on each face, in [0, 1]; empty: 1 everywhere, as long as no drag acts.
     std::array<Grid<real, D>, D> mobility;
-    WallGrip<D>* grip = nullptr;  // where the fluid sticks to bodies; none: nowhere
-    const SolidWalls<D>* walls = nullptr;  // of solids, as viscosity meets them; none: there are none, or no viscosity
-    real rho = 1;                 // density [kg/m³]
-    real nu = 0;                  // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
-    real time = 0;                // [s]
+    WallGrip<D>* grip = nullptr;           // no-slip walls of bodies; nullptr: none
+    const SolidWalls<D>* walls = nullptr;  // walls of solids for viscosity; nullptr: no solids or no viscosity
+    real rho = 1;                          // density [kg/m³]
+    real nu = 0;                           // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
+    real time = 0;                         // [s]
 
     MacState() = default;
     MacState(const scene::Scene& scene, const FieldPlan& plan);
 
     const Index<D>& extent() const { return u.cells; }
-    /// The carried field, or nullptr where nothing asked for it.
+    /// The advected field, or nullptr where it was not requested.
     Grid<real, D>* find(std::string_view name);
     const Grid<real, D>* find(std::string_view name) const;
-    /// The carried field; asking for one that does not exist is a programming error.
+    /// The advected field; it must exist (precondition).
     Grid<real, D>& operator[](std::string_view name) { return field(name).values; }
     NamedField<D>& field(std::string_view name);
     Grid<real, D>& scratch_field(std::string_view name);

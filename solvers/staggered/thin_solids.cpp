@@ -16,7 +16,7 @@ struct Deepest {
     real distance = infinity;
 };
 
-/// The point of a grid of half cells at which a shape's distance is least, and from there downhill by ever shorter steps.
+/// Samples a shape's distance on a grid of half cells; from its minimum, descends with decreasing steps.
 template <int D>
 Deepest<D> deepest_point(const geometry::Shape<D>& shape, const Vec<D>& origin, const Index<D>& cells, const Vec<D>& h) {
     Deepest<D> best;
@@ -28,7 +28,7 @@ Deepest<D> deepest_point(const geometry::Shape<D>& shape, const Vec<D>& origin, 
     };
     Index<D> points;
     for (int d = 0; d < D; ++d) points[d] = 2 * cells[d] + 1;
-    const int most = 64;  // samples along an axis: few see a thick solid, and from the nearest a thin one is walked to
+    const int most = 64;  // samples along an axis: enough to find thick solids; thin ones are reached by descent from the nearest sample
     Index<D> stride;
     for (int d = 0; d < D; ++d) stride[d] = std::max(1, points[d] / most);
     CellBox<D> box{Index<D>{}, points};

@@ -1,4 +1,4 @@
-// What a scene on a grid says without meaning it: solids thinner than its cells resolve.
+// Detects solids thinner than the cells of the grid resolve.
 #pragma once
 #include "scene/scene.hpp"
 
@@ -7,11 +7,11 @@
 
 namespace weir::staggered {
 
-/// Cells across a solid from which its faces stand where they are along the grid, and at any slope.
+/// Thickness in cells above which a solid's faces are located correctly along the grid, and for any slope.
 inline constexpr double aligned_cells = 1, resolved_cells = 2;
 
-/// One line for each solid that is thinner at its thickest than aligned_cells: its name, its thickness in cells, and the cells needed. The
-/// thickness is twice the largest distance to the surface found inside, from samples half a cell apart on.
+/// One line for each solid whose largest thickness is below aligned_cells: its name, its thickness in cells, and the cells needed. The
+/// thickness is twice the largest depth inside, searched from samples half a cell apart.
 std::vector<std::string> remarks_on_thin_solids(const scene::Scene& scene);
 
 }  // namespace weir::staggered

@@ -22,7 +22,7 @@ namespace {
 
 inline real clamp_to(real d, real low, real high) { return d < low ? low : d > high ? high : d; }
 
-/// d[i] in [low - step i, high - step i]: homes advance by `step` cells along the row.
+/// Clamps d[i] to [low - step i, high - step i]: homes advance by `step` cells along the row.
 void clamp_row(real* d, int count, real low, real high, real step) {
 #pragma omp simd
     for (int i = 0; i < count; ++i) d[i] = clamp_to(d[i], low - step * i, high - step * i);
@@ -36,7 +36,7 @@ void Domain<D>::keep_inside(int home_axis, const Index<D>& first, int count, Dis
         const real n = cells[a], home = first[a] + (a == home_axis ? 0.0 : 0.5);
         real* d = x.d[a];
         if (periodic[static_cast<std::size_t>(a)]) {
-            if (x.near) continue;  // the ghost layers are there
+            if (x.near) continue;  // the ghost layers cover it
             const real step = a == 0 ? 1 : 0;
 #pragma omp simd
             for (int i = 0; i < count; ++i) d[i] -= n * std::floor((home + step * i + d[i]) / n);
@@ -63,7 +63,7 @@ GridBacktrace<D>::GridBacktrace(const PaddedVelocity<D>& u, const MacVelocity<D>
                                 const std::string& scheme)
     : u_(u), h_(grid.h), domain_(grid.cells, sides), rk_(tableau(scheme)) {}
 
-/// At the nodes themselves every component is an average of its two or four nearest faces.
+/// At the nodes every component is the mean of its two or four nearest faces.
 template <int D>
 void GridBacktrace<D>::velocity_at_home(int home_axis, const Index<D>& first, int count, Displacement<D>& k) const {
     for (int b = 0; b < D; ++b) {
@@ -103,7 +103,7 @@ static void scale(const Displacement<D>& k, const Vec<D>& factor, int count, Dis
 
 namespace {
 
-/// Component B seen from homes of one kind, eight at a time.
+/// Component B relative to homes of one kind, eight at a time.
 template <int D, int Home, int B>
 class NearComponent {
 public:
@@ -127,7 +127,7 @@ public:
     }
 
 private:
-    static constexpr unsigned half = (1U << B) ^ (Home < 0 ? 0U : 1U << std::max(Home, 0));  // axes along which nodes are half a cell off
+    static constexpr unsigned half = (1U << B) ^ (Home < 0 ? 0U : 1U << std::max(Home, 0));  // axes with nodes staggered by half a cell
     static constexpr unsigned aligned = ((1U << D) - 1U) & ~half;
     const real* q_;
     std::array<int, D> stride_;
@@ -163,7 +163,7 @@ void GridBacktrace<D>::near_midpoint(const Index<D>& first, int count, real dt, 
     const NearVelocity<D, Home> u(u_, first);
     Vec<D> half, whole;  // displacement [cells] per unit of velocity
     std::array<std::array<real, 2>, D> reach;
-    bool beside = false;  // a side
+    bool beside = false;  // next to a side
     for (int a = 0; a < D; ++a) {
         const real cells = -dt / h_[a];
         half[a] = rk_.c[1] * cells;
@@ -201,7 +201,7 @@ void GridBacktrace<D>::row(int home_axis, const Index<D>& first, int count, real
     Displacement<D> k, x;
     Vec<D> cells;  // displacement [cells] per unit of velocity
     for (int a = 0; a < D; ++a) cells[a] = -dt / h_[a];
-    to.near = is_near(dt);  // interpolated velocities never exceed their nodes, so no stage goes farther
+    to.near = is_near(dt);  // interpolation never exceeds the node values, so no stage goes farther
     if (to.near && rk_.stages == 2) {
         if (home_axis < 0) return near_midpoint<-1>(first, count, dt, to);
         if (home_axis == 0) return near_midpoint<0>(first, count, dt, to);

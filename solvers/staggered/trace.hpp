@@ -1,4 +1,4 @@
-// Where a fluid parcel was: Runge-Kutta traces of rows of points through a velocity.
+// Backward trajectories: Runge-Kutta traces of rows of points through a velocity field.
 #pragma once
 #include "geometry/sides.hpp"
 #include "staggered/sample.hpp"
@@ -9,7 +9,7 @@
 
 namespace weir::staggered {
 
-/// A Runge-Kutta scheme in which each stage looks only at the one before: nodes c and weights b.
+/// A Runge-Kutta scheme in which each stage depends only on the previous one: nodes c and weights b.
 struct Tableau {
     int stages;
     std::array<real, 4> c;  // stage s is evaluated at x − c[s] dt k(s−1)
@@ -18,19 +18,19 @@ struct Tableau {
 /// "rk1" Euler; "rk2" midpoint; "rk3" Ralston 1962; "rk4" the classical scheme.
 const Tableau& tableau(const std::string& name);
 
-/// Traces rows of nodes. One virtual call a row.
+/// Traces rows of nodes. One virtual call per row.
 template <int D>
 class Backtrace {
 public:
     virtual ~Backtrace() = default;
-    /// Displacement, in cells, of the points from which the nodes [first, first + count) of the row are reached in dt; negative dt:
-    /// to which they will go. `home_axis`: which faces the nodes are, −1 for cell centres. The points stay in the domain.
+    /// Displacement [cells] to the points from which the nodes [first, first + count) of the row are reached in dt; for negative dt, to
+    /// their destinations. `home_axis`: the faces' axis, −1 for cell centres. The points stay in the domain.
     virtual void row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const = 0;
-    /// Whether none of them is farther than a cell.
+    /// Returns whether all displacements are within one cell.
     virtual bool is_near(real) const { return false; }
 };
 
-/// The box that traced points must not leave: clamped to it, or wrapped along periodic axes.
+/// The box of traced points: they are clamped to it, or wrapped along periodic axes.
 template <int D>
 struct Domain {
     Index<D> cells{};
@@ -39,11 +39,11 @@ struct Domain {
         for (int a = 0; a < D; ++a) periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
     }
     void keep_inside(int home_axis, const Index<D>& first, int count, Displacement<D>& x) const;
-    /// Displacements along axis a that a node may have there; along a periodic one the ghost layers are there.
+    /// The allowed displacements of a node along axis a; along a periodic axis the ghost layers limit them.
     std::array<real, 2> reach(int home_axis, const Index<D>& first, int a) const;
 };
 
-/// Through the staggered velocity itself, frozen over the step.
+/// Traces through the staggered velocity, frozen over the step.
 template <int D>
 class GridBacktrace final : public Backtrace<D> {
 public:

@@ -55,7 +55,7 @@ real divergence(const MacVelocity<D>& u, const Index<D>& I) {
     return sum;
 }
 
-/// The index whose place in memory is `at`, x fastest.
+/// The index of the entry `at`, x fastest.
 template <int D>
 Index<D> index_of(const Index<D>& extent, std::size_t at) {
     Index<D> I;
@@ -67,7 +67,7 @@ Index<D> index_of(const Index<D>& extent, std::size_t at) {
     return I;
 }
 
-/// f(I) on every face along `a` with a cell on both sides inside the domain.
+/// f(I) on every face along `a` with cells on both sides inside the domain.
 template <int D, class F>
 void for_each_inner_face(const MacVelocity<D>& u, int a, F&& f) {
     for_each_in(e<D>(a), u.cells, f);
@@ -80,7 +80,7 @@ struct Nodes {
     Index<D> lo, hi;
 };
 
-/// The faces along `axis` whose velocity is an unknown: the inner faces, those on open sides, and the one that a periodic axis joins.
+/// The faces along `axis` whose velocity is an unknown: inner faces, faces on open sides, and the joined face of a periodic axis.
 template <int D>
 Nodes<D> free_faces(const MacVelocity<D>& u, const geometry::Sides<D>& sides, int axis) {
     Nodes<D> nodes{axis, {}, u.cells};
@@ -101,7 +101,7 @@ void for_each_free_face(const MacVelocity<D>& u, const geometry::Sides<D>& sides
     for_each_in(faces.lo, faces.hi, f);
 }
 
-/// Copies face 0 of every periodic axis to its other end; over ranks, brings the faces at both cuts' far sides.
+/// Copies face 0 of every periodic axis to its other end; in parallel, fills the faces beyond both subdomain boundaries.
 template <int D>
 void sync_periodic(MacVelocity<D>& u, const geometry::Sides<D>& sides) {
     refresh(u[D - 1], sides.periodic(D - 1));

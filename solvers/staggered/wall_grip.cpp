@@ -48,8 +48,8 @@ private:
         }
     }
 
-    /// Where closed faces are held too, each belongs to one body, and those that stress does not reach are left out: it is felt on the
-    /// edges of cells that are not closed, which no point of a body is deeper in than two diagonals of a cell.
+    /// Stores a face inside a body. With holds_closed each closed face belongs to one body; faces that stress does not reach are left out.
+    /// It acts on the edges of cells that are not closed, at most two cell diagonals deep in a body.
     void hold(int a, const Index<D>& I, real away) {
         if (!grip_.holds_closed)
             grip_.takes_part[static_cast<std::size_t>(a)](I) = 0;

@@ -1,9 +1,9 @@
-// Where a fluid with viscosity sticks to bodies: the nodes of a velocity component that have the wall of a body between them and a
-// neighbour. The wall stands a part θ of a cell away and holds its own velocity there (Gibou, Fedkiw, Cheng & Kang 2002):
+// No slip on bodies in a viscous fluid: the nodes of a velocity component with the wall of a body between them and a neighbour. The wall is
+// at a distance of θ cells and imposes its velocity there (Gibou, Fedkiw, Cheng & Kang 2002):
 //
-//     (u(N) − u(I))/h²  becomes  (u_wall − u(I))/(θ h²),      the body feels  ρν ΔV (u(I) − u_wall)/(θ h²)
+//     (u(N) − u(I))/h²  becomes  (u_wall − u(I))/(θ h²),      force on the body  ρν ΔV (u(I) − u_wall)/(θ h²)
 //
-// so that the body gets what the fluid loses, and the wall is felt where it is and not where the grid's lines are.
+// The body gets the momentum that the fluid loses, and the wall has subgrid accuracy.
 #pragma once
 #include "rigid/added_mass.hpp"
 #include "staggered/ghosts.hpp"
@@ -12,7 +12,7 @@
 
 namespace weir::staggered {
 
-/// The velocity along `a` that a unit of each of a body's velocities gives at r from its centre of mass.
+/// The velocity along `a` at r from the centre of mass, per unit of each of a body's velocities.
 template <int D>
 rigid::Twist<D> moves_at(int a, const Vec<D>& r) {
     rigid::Twist<D> moves{};
@@ -25,18 +25,18 @@ rigid::Twist<D> moves_at(int a, const Vec<D>& r) {
     return moves;
 }
 
-/// A node, the neighbour behind the wall of a body, and the wall between them.
+/// A no-slip wall link: a node, its neighbour behind the wall of a body, and the wall between them.
 template <int D>
 struct WallLink {
-    int axis, across;  // of the component; from node to neighbour
+    int axis, across;  // axis of the component; axis from node to neighbour
     Index<D> node, beyond;
     std::size_t body;
     real nearer;            // 1/θ
-    rigid::Twist<D> moves;  // the component of the wall's velocity by each of the body's
-    rigid::Twist<D> there;  // and of the body's motion at the node itself
+    rigid::Twist<D> moves;  // the wall's velocity component, per unit of each of the body's velocities
+    rigid::Twist<D> there;  // the same for the body's motion at the node itself
 };
 
-/// A face with its middle in a body, or closed by it.
+/// A face whose centre lies in a body, or that a body closes.
 template <int D>
 struct InsideFace {
     int axis;
@@ -45,12 +45,12 @@ struct InsideFace {
     rigid::Twist<D> moves;
 };
 
-/// A body as friction meets it: what is known of it before, and the impulse that it gets.
+/// A no-slip body in the friction solve: its given data and the resulting impulse.
 template <int D>
 struct Rider {
     bool sticks = false;
-    rigid::Block<D> mass{};               // its own, and the fluid's that has to move with it
-    rigid::Twist<D> velocity{}, drive{};  // before; the impulse of all else in this step as far as it is foretold
+    rigid::Block<D> mass{};               // its own and the added mass
+    rigid::Twist<D> velocity{}, drive{};  // at the start of the step; estimate of all other impulses in this step
     std::array<bool, rigid::freedoms<D>> held{};
     real turning = 0;  // 2 ρν V: see wall_grip.cpp
     rigid::Twist<D> impulse{};
@@ -65,11 +65,11 @@ struct Rider {
 
 template <int D>
 struct WallGrip {
-    bool holds_closed = false;            // `inside` has the faces that bodies close, too, as deep as stress reaches; takes_part is empty
-    std::array<Padded<D>, D> takes_part;  // 1 on the faces where the fluid's velocity is its own
+    bool holds_closed = false;            // `inside` includes faces closed by bodies, as deep as stress reaches; takes_part is empty
+    std::array<Padded<D>, D> takes_part;  // 1 on the faces whose velocity is an unknown of the fluid
     std::vector<WallLink<D>> links;
-    std::vector<InsideFace<D>> inside;  // those that the pressure still knows
-    std::vector<Rider<D>> riders;       // one a body
+    std::vector<InsideFace<D>> inside;  // faces that are open to the pressure
+    std::vector<Rider<D>> riders;       // one per body
 
     static real along(const rigid::Twist<D>& moves, const rigid::Twist<D>& velocity) {
         real v = 0;
@@ -88,7 +88,7 @@ struct MacState;
 template <int D>
 class SolidPlacement;
 
-/// Finds faces and walls of the bodies that stick, as they stand; they are the last `riders` of the solids.
+/// Finds the faces and wall links of no-slip bodies in their present position; bodies are the last `riders` of the solids.
 template <int D>
 void find_grip(const MacState<D>& s, const SolidPlacement<D>& placement, WallGrip<D>& grip);
 

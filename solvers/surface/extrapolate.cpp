@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint8_t queued = 255;
 }
 
-/// The face next to I among those along a; around a periodic axis face n is face 0.
+/// The neighbour of face I among the faces along a; across a periodic boundary face n is face 0.
 template <int D>
 bool Extrapolation<D>::step(Index<D>& I, int a, int axis, int by) const {
     const int i = I[axis] + by, n = frame_.cells[axis] + (axis == a ? 1 : 0);
@@ -35,13 +35,13 @@ void Extrapolation<D>::find_band_rows(const LevelSet<D>& surface, int layers) {
     }
 }
 
-/// A face that is unknown and has a known neighbour is of the first layer: those of the band's first `layers`, row by row.
+/// Finds the first layer: unknown faces with a known neighbour. Searches the band's first `layers`, row by row.
 template <int D>
 void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers) {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     const auto start_row = [&](Index<D> I) {
         if (!is_near(I[D - 1])) return;
-        // Around a periodic axis face n is face 0: the cell beyond either is that at the other end.
+        // across a periodic boundary face n is face 0: the cell beyond either is that at the other end
         const bool ring = frame_.periodic(a);
         const bool has_above = a == 0 || ring || I[a] < frame_.cells[a], has_below = a == 0 || ring || I[a] > 0;
         const auto row_at = [&](int i) {
@@ -115,7 +115,7 @@ void Extrapolation<D>::join_front(Grid<std::uint8_t, D>& mark, int a, const Inde
         }
 }
 
-/// The next front: all faces beside this one that have not been seen.
+/// The next front: all unvisited faces beside this one.
 template <int D>
 void Extrapolation<D>::grow_front(Grid<std::uint8_t, D>& mark, int a) {
     next_.clear();
@@ -139,11 +139,11 @@ void Extrapolation<D>::grow_front(Grid<std::uint8_t, D>& mark, int a) {
     front_.swap(next_);
 }
 
-/// What u changed by from the face behind J to J. The next face goes on like this (Aslam 2004: linear), as far as the second layer, which
-/// is as far as cells beside the surface look. It goes on only where the flow is smooth: by the smaller of the last two changes (minmod),
-/// and by at most 0.3 |u|. And it claims that liquid which comes there has accelerated by u du/dx: in a jet, whose tip only flies, that
-/// claim becomes true when the tip arrives, and feeds it; so it is held to what drives a surface, gravity and tension. No wave reaches
-/// that (u du/dx = (k a)² g); the front of a dam break does, and loses volume if held to a tenth of it.
+/// The slope of u from the face behind J to J; the next face is extrapolated linearly (Aslam 2004). Linear extrapolation is used up to the
+/// second layer, which is as far as cells beside the surface read, and only where the flow is smooth: the smaller of the last two
+/// differences (minmod), and at most 0.3 |u|. It implies that liquid arriving there accelerates by u du/dx. In a jet, whose tip is in free
+/// flight, the arriving tip would gain that energy. So the slope is limited by the forces on a surface, gravity and tension. No wave
+/// reaches that limit (u du/dx = (k a)² g). The front of a dam break does, and loses volume with a limit of a tenth of it.
 template <int D>
 real Extrapolation<D>::slope(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, Index<D> J, int a, int axis, int by,
                              int layer) const {
@@ -163,7 +163,7 @@ real Extrapolation<D>::smooth_change(real here, real behind, real further, int a
     return std::clamp(std::abs(last) < std::abs(before) ? last : before, -most, most);
 }
 
-/// Along an axis where three faces on either side are inside the domain, neighbours are where memory says; else they are asked for.
+/// Where three faces on either side along an axis are inside the domain, neighbours are read by stride; otherwise by index.
 template <int D>
 real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>& mark, const Grid<real, D>& phi, const Index<D>& I, int a,
                              int layer) const {
@@ -173,7 +173,7 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
     real weights = 0, sum = 0, plain = 0;
     int count = 0;
     for (int axis = 0; axis < D; ++axis) {
-        real plain_axis = 0, weights_axis = 0, sum_axis = 0;  // added axis by axis, the two sides as a pair: symmetric under mirrors
+        real plain_axis = 0, weights_axis = 0, sum_axis = 0;  // added axis by axis, the two sides as a pair: mirror symmetric
         const bool inner = I[axis] >= 3 && I[axis] + 3 < mark.extent()[axis];
         for (const int by : {-1, 1}) {
             real there, speed, change = 0;
@@ -202,11 +202,11 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
         sum += sum_axis;
         plain += plain_axis;
     }
-    // Inside solids, and where φ is flat, ∇φ says nothing: the plain mean of the finished neighbours.
+    // inside solids, and where φ is flat, ∇φ is meaningless: plain mean of the finished neighbours
     return weights * h_min_ > 1e-9 ? sum / weights : plain / count;
 }
 
-/// f(place in the front) for the faces that are this rank's own.
+/// f(index in the front) for the faces that this rank owns.
 template <int D>
 template <class F>
 void Extrapolation<D>::for_each_own(F&& f) {
@@ -217,7 +217,7 @@ void Extrapolation<D>::for_each_own(F&& f) {
     parallel_for(0, static_cast<int>(own_.size()), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }
 
-/// Over ranks, which faces are known: as far beyond the cuts as layers reach a rank's own from, and as a slope looks behind those.
+/// In parallel, exchanges the marks of known faces: as far as layers reach this rank's planes, plus the stencil of a slope.
 template <int D>
 void Extrapolation<D>::bring_marks(FaceMarks<D>& marks, int layers) {
     constexpr int slope_reach = 3;
@@ -267,7 +267,7 @@ template <int D>
 void still_air(MacVelocity<D>& u, const FaceMarks<D>& known) {
     for (int a = 0; a < D; ++a) {
         const auto& marks = known[static_cast<std::size_t>(a)];
-        Index<D> rows = marks.extent();  // of ghost planes, too: what stands there is read before the next halo exchange
+        Index<D> rows = marks.extent();  // ghost planes included: they are read before the next halo exchange
         rows[0] = 1;
         for_each_held(marks, Index<D>{}, rows, [&](const Index<D>& I) {
             if (!u[a].store().holds(I[D - 1])) return;

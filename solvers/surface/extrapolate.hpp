@@ -1,8 +1,8 @@
-// Velocity beyond the liquid, outwards from the faces whose velocity is known: ∇(∇u·∇φ)·∇φ = 0 in the first two layers (Aslam 2004),
+// Extrapolation of the velocity beyond the liquid from the faces with known velocity: ∇(∇u·∇φ)·∇φ = 0 in the first two layers (Aslam 2004),
 // ∇u·∇φ = 0 beyond (Adalsteinsson & Sethian 1999), with upwind differences as in the fast sweeping of Zhao 2005. Faces are visited layer by
-// layer from the known ones, each from finished layers only: one visit a face, and no result depends on threads, on the direction of a
-// sweep, or on a mirror. Over ranks each finds the layers as far beyond its cuts as they reach, and the values on its own
-// planes of faces.
+// layer, each computed from finished layers only: one visit per face. Results do not depend on threads or sweep directions and are mirror
+// symmetric. In parallel each rank finds the layers in the ghost planes that influence its own, and computes the values on its own planes
+// of faces.
 #pragma once
 #include "surface/level_set.hpp"
 
@@ -21,15 +21,15 @@ template <int D>
 class Extrapolation {
 public:
     Extrapolation() = default;
-    /// `steepest`: what linear continuation may claim of acceleration along the flow [m/s²], see slope().
+    /// `steepest`: largest acceleration along the flow that linear extrapolation may imply [m/s²], see slope().
     Extrapolation(const Frame<D>& frame, real steepest)
         : frame_(frame),
           steepest_(steepest),
           h_min_(frame.h_min()),
           band_rows_(product(frame.cells) / static_cast<std::size_t>(frame.cells[0])),
           joins_(static_cast<std::size_t>(frame.cells[0]) + 1) {}
-    /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1); marks them 1 + layer. It starts at the faces
-    /// of cells near the surface and at `in_solids`; anywhere else no one asks.
+    /// Fills u on unknown faces (mark 0) up to `layers` faces away from known ones (mark 1) and marks them 1 + layer. It starts at the
+    /// faces of cells near the surface and at `in_solids`; other faces are not used.
     void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, const FaceLists<D>& in_solids, int layers);
     std::size_t bytes() const {
         return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) +
@@ -55,15 +55,14 @@ private:
     real steepest_ = 0, h_min_ = 0;
     std::vector<Index<D>> front_, next_;
     std::vector<real> value_;
-    std::vector<int> own_;                      // over ranks: places in the front of this rank's own faces
-    std::array<std::vector<char>, 2> near_of_;  // and in which planes of faces along other axes and along the last it looks for layers
-    std::vector<char> near_;                    // those of the faces at work
-    std::vector<Extent> band_rows_;             // of every row of cells: its part in the layers from which the first front starts
+    std::vector<int> own_;                      // in parallel: indices in the front of the faces that this rank owns
+    std::array<std::vector<char>, 2> near_of_;  // planes searched for layers, for faces along other axes and along the last
+    std::vector<char> near_;                    // those of the present faces
+    std::vector<Extent> band_rows_;             // per row of cells, the part within the layers from which the first front starts
     std::vector<std::uint8_t> joins_;           // of one row of faces
 };
 
-/// Sets every face without a mark to 0. Farther from the liquid nothing says what moves: what stood there is of earlier steps, and gravity
-/// would accelerate it for ever.
+/// Sets every unmarked face to 0. Far from the liquid the old values are stale, and gravity would accelerate them forever.
 template <int D>
 void still_air(MacVelocity<D>& u, const FaceMarks<D>& known);
 

@@ -1,5 +1,5 @@
-// Where the cells of the water's grid are: neighbours that stop at walls and wrap along periodic axes, and the two samples and the
-// weight of linear interpolation along one axis, shared by every transfer between markers and faces so that none can disagree.
+// Indexing of the liquid's grid: neighbours that stop at walls and wrap along periodic axes, and the two samples and the weight of linear
+// interpolation along one axis. All transfers between markers and faces use them, so they are consistent.
 #pragma once
 #include "core/types.hpp"
 #include "geometry/sides.hpp"
@@ -51,9 +51,10 @@ struct Frame {
     real h_min() const { return *std::min_element(h.begin(), h.end()); }
     /// The largest [m].
     real h_max() const { return *std::max_element(h.begin(), h.end()); }
-    /// Whether cells are cubes, but for round-off of their edges.
+    /// Returns whether cells are cubes, up to round-off of their edges.
     bool cubic() const { return h_max() <= h_min() * (1 + 1e-9); }
-    /// Size of a cell across planes with this normal [m]: of the ellipsoid whose axes are its edges. The edge, where cells are cubes.
+    /// Width of a cell normal to planes with this normal [m]: that of the ellipsoid whose axes are the cell's edges. The edge length for
+    /// cubes.
     real width_along(const Vec<D>& n) const {
         real sum = 0;
         for (int d = 0; d < D; ++d) sum += n[d] * n[d] * h[d] * h[d];
@@ -70,21 +71,21 @@ struct Frame {
         for (int d = 0; d < D; ++d) x[d] = origin[d] + h[d] * (I[d] + 0.5);
         return x;
     }
-    /// The cell that holds x; points outside belong to the nearest cell.
+    /// The cell that contains x; points outside belong to the nearest cell.
     Index<D> cell_of(const Vec<D>& x) const {
         Index<D> I;
         for (int d = 0; d < D; ++d) I[d] = std::clamp(static_cast<int>(std::floor((x[d] - origin[d]) * inv_h[d])), 0, cells[d] - 1);
         return I;
     }
-    /// The cell with this place in memory.
+    /// The cell with this linear index.
     Index<D> index_of(std::size_t linear) const { return staggered::index_of<D>(cells, linear); }
-    /// A cell's place in memory.
+    /// A cell's linear index.
     std::size_t linear(const Index<D>& I) const {
         auto at = static_cast<std::size_t>(I[D - 1]);
         for (int d = D - 2; d >= 0; --d) at = at * static_cast<std::size_t>(cells[d]) + static_cast<std::size_t>(I[d]);
         return at;
     }
-    /// Moves I by ±1 along an axis, around a periodic one; false, and I unchanged, at a side of the domain.
+    /// Moves I by ±1 along an axis, across a periodic boundary; false, with I unchanged, at a side of the domain.
     bool step(Index<D>& I, int axis, int by) const {
         const int i = I[axis] + by;
         if (i >= 0 && i < cells[axis]) {
@@ -112,15 +113,14 @@ struct Frame {
     }
 };
 
-/// Entries [begin, end) of a line; begin lies behind end where there are none.
+/// Entries [begin, end) of a line; empty where begin is not below end.
 struct Extent {
     int begin, end;
     bool empty() const { return begin >= end; }
     void join(const Extent& other) { begin = std::min(begin, other.begin), end = std::max(end, other.end); }
 };
 
-/// Over ranks, the faces of the `deep` planes beyond this rank's cuts, all components in one message a neighbour. Around a periodic axis
-/// face n is face 0.
+/// Halo exchange of `deep` ghost planes of faces, all components in one message per neighbour. Across a periodic boundary face n is face 0.
 template <int D>
 void refresh_faces(std::array<Grid<real, D>, D>& u, const Frame<D>& frame, int deep) {
     if (!over_ranks()) return;
@@ -141,7 +141,7 @@ void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int deep) {
     refresh_faces<D>(u.face, frame, deep);
 }
 
-/// f(I, at) for the first entry I of every line along x of a box, and its place in memory; threaded over the slowest axis.
+/// f(I, at) for the first entry I of every line along x of a box, and its linear index; threaded over the slowest axis.
 template <int D, class F>
 void for_each_line(const Index<D>& extent, F&& f) {
     Index<D> columns = extent;
@@ -153,8 +153,8 @@ void for_each_line(const Index<D>& extent, F&& f) {
     });
 }
 
-/// inner(face, cell, count) on runs along x of faces along a with a cell on both sides: places in memory of the first face and of the cell
-/// above it; outer(I, face) on each of the others, which are on a side of the domain or join the ends of a periodic axis.
+/// inner(face, cell, count) on runs along x of faces along a with a cell on both sides: linear indices of the first face and of the cell
+/// above it. outer(I, face) on each of the others, which lie on a side of the domain or on a periodic boundary.
 template <int D, class F, class G>
 void for_each_face_run(const Index<D>& cells, int a, F&& inner, G&& outer) {
     const auto n = static_cast<std::size_t>(cells[0]);
@@ -172,7 +172,7 @@ void for_each_face_run(const Index<D>& cells, int a, F&& inner, G&& outer) {
     });
 }
 
-/// Linear samples of faces and centres around one point: the interval along each axis for both kinds of sample.
+/// Interpolation stencils of faces and centres around one point: the interval along each axis for both kinds of sample.
 template <int D>
 struct Stencil {
     std::array<Interval, D> face, centre;
@@ -184,7 +184,7 @@ struct Stencil {
             centre[at] = locate(s - 0.5, frame.cells[d], frame.period[at]);
         }
     }
-    /// The interval along d of the samples of component a.
+    /// The interval along d for component a.
     const Interval& of(int a, int d) const { return (a == d ? face : centre)[static_cast<std::size_t>(d)]; }
 };
 

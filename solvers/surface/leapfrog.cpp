@@ -7,14 +7,14 @@
 
 namespace weir::surface {
 
-/// Of the step: a force that acts for less, or for more, would make a pressure of motion alone too large, or too small, by as much. What is
-/// missing then, acts in the steps after.
+/// Limits of a kick, relative to the step: a force that acts for a shorter or longer time changes the pressure due to motion alone by that
+/// factor. The remaining time is applied in later steps.
 constexpr real least_kick = 0.5, most_kick = 1.5;
 
 template <int D>
 Leapfrog<D>::Leapfrog(const MacVelocity<D>& u) : rate_(u.cells, u.h, u.origin), at_end_(rate_) {}
 
-/// f(a, first place, count) for every line of faces.
+/// f(a, first index, count) for every line of faces.
 template <int D, class F>
 static void for_each_line_of(const MacVelocity<D>& u, F&& f) {
     for (int a = 0; a < D; ++a) for_each_line(u[a].extent(), [&](const Index<D>&, std::size_t at) { f(a, at, u[a].extent()[0]); });

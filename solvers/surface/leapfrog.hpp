@@ -1,10 +1,10 @@
-// The middle of a step. Surface and markers are where time() says at the end of a step and move with the velocity of its middle; forces and
-// pressure act where they then stand, from the middle of one step to the middle of the next (leapfrog; Störmer 1907; Hairer, Lubich &
-// Wanner 2003):
+// Leapfrog time integration. At the end of a step surface and markers are at time(); they move with the velocity at the middle of the step.
+// Forces and pressure act at their positions, from the middle of one step to the middle of the next (Störmer 1907; Hairer, Lubich & Wanner
+// 2003):
 //   x(t + dt) = x(t) + dt u(t + dt/2),     u(t + dt/2 + dt'/2) = u(t + dt/2) + (dt/2 + dt'/2) a(x(t + dt))
-// The next step dt' is not known when forces act: it is taken to be as long as this one, and the next force acts for what is then missing.
-// So the energy of a wave neither grows nor falls, whatever the steps follow; forces that act for dt alone feed it where steps shorten as
-// it gets faster, by ω² δdt/4 of its energy a second where steps swing by δdt.
+// The next step dt' is not known when forces act: it is assumed equal to this one, and the next force corrects the difference. So the
+// energy of a wave neither grows nor falls, for any sequence of steps. Forces that act for dt alone add energy where steps shorten as the
+// wave gets faster: ω² δdt/4 of its energy per second where steps vary by δdt.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "surface/extrapolate.hpp"
@@ -17,25 +17,25 @@ public:
     Leapfrog() = default;
     explicit Leapfrog(const MacVelocity<D>& u);
 
-    /// A step has been made, or restored.
+    /// Returns whether a step was made or restored.
     bool started() const { return any_; }
-    /// The rate of change as a scene begins: u is what keep() saw, dt later.
+    /// The rate of change at the start of a scene: u is the velocity passed to keep(), dt later.
     void begin(const MacVelocity<D>& u, real dt) { finish(u, dt), any_ = true; }
-    /// u, of the middle of a step as long as the last one, becomes that of the middle of a step of dt.
+    /// Moves u from the middle of a step as long as the last one to the middle of a step of dt.
     void advance(MacVelocity<D>& u, real dt) const;
-    /// How long forces act in this step. `on_grid`: what is carried is what moves the liquid, else it is what the last step has left on
-    /// markers.
+    /// Duration of the forces in this step. `on_grid`: the carried velocity is the one that moves the liquid; otherwise it is the one that
+    /// the last step stored on markers.
     real kick(real dt, bool on_grid);
-    /// The same where bodies or emitters are part of the step, and the velocity stays as forces left it: it is theirs, and light bodies do
-    /// not bear a force that acts for longer or shorter than the flow does. What is carried then stays as far ahead as it was.
+    /// The same with bodies or emitters, which share the velocity after forces: light bodies require forces to act exactly for the flow's
+    /// step. The carried velocity keeps its time offset.
     real whole_kick(real dt);
-    /// The velocity before forces act.
+    /// Stores the velocity before forces act.
     void keep(const MacVelocity<D>& u);
-    /// The same, and on which faces the liquid has brought one.
+    /// The same for the faces whose velocity is known.
     void keep(const MacVelocity<D>& u, const FaceMarks<D>& known);
-    /// The velocity after forces have acted for `kick`.
+    /// Computes the rate from the velocity after forces have acted for `kick`.
     void finish(const MacVelocity<D>& u, real kick);
-    /// u at time(), where surface and markers are, of this rank's own planes and one beyond.
+    /// u at time(), the time of surface and markers, on this rank's own planes and one ghost plane.
     const MacVelocity<D>& at_end(const MacVelocity<D>& u, const Frame<D>& frame) const;
 
     /// In parallel (MPI), gathers the rate of change of all ranks.
@@ -47,10 +47,10 @@ public:
     std::size_t bytes() const { return rate_.bytes() + at_end_.bytes(); }
 
 private:
-    MacVelocity<D> rate_;  // of change, of the velocity [m/s²]; during a step the velocity before forces [m/s], none where it is infinite
+    MacVelocity<D> rate_;  // rate of change [m/s²]; during a step the velocity before forces [m/s], unknown where infinite
     mutable MacVelocity<D> at_end_;
-    real ahead_ = 0;    // of time(): the velocity that is carried [s]
-    bool any_ = false;  // a step has been made
+    real ahead_ = 0;    // time of the carried velocity minus time() [s]
+    bool any_ = false;  // a step was made
 };
 
 }  // namespace weir::surface

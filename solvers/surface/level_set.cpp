@@ -9,7 +9,7 @@
 
 namespace weir::surface {
 
-/// Part of a cell's width: a marker nearer to the surface than this may be on either side of it.
+/// Relative to a cell's width: a marker closer to the surface may be on either side of it.
 constexpr real sure_side = 0.1;
 
 template <int D>
@@ -25,7 +25,7 @@ LevelSet<D>::LevelSet(const Frame<D>& frame, int reach)
     layer_start_.assign(static_cast<std::size_t>(layers_) + 1, 0);
 }
 
-/// f(I) for cells that are open and have a closed neighbour, in the order of the grid; and for some at the ends of lines that have none.
+/// f(I) for open cells with a closed neighbour, in the order of the grid; also for some cells at the ends of lines without one.
 template <int D>
 template <class F>
 void LevelSet<D>::for_each_open_beside_closed(const std::vector<char>& planes, F&& f) const {
@@ -51,7 +51,7 @@ void LevelSet<D>::for_each_open_beside_closed(const std::vector<char>& planes, F
     }
 }
 
-/// How deep the skin of solids goes [cells]: as far as interpolation beside a solid looks.
+/// Depth of the extrapolation into solids [cells]: the width of the interpolation stencil.
 static constexpr int skin_layers = 3;
 
 template <int D>
@@ -68,8 +68,7 @@ void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::arr
     walls_.find(frame_, closed_, skin_, faces, wide() + 1);
 }
 
-/// Cells that a thin solid has left are as far from the surface as the mean of both its sides: what was continued into it from the wet side
-/// alone makes no liquid.
+/// Cells uncovered by a thin solid get the mean distance of both its sides: extrapolation from the wet side alone would create liquid.
 template <int D>
 void LevelSet<D>::uncover(const Grid<std::uint8_t, D>& closed) {
     if (!walls_.any()) return;
@@ -83,7 +82,7 @@ void LevelSet<D>::uncover(const Grid<std::uint8_t, D>& closed) {
     refresh(phi, ring, wide());
 }
 
-/// A plane through a cell, by the mean and the slopes of the distances at its corners.
+/// The linear fit of the distances at a cell's corners.
 template <int D>
 void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
     if (open_part_.empty()) open_part_ = Grid<real, D>(frame_.cells, 1);
@@ -107,13 +106,13 @@ void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
     if (alone) refresh(open_part_, ring, wide() + 1);
 }
 
-/// Closed cells beside open ones of these planes (none named: of all), and beside those, to skin_.
+/// Finds skin_: closed cells beside open ones in these planes (empty: all planes), and further layers behind them.
 template <int D>
 void LevelSet<D>::find_skin(const std::vector<char>& planes) {
     skin_.clear();
     std::size_t first = 0;
     constexpr std::uint8_t mark = 253;
-    Grid<std::uint8_t, D>& seen = layer_;  // free for this: redistance() finds it anew
+    Grid<std::uint8_t, D>& seen = layer_;  // free for use here: redistance() recomputes it
     const auto add_neighbours = [&](const Index<D>& I) {
         for_each_beside(frame_, I, [&](const Index<D>& J) {
             if (closed_(J) && seen(J) != mark) seen(J) = mark, skin_.push_back(J);
@@ -129,8 +128,8 @@ void LevelSet<D>::find_skin(const std::vector<char>& planes) {
     for (const Index<D>& J : skin_) seen(J) = 0;
 }
 
-/// Over ranks everybody gets the skin of all, in the order of one process, from what each has found of its own planes where it is `alone`
-/// with them.
+/// In parallel all ranks get the whole skin, in the order of one process, from the parts of each rank's planes (with distributed storage,
+/// `alone`).
 template <int D>
 void LevelSet<D>::share_skin(bool alone) {
     std::vector<std::size_t> rim, near;
@@ -146,9 +145,9 @@ void LevelSet<D>::share_skin(bool alone) {
     skin_of_ranks_.find(frame_, std::move(rim), near, skin_layers, skin_, skin_end_);
 }
 
-static constexpr std::uint8_t continued = 254;  // no layer of the band
+static constexpr std::uint8_t continued = 254;  // not a layer of the band
 
-/// Layer by layer, each from those that lie further out: the order of cells decides nothing.
+/// Layer by layer, each from layers further out: independent of the order of cells.
 template <int D>
 void LevelSet<D>::continue_into_solids() {
     if (skin_.empty()) return;
@@ -162,14 +161,14 @@ void LevelSet<D>::continue_into_solids() {
     for (const Index<D>& I : skin_) layer_(I) = 0;
 }
 
-/// The mean of the neighbours that are open or of a layer before.
+/// The mean of the neighbours that are open or in a previous layer.
 template <int D>
 void LevelSet<D>::continue_layer(std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
         real sum = 0;
         int count = 0;
         for (int d = 0; d < D; ++d) {
-            real pair = 0;  // the two sides are added first, so that a mirror changes nothing
+            real pair = 0;  // the two sides are added first: mirror symmetric
             for (const int by : {-1, 1}) {
                 Index<D> J = skin_[i];
                 if (!frame_.step(J, d, by) || (closed_(J) && layer_(J) != continued)) continue;
@@ -192,7 +191,7 @@ void LevelSet<D>::find_own() {
 
 template <int D>
 void LevelSet<D>::advect(const MacVelocity<D>& u, real dt, int reach) {
-    const real near = (reach_ + 2) * frame_.h_max();  // beyond, no point can come to lie beside the surface
+    const real near = (reach_ + 2) * frame_.h_max();  // points beyond cannot reach the surface
     resize_scratch(value_, band_.size());
     find_own();
     refresh(phi, frame_.periodic(D - 1), reach);
@@ -203,12 +202,13 @@ void LevelSet<D>::advect(const MacVelocity<D>& u, real dt, int reach) {
         if (std::abs(to) < near) to = departed(u, I, dt);
     });
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
-    refresh(phi, frame_.periodic(D - 1), reach);  // markers one plane beyond a cut look at the cells around them, and where they come from
+    refresh(phi, frame_.periodic(D - 1), reach);  // markers in the first ghost plane read the cells around them and their departure points
 }
 
 namespace {
 
-/// Linear interpolation of component a at d [cells] from the centre of cell I, at most half a cell away; both sides of I are inside.
+/// Linear interpolation of component a at d [cells] from the centre of cell I, at most half a cell away; both neighbours of I must be
+/// inside.
 template <int D>
 real face_near(const Grid<real, D>& u, int a, const Index<D>& I, const Vec<D>& d) {
     std::array<std::ptrdiff_t, 3> stride{};
@@ -232,8 +232,8 @@ real face_near(const Grid<real, D>& u, int a, const Index<D>& I, const Vec<D>& d
 
 }  // namespace
 
-/// φ where cell I's centre was dt ago. Inside the domain the trace starts at the mean of the cell's faces and stays near them: no place in
-/// the grid is searched for.
+/// φ at the point where cell I's centre was dt ago. Inside the domain the trace starts at the mean of the cell's faces and stays near them,
+/// so no cell search is needed.
 template <int D>
 real LevelSet<D>::departed(const MacVelocity<D>& u, const Index<D>& I, real dt) const {
     bool inner = true;
@@ -258,7 +258,7 @@ real LevelSet<D>::departed(const MacVelocity<D>& u, const Index<D>& I, real dt) 
     return cubic_on_this_side(I, moved);
 }
 
-/// φ at d [cells] from the centre of cell I, which stands beside a thin wall: as far as a stencil reaches that is two cells wider.
+/// φ at d [cells] from the centre of cell I beside a thin wall, limited to the range of a stencil of radius two.
 template <int D>
 real LevelSet<D>::cubic_on_this_side(const Index<D>& I, Vec<D> d) const {
     constexpr int most = Around<D>::most - 1;
@@ -296,8 +296,8 @@ bool LevelSet<D>::passes(const Index<D>& I, int axis, int by) const {
     return sees_walls(I) ? walls_.passes(closed_, I, axis, by, J) : frame_.step(J, axis, by);
 }
 
-/// φ at d [cells] from the centre of cell I, at most one cell away; two cells on either side of I are inside. As cubic(), but four samples
-/// along x are one vector.
+/// φ at d [cells] from the centre of cell I, at most one cell away; two cells on either side of I must be inside. As cubic(), with four
+/// samples along x in one vector.
 template <int D>
 real LevelSet<D>::cubic_near(const Index<D>& I, const Vec<D>& d) const {
     using Quad = double __attribute__((vector_size(32)));
@@ -326,7 +326,7 @@ real LevelSet<D>::cubic_near(const Index<D>& I, const Vec<D>& d) const {
     return ((w[0][0] * sum[0] + w[0][1] * sum[1]) + w[0][2] * sum[2]) + w[0][3] * sum[3];
 }
 
-/// Catmull–Rom along each axis in turn, anywhere.
+/// Catmull–Rom along each axis in turn, at any point.
 template <int D>
 real LevelSet<D>::cubic(const Vec<D>& x) const {
     std::array<std::array<std::ptrdiff_t, 4>, D> at;
@@ -361,12 +361,12 @@ real LevelSet<D>::cubic(const Vec<D>& x) const {
 template <int D>
 std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part) {
     const real h = frame_.h_min();
-    const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D a cell
-    const real margin = sure_side * h;               // Enright et al. 2002: nearer to the surface than this, no side is sure
+    const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D per cell
+    const real margin = sure_side * h;               // Enright et al. 2002: closer to the surface the side is uncertain
     refill_scratch<std::uint8_t>(escaped_, markers.count(), 0);
     const auto [first, last] = markers.own(frame_);
     const auto find_escaped = [&](const Index<D>& I, std::size_t begin, std::size_t end) {
-        if (phi(I) < -diagonal_ || walls_.is_between(I)) return;  // inside a wall, a marker has no side
+        if (phi(I) < -diagonal_ || walls_.is_between(I)) return;  // inside a wall a marker has no side
         CellNodes<D> nodes;
         Around<D> around;
         if (look(I, 1, around))
@@ -381,7 +381,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers, const Grid<re
         }
     };
     {
-        const AllPlanes all;  // those beyond the cuts too, whose spheres reach across
+        const AllPlanes all;  // ghost markers included: their spheres reach this rank's cells
         markers.for_each_occupied_cell(frame_, find_escaped);
     }
     if (!frame_.cubic()) for_each_escaped([&](std::size_t p) { escaped_[p] = escaped_across(markers.position(p)); });
@@ -394,7 +394,7 @@ std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers, const Grid<re
     return count;
 }
 
-/// f(p) for one after the other.
+/// f(p) for each escaped marker, in order.
 template <int D>
 template <class F>
 void LevelSet<D>::for_each_escaped(F&& f) const {
@@ -455,7 +455,7 @@ real LevelSet<D>::regain(real missing) {
     return shift;
 }
 
-/// With the layers: which cells the band holds is part of the state; in which order follows from those beside the surface.
+/// With the layers: the set of cells in the band is part of the state; their order follows from the cells beside the surface.
 template <int D>
 void LevelSet<D>::save(Checkpoint& to) const {
     put_planes(to, "surface.phi", phi);

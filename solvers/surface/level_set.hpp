@@ -1,11 +1,12 @@
 // The free surface as the zero of a signed distance φ (negative in the liquid) in a narrow band of cells.
 //   motion          Dφ/Dt = 0: semi-Lagrangian, RK2 trace, tensor cubic interpolation (Strain 1999)
 //   distance        |∇φ| = 1: first-order upwind differences (Rouy & Tourin 1992; Zhao 2005), layer by layer outwards from the cells
-//                   beside the surface, which themselves keep their values: the zero does not move
-//   markers         where a marker has escaped, the level set has lost liquid: φ = min(φ, |x − x_p| − r) (Foster & Fedkiw 2001; Enright
-//   2002)
-// Over ranks each finds the values of its own planes of cells, and the band there and so far beyond its cuts that it is sure of its own.
-// The level set is thus the smooth part of the markers' shape: second order where the grid resolves it, and at rest exactly at rest.
+//                   beside the surface, whose values are kept: the zero level set does not move
+//   markers         an escaped marker shows that the level set lost liquid: φ = min(φ, |x − x_p| − r) (Foster & Fedkiw 2001; Enright
+//                   et al. 2002)
+// In parallel each rank computes the values of its own planes of cells; it finds the band there and in the ghost planes that determine its
+// own part. The level set is thus the smooth part of the markers' shape: second order where the grid resolves it, and exactly at rest for
+// liquid at rest.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "surface/level_set_ranks.hpp"
@@ -26,61 +27,62 @@ public:
     Grid<real, D> phi;  // [m] at cell centres; ± cap() outside the band
 
     LevelSet() = default;
-    /// `reach`: how many cells the surface may move in one step.
+    /// `reach`: largest motion of the surface in one step [cells].
     LevelSet(const Frame<D>& frame, int reach);
 
-    /// Cells that are closed to the liquid. Their φ is continued from open cells, so that the surface meets a solid at right angles.
-    /// `faces`: those that are closed, of which some may lie between open cells.
+    /// Sets the cells that are closed to the liquid. Their φ is extrapolated from open cells, so the contact angle at a solid is 90
+    /// degrees. `faces`: closed faces, some of which may lie between open cells.
     void set_closed(const Grid<std::uint8_t, D>& closed, const std::array<std::vector<Index<D>>, D>* faces = nullptr);
-    /// The parts of cells that solids leave open, by the solids' distances at their corners; where the solids have been placed anew.
+    /// Sets the open fractions of cells from the solids' distances at their corners; call it after solids were placed.
     void set_open_parts(const SolidPlacement<D>& solids);
     real open_part(const Index<D>& I) const { return open_part_.empty() ? 1 : open_part_(I); }
-    /// φ at x, on this side of walls.
+    /// φ at x, from the same side of thin walls.
     real at(const Vec<D>& x) const;
-    /// φ around cell I as its side of a thin wall sees it; false, and nothing, where no wall is near: then phi has it.
+    /// φ around cell I as seen from its side of a thin wall; false, with no result, where no wall is near: then phi is valid.
     bool look(const Index<D>& I, int reach, Around<D>& to) const;
-    /// Whether liquid passes from cell I to its neighbour, if there is one.
+    /// Returns whether liquid can pass from cell I to its neighbour, if there is one.
     bool passes(const Index<D>& I, int axis, int by) const;
-    /// Moves the surface by dt in the field u, which must be known throughout the band; `reach`: over ranks, how many planes beyond its
-    /// cuts a rank reads.
+    /// Moves the surface by dt in the field u, which must be known throughout the band. `reach`: in parallel, the number of ghost planes
+    /// that a rank reads.
     void advect(const MacVelocity<D>& u, real dt, int reach = 0);
-    /// Over ranks, what others know of φ.
+    /// In parallel, gathers φ from all ranks.
     void make_whole() { gather(phi); }
     void make_layers_whole() { gather(layer_); }
-    /// Joins spheres around escaped markers; answers how many of this rank's own had escaped. Markers must be sorted.
-    /// `part`, where given: the liquid part of each cell; without liquid in its cell a marker does not count.
+    /// Particle level-set correction: unites the liquid with spheres around escaped markers. Returns how many of this rank's own markers
+    /// had escaped. Markers must be sorted. `part`, if given: the liquid fraction of each cell; a marker in a cell without liquid is
+    /// ignored.
     std::size_t rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part = nullptr);
-    /// How many of this rank's own markers that had escaped are outside even now: drops too small for the grid.
+    /// Number of this rank's own escaped markers still outside the surface: drops too small for the grid.
     std::size_t count_airborne(const Markers<D>& markers) const;
-    /// Makes φ a distance again and finds the band.
+    /// Reinitializes φ to a signed distance and finds the band.
     void redistance();
     /// φ −= shift within the band: moves the surface outwards by `shift` [m].
     void dilate(real shift);
-    /// Moves the surface outwards by the missing volume [m^D] over its area, at most a fiftieth of a cell, less than motion itself moves
-    /// it by. Answers how far [m].
+    /// Volume correction: moves the surface outwards by the missing volume [m^D] over its area, at most a fiftieth of a cell, which is less
+    /// than its motion. Returns the distance [m].
     real regain(real missing);
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
 
     real cap() const { return (layers_ + 1) * frame_.h_max(); }
     int layers() const { return layers_; }
-    /// Cells of the band, layer by layer from the surface; layer 1 is beside it. Over ranks, those near this one's planes, in the order of
-    /// one process.
+    /// Cells of the band, layer by layer from the surface; layer 1 is beside it. In parallel, those near this rank's planes, in the order
+    /// of one process.
     const std::vector<Index<D>>& band() const { return band_; }
-    /// Closed cells beside open ones, three deep.
+    /// Closed cells beside open ones, three layers deep.
     const std::vector<Index<D>>& skin() const { return skin_; }
     /// 1.. in the band, 0 outside it.
     const Grid<std::uint8_t, D>& layer() const { return layer_; }
     std::size_t layer_begin(int layer) const { return layer_start_[static_cast<std::size_t>(layer - 1)]; }
     std::size_t layer_end(int layer) const { return layer_start_[static_cast<std::size_t>(layer)]; }
 
-    /// Liquid part of a cell, in [0, 1], with φ lowered by `shift`: a plane in each half cell along every axis (exact for planes; a
-    /// sheet or a drop thinner than a cell still counts for what it is).
+    /// Liquid fraction of a cell, in [0, 1], with φ lowered by `shift`. φ is a plane in each half cell along every axis: exact for planes,
+    /// and sheets or drops thinner than a cell keep their volume.
     real fraction(const Index<D>& I, real shift = 0) const;
-    /// The mean over a cell of its liquid's place about the centre [cells], with the same planes.
+    /// Centroid of the liquid in a cell relative to its centre [cells], times the fraction, with the same planes.
     Vec<D> moment(const Index<D>& I) const;
-    real volume() const;  // [m^D] of liquid in open cells, as far as solids leave them open
-    real area() const;    // [m^(D−1)] of the surface, from the change of volume with φ
+    real volume() const;  // [m^D] of liquid in the open parts of cells
+    real area() const;    // [m^(D−1)] of the surface, from the derivative of the volume with respect to φ
     std::size_t bytes() const;
 
 private:
@@ -91,23 +93,23 @@ private:
     void share_skin(bool alone);
     void uncover(const Grid<std::uint8_t, D>& closed);
     void continue_into_solids();
-    /// How wide the cell is across the surface next to it [m].
+    /// Width of the cell normal to the surface near it [m].
     real width_at(const Index<D>& I) const;
-    /// In cells that are no cubes a marker has escaped when it is outside by a part of the cell's width in that direction.
+    /// In cells that are not cubes: a marker has escaped when its distance outside exceeds a part of the cell's width in that direction.
     bool escaped_across(const Vec<D>& x) const;
     void join_sphere(const Vec<D>& x, real radius);
     template <class F>
     void for_each_escaped(F&& f) const;
-    /// φ's change a cell towards the lower and the upper neighbour; beyond a wall, and
-    /// where a neighbour's distance is not known, it goes on as on the other side.
+    /// Differences of φ to the lower and the upper neighbour. Beyond a wall, and where a neighbour's distance is unknown, the difference of
+    /// the other side is used.
     std::array<Vec<D>, 2> slopes(const Index<D>& I) const;
     std::array<Vec<D>, 2> slopes_on_this_side(const Index<D>& I) const;
     bool crosses_on_this_side(const Index<D>& I) const;
     bool sees_walls(const Index<D>& I) const { return walls_.is_near(I) && closed_(I) == 0; }
     bool joins(const Index<D>& I, int axis, int by) const;
     void find_inside();
-    /// Planes beyond its cuts in which a rank finds the band: a cell of the last layer with a root among the rank's own is that far from
-    /// the last of them.
+    /// Ghost planes in which a rank finds the band: the distance between a cell of the last layer and a cell near its root, when both
+    /// belong to one rank.
     int wide() const { return 2 * layers_; }
     void find_near();
     bool is_near(int plane) const { return near_.empty() || near_[static_cast<std::size_t>(plane)] != 0; }
@@ -116,7 +118,7 @@ private:
     void join_layers();
     void mark_changes_of_sign(const Index<D>& first, std::size_t at);
     void find_own();
-    /// f(place in the band) for those from `first` to before `last` that are of this rank's own planes.
+    /// f(index in the band) for the entries [first, last) in this rank's own planes.
     template <class F>
     void for_each_own(std::size_t first, std::size_t last, F&& f) const;
     template <class F>
@@ -134,18 +136,18 @@ private:
     Frame<D> frame_;
     int layers_ = 4, reach_ = 1;
     real diagonal_ = 0;                              // of a cell [m]
-    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as find_inside() saw it
+    Grid<std::uint8_t, D> layer_, inside_, closed_;  // layer_: 1.. in the band, 0 outside; inside_: φ < 0, as of find_inside()
     std::vector<Index<D>> band_, skin_;
     std::vector<std::size_t> layer_start_;
     std::vector<real> value_;
     std::vector<std::uint8_t> escaped_;
-    std::vector<int> own_;    // over ranks: places in the band of this rank's own cells
-    std::vector<char> near_;  // over ranks: the planes in which the band is found
+    std::vector<int> own_;    // in parallel: indices in the band of this rank's own cells
+    std::vector<char> near_;  // in parallel: the planes in which the band is found
     BandOfRanks ranks_;
     SkinOfRanks<D> skin_of_ranks_;
     std::vector<std::size_t> skin_end_;  // of each of its layers
     ThinWalls<D> walls_;
-    Grid<real, D> open_part_;  // none without solids
+    Grid<real, D> open_part_;  // empty without solids
 };
 
 template <int D>
@@ -156,11 +158,11 @@ void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const
     parallel_for(static_cast<int>(place(first)), static_cast<int>(place(last)), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }
 
-/// The mean over the unit cube about 0 of x where value + g·x < 0, and 0 elsewhere.
+/// Integral over the unit cube about 0 of x where value + g·x < 0.
 template <int D>
 Vec<D> moment_below_plane(real value, const Vec<D>& g);
-/// The mean of fraction_below_plane() over the half cells along every axis, in each of which φ is a plane: φ's changes a cell towards the
-/// lower and the upper neighbour are slope[0] and slope[1].
+/// Mean of fraction_below_plane() over the half cells along every axis, with φ a plane in each: slope[0] and slope[1] are the differences
+/// of φ to the lower and the upper neighbour.
 template <int D>
 real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope);
 

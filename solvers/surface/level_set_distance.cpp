@@ -1,4 +1,4 @@
-// The half of the level set that keeps φ a distance in a band of cells, and measures what it encloses.
+// The half of the level set that reinitializes φ in a band of cells and measures the enclosed volume.
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 #include "surface/level_set.hpp"
@@ -17,7 +17,7 @@ void LevelSet<D>::redistance() {
     rescale_surface();
     grow_band();
     for (int layer = 2; layer <= layers_; ++layer) fill_layer(layer);
-    refresh(phi, frame_.periodic(D - 1), layers_);  // as far as sums over the band go
+    refresh(phi, frame_.periodic(D - 1), layers_);  // as far as sums over the band reach
 }
 
 template <int D>
@@ -36,7 +36,7 @@ void LevelSet<D>::find_inside() {
     });
 }
 
-/// Over ranks, the planes in which this one finds the band.
+/// In parallel, the planes in which this rank finds the band.
 template <int D>
 void LevelSet<D>::find_near() {
     if (!over_ranks() || !near_.empty()) return;
@@ -67,7 +67,7 @@ void LevelSet<D>::find_surface() {
     }
 }
 
-/// Its cells, in the order of the grid.
+/// Collects its cells, in the order of the grid.
 template <int D>
 void LevelSet<D>::collect_surface() {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
@@ -90,7 +90,7 @@ void LevelSet<D>::collect_surface() {
     layer_start_[1] = band_.size();
 }
 
-/// Marks the cells of a line, which begins at `at`, that have a neighbour of the other sign.
+/// Marks the cells of the line at `at` that have a neighbour of the other sign.
 template <int D>
 void LevelSet<D>::mark_changes_of_sign(const Index<D>& first, std::size_t at) {
     const int n = frame_.cells[0];
@@ -109,11 +109,11 @@ void LevelSet<D>::mark_changes_of_sign(const Index<D>& first, std::size_t at) {
         }
 }
 
-/// A change of sign between two closed cells is no surface.
+/// A change of sign between two closed cells is not a surface.
 template <int D>
 bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
     if (closed_.empty() || !closed_(I)) return true;
-    if (walls_.is_between(I)) return false;  // the open cells beside it see what is on their side
+    if (walls_.is_between(I)) return false;  // the open cells beside it use the values of their own side
     for (int d = 0; d < D; ++d)
         for (const int by : {-1, 1}) {
             Index<D> J = I;
@@ -122,7 +122,7 @@ bool LevelSet<D>::crosses_in_liquid(const Index<D>& I) const {
     return false;
 }
 
-/// Beside a thin wall the surface passes an open cell where φ changes sign towards one that open faces join to it.
+/// Beside a thin wall: the surface passes an open cell where φ changes sign towards a neighbour connected by an open face.
 template <int D>
 bool LevelSet<D>::crosses_on_this_side(const Index<D>& I) const {
     for (int d = 0; d < D; ++d)
@@ -131,13 +131,13 @@ bool LevelSet<D>::crosses_on_this_side(const Index<D>& I) const {
     return false;
 }
 
-/// |∇φ| beside the surface between which φ is left as it is: to scale one cell and not its neighbour moves the surface between them. Steep
-/// waves stretch φ beyond 3/4 and press it beyond 4/3 once a period, and gained energy each time; the front of a collapsing column, whose φ
-/// is pressed further, gains volume if that is left.
+/// Range of |∇φ| beside the surface in which φ is not rescaled: scaling one cell but not its neighbour moves the surface. Steep waves
+/// stretch φ beyond 3/4 and compress it beyond 4/3 once per period; with those bounds they gained energy each time. The front of a
+/// collapsing column compresses φ further and gains volume if that is not rescaled.
 constexpr real flattest = 5.0 / 8, steepest_left = 7.0 / 5;
 
-/// Where flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13); a cell
-/// beside the surface is no further from it than its diagonal.
+/// Where the flow has stretched φ beside the surface: φ / |∇φ| with the steepest of the differences (Russo & Smereka 2000, eq. 13). The
+/// distance of a cell beside the surface is at most its diagonal.
 template <int D>
 void LevelSet<D>::rescale_surface() {
     resize_scratch(value_, band_.size());
@@ -159,16 +159,16 @@ void LevelSet<D>::rescale_surface() {
     for_each_own(0, band_.size(), [&](int i) { phi(band_[static_cast<std::size_t>(i)]) = value_[static_cast<std::size_t>(i)]; });
 }
 
-/// Whether the band goes on from cell I to its neighbour: not through a thin wall, though into it.
+/// Returns whether the band grows from cell I to its neighbour: into a thin wall, but not through it.
 template <int D>
 bool LevelSet<D>::joins(const Index<D>& I, int axis, int by) const {
     if (!walls_.is_near(I)) return true;
     Index<D> J = I;
-    const bool passes = walls_.passes(closed_, I, axis, by, J);  // whether J is open, and no closed face between
+    const bool passes = walls_.passes(closed_, I, axis, by, J);  // whether J is open, without a closed face between
     return closed_(J) != 0 || (passes && !walls_.is_between(I));
 }
 
-/// Layers 2 .. layers_: neighbours of the layer before.
+/// Layers 2 .. layers_: neighbours of the previous layer.
 template <int D>
 void LevelSet<D>::join_layers() {
     for (int layer = 2; layer <= layers_; ++layer) {
@@ -193,7 +193,7 @@ void LevelSet<D>::join_layers() {
     find_own();
 }
 
-/// The band; cells outside it hold ± cap.
+/// Finds the band; cells outside it get ± cap.
 template <int D>
 void LevelSet<D>::grow_band() {
     join_layers();
@@ -217,10 +217,10 @@ real LevelSet<D>::width_at(const Index<D>& I) const {
     return frame_.width_along(n);
 }
 
-/// Two visits: from finished layers, then once more with the values found inside the layer; where cells are flat, as many more as a plane
-/// can cross cells of one column between two of the next: with fewer the distance is too long there, by up to half a cell's width, and
-/// the surface swells. Layer 2 keeps values that motion left within 0.3 h of a distance: they are smooth to second order where first-order
-/// differences are not, and curvature looks at them.
+/// Two visits: from finished layers, then with the values inside the layer. For flat cells more visits, as many as cells of one column that
+/// a plane can cross between two of the next; with fewer the distance is too long by up to half a cell's width, and the surface expands.
+/// Layer 2 keeps advected values within 0.3 h of the distance: they are second-order smooth, unlike first-order differences, and the
+/// curvature uses them.
 template <int D>
 void LevelSet<D>::fill_layer(int layer) {
     const std::size_t from = layer_begin(layer), to = layer_end(layer);
@@ -240,7 +240,7 @@ void LevelSet<D>::fill_layer(int layer) {
     }
 }
 
-/// Solves Σ_d max(0, (φ − φ_d)/h_d)² = 1 with φ_d the nearer neighbour of the same side along d, in layers up to `layer`.
+/// Solves Σ_d max(0, (φ − φ_d)/h_d)² = 1 with φ_d the smaller neighbour of the same side along d, in layers up to `layer`.
 template <int D>
 real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
     const std::size_t own = phi.linear(I);
@@ -281,7 +281,7 @@ real LevelSet<D>::upwind_distance(const Index<D>& I, int layer) const {
     return inside ? -distance : distance;
 }
 
-/// As fraction_below_plane(), with each corner's simplex at its centroid.
+/// The moments of fraction_below_plane(), with each corner's simplex at its centroid.
 template <int D>
 Vec<D> moment_below_plane(real value, const Vec<D>& g) {
     real alpha = -value, steep = 0;
@@ -311,7 +311,7 @@ Vec<D> moment_below_plane(real value, const Vec<D>& g) {
     return moment;
 }
 
-/// All half cells at once, one a lane, where every axis counts in all of them; the same operations as in fraction_below_plane.
+/// All half cells at once, one per lane, where every axis has a slope in all of them; the same operations as in fraction_below_plane.
 template <int D>
 real fraction_of_halves(real phi, const std::array<Vec<D>, 2>& slope) {
     constexpr int halves = 1 << D;
@@ -383,7 +383,7 @@ std::array<Vec<D>, 2> LevelSet<D>::slopes(const Index<D>& I) const {
     return slope;
 }
 
-/// Beside a thin wall.
+/// The same beside a thin wall.
 template <int D>
 std::array<Vec<D>, 2> LevelSet<D>::slopes_on_this_side(const Index<D>& I) const {
     Around<D> around;
@@ -407,9 +407,9 @@ real LevelSet<D>::fraction(const Index<D>& I, real shift) const {
     const real here = phi(I) - shift;
     if (std::abs(here) > diagonal_) return here < 0 ? 1 : 0;
     const auto slope = slopes(I);
-    real most = 0;  // twice what φ changes by from the centre to any corner, at most
+    real most = 0;  // twice the largest change of φ from the centre to any corner
     for (int d = 0; d < D; ++d) most += std::max(std::abs(slope[0][d]), std::abs(slope[1][d]));
-    if (std::abs(here) > 0.51 * most) return here < 0 ? 1 : 0;  // as every half cell would say
+    if (std::abs(here) > 0.51 * most) return here < 0 ? 1 : 0;  // the result of every half cell
     return fraction_of_halves<D>(here, slope);
 }
 
@@ -433,7 +433,7 @@ Vec<D> LevelSet<D>::moment(const Index<D>& I) const {
     return moment;
 }
 
-/// Sum of f(I) over the open cells of the band up to a layer; block by block of equal length, so that its order is fixed.
+/// Sum of f(I) over the open cells of the band up to a layer, in blocks of equal length: a fixed order.
 template <int D>
 template <class F>
 real LevelSet<D>::sum_over_band(int layers, F&& f) const {
@@ -476,7 +476,7 @@ real LevelSet<D>::volume() const {
     return frame_.cell_volume() * (full + sum_over_band(layers_, [&](const Index<D>& I) { return fraction(I); }));
 }
 
-/// dV/dshift, by a difference over half a cell.
+/// dV/dshift, by a central difference over half a cell.
 template <int D>
 real LevelSet<D>::area() const {
     const real width = 0.25 * frame_.h_min();

@@ -15,7 +15,7 @@ template <int D>
 void SkinOfRanks<D>::find(const Frame<D>& frame, std::vector<std::size_t> rim, const std::vector<std::size_t>& closed, int layers,
                           std::vector<Index<D>>& skin, std::vector<std::size_t>& ends) {
     rim_ = std::move(rim);
-    std::unordered_map<std::size_t, int> place;  // in the skin, of the closed cells that may be in it
+    std::unordered_map<std::size_t, int> place;  // index in the skin, of closed cells that may belong to it
     place.reserve(closed.size());
     for (const std::size_t at : closed) place.emplace(at, nobody);
     skin.clear();
@@ -38,7 +38,7 @@ void SkinOfRanks<D>::find(const Frame<D>& frame, std::vector<std::size_t> rim, c
     rim_value_.resize(rim_.size()), value_.resize(skin.size());
 }
 
-/// A neighbour's place in the rim, or in the skin where it is of a layer before.
+/// A neighbour's index in the rim, or in the skin where it belongs to a previous layer.
 template <int D>
 void SkinOfRanks<D>::find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin, const std::vector<std::size_t>& ends,
                                  const std::unordered_map<std::size_t, int>& place) {
@@ -63,7 +63,7 @@ void SkinOfRanks<D>::find_beside(const Frame<D>& frame, const std::vector<Index<
     }
 }
 
-/// Mean of the neighbours that lie further out, in the order of the skin.
+/// Mean of the neighbours further out, in the order of the skin.
 template <int D>
 void SkinOfRanks<D>::continue_into(Grid<real, D>& phi, const std::vector<Index<D>>& skin) {
     const Cut& cut = *detail::own_share.cut;
@@ -88,7 +88,7 @@ void SkinOfRanks<D>::continue_into(Grid<real, D>& phi, const std::vector<Index<D
             }
             sum += pair;
         }
-        value_[i] = sum / count;  // at least the one that it was found from
+        value_[i] = sum / count;  // at least the one from which it was found
         if (phi.store().holds(skin[i][D - 1])) phi(skin[i]) = value_[i];
     }
 }

@@ -1,4 +1,4 @@
-// What several ranks that share a level set know of each other's part: where each one's cells stand in the band, and the solids' skin.
+// Data that several ranks share of a level set: global positions of each rank's cells in the band, and the skin of solids.
 #pragma once
 #include "core/grid.hpp"
 #include "core/parallel.hpp"
@@ -11,24 +11,24 @@
 
 namespace weir::surface {
 
-/// Every cell of the band has been found from another of the layer before, and so from one beside the surface: its root. In each layer the
-/// cells with roots in one rank's planes follow each other, and those of the next rank follow them: so a cell's place in the band of one
-/// process is known without the band.
+/// Every cell of the band was found from a cell of the previous layer, and so from one cell beside the surface: its root. In each layer the
+/// cells with roots in one rank's planes are contiguous, in rank order. So a cell's position in the band of one process is known without
+/// that band.
 class BandOfRanks {
 public:
-    /// The cells of a layer with roots in this rank's own planes: [begin, end) of those that it knows of the layer.
+    /// The cells of a layer with roots in this rank's own planes: [begin, end) of its cells of the layer.
     struct Rooted {
         std::size_t begin = 0, end = 0;
     };
-    std::vector<Rooted> rooted;  // of each layer
-    /// Sums over blocks of the band of one process up to a layer, in its order: add(sum, place) adds what the cell at a place of this
-    /// rank's band gives. Whole blocks of one rank's cells it adds itself; of others every cell's part is gathered.
+    std::vector<Rooted> rooted;  // per layer
+    /// Blockwise sums over the band of one process up to a layer, in its order: add(sum, index) adds the term of a cell of this rank's
+    /// band. Blocks wholly of one rank's cells are added there; for the others the terms of all cells are gathered.
     template <class F>
     real sum_of_blocks(int layers, const std::vector<std::size_t>& layer_start, F&& add) const;
     static constexpr std::size_t block = 256;
 
 private:
-    /// f(first, count) for the places [first, last) in blocks: whole ones, and one by one what is of parts.
+    /// f(first, count) for the indices [first, last): whole blocks, and single entries of shared blocks.
     template <class F>
     static void for_each_piece(std::size_t first, std::size_t last, F&& f) {
         for (std::size_t at = first, count = 0; at < last; at += count) {
@@ -46,9 +46,9 @@ real BandOfRanks::sum_of_blocks(int layers, const std::vector<std::size_t>& laye
     for (std::size_t r = 0; r <= ranks; ++r) rows[r] = r * depth;
     for (std::size_t l = 0; l < depth; ++l) counts[self * depth + l] = rooted[l].end - rooted[l].begin;
     slabs().gather_parts(counts.data(), sizeof(std::size_t), rows);
-    // What each gives, layer by layer
+    // terms of each rank, layer by layer
     std::vector<std::size_t> begins(ranks + 1, 0);
-    std::vector<std::array<std::size_t, 2>> own;  // place here, number of cells
+    std::vector<std::array<std::size_t, 2>> own;  // index here, number of cells
     std::size_t first = 0;
     for (std::size_t l = 0; l < depth; ++l)
         for (std::size_t r = 0; r < ranks; ++r) {
@@ -67,7 +67,7 @@ real BandOfRanks::sum_of_blocks(int layers, const std::vector<std::size_t>& laye
         for (std::size_t k = 0; k < count; ++k) add(sum, place + k);
     });
     slabs().gather_parts(pieces.data(), sizeof(real), begins);
-    // Everybody adds all
+    // every rank adds all terms
     real sum = 0, part = 0;
     first = 0;
     for (std::size_t l = 0; l < depth; ++l)
@@ -82,7 +82,7 @@ real BandOfRanks::sum_of_blocks(int layers, const std::vector<std::size_t>& laye
     return first % block == 0 ? sum : sum + part;
 }
 
-/// f(J) for the cells beside I, around periodic axes.
+/// f(J) for the neighbours of I, across periodic boundaries.
 template <int D, class F>
 void for_each_beside(const Frame<D>& frame, const Index<D>& I, F&& f) {
     for (int d = 0; d < D; ++d)
@@ -90,13 +90,13 @@ void for_each_beside(const Frame<D>& frame, const Index<D>& I, F&& f) {
             if (Index<D> J = I; frame.step(J, d, by)) f(J);
 }
 
-/// φ in the solids' skin follows from the open cells beside it, one layer of the skin after the other: each rank finds all of it, from the
-/// gathered values of those cells.
+/// Extrapolation of φ into solids from the open cells beside them, layer by layer: each rank computes all of it, from the gathered values
+/// of those cells.
 template <int D>
 class SkinOfRanks {
 public:
-    /// Finds the skin, `layers` deep, in the order of one process, and where each layer ends. `rim`: the open cells beside closed ones;
-    /// `closed`: the closed cells that are so deep at most, and maybe others. Both of all ranks, in the order of the grid.
+    /// Finds the skin, `layers` deep, in the order of one process, and the end of each layer. `rim`: the open cells beside closed ones;
+    /// `closed`: at least the closed cells within that depth. Both contain those of all ranks, in the order of the grid.
     void find(const Frame<D>& frame, std::vector<std::size_t> rim, const std::vector<std::size_t>& closed, int layers,
               std::vector<Index<D>>& skin, std::vector<std::size_t>& ends);
     void continue_into(Grid<real, D>& phi, const std::vector<Index<D>>& skin);
@@ -109,7 +109,7 @@ private:
     void find_beside(const Frame<D>& frame, const std::vector<Index<D>>& skin, const std::vector<std::size_t>& ends,
                      const std::unordered_map<std::size_t, int>& place);
     std::vector<std::size_t> rim_;  // open cells beside the skin, in the order of the grid
-    std::vector<int> beside_;       // of each skin cell its neighbours: place in rim_, or ~place in the skin if of a layer before; or none
+    std::vector<int> beside_;       // neighbours of each skin cell: index in rim_, ~index in the skin for a previous layer, or none
     std::vector<real> rim_value_, value_;
 };
 

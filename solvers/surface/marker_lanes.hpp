@@ -1,6 +1,6 @@
-// Linear interpolation of the faces at the markers of one cell, eight markers at a time. The markers of a cell, and the points that they
-// reach within half a cell, all read the same few faces around it: loads are shared, no interval is searched for, and the weight of the
-// node at distance k cells from the centre is a hat function of the marker's own distance d:  w_k = max(0, 1 − |d − k|).
+// Linear interpolation of the faces at the markers of one cell, eight markers at a time. The markers of a cell, and points within half a
+// cell of them, read the same few faces around it: loads are shared and no interval search is needed. The weight of the node at distance k
+// cells from the centre is a hat function of the marker's distance d:  w_k = max(0, 1 − |d − k|).
 #pragma once
 #include "surface/markers.hpp"
 #include "surface/thin_walls.hpp"
@@ -19,14 +19,14 @@ using Lanes = double __attribute__((vector_size(sizeof(double) * marker_lanes)))
 using LaneBytes = std::int8_t __attribute__((vector_size(marker_lanes)));
 using LaneIndex = std::int64_t __attribute__((vector_size(sizeof(double) * marker_lanes)));
 
-/// One point of each lane.
+/// One point per lane.
 template <int D>
 struct LaneVec : std::array<Lanes, D> {};
 
 #define WEIR_LANES inline __attribute__((always_inline))
 
-/// `count` values from `from` on; the lanes behind them repeat the last one. Only those `count` are touched in memory: the next marker
-/// may be another thread's.
+/// Loads `count` values; the remaining lanes repeat the last one. Only these `count` are accessed: the next marker may belong to another
+/// thread.
 WEIR_LANES Lanes load_lanes(const real* from, int count) {
 #ifdef __AVX512F__
     const auto own = static_cast<__mmask8>((1u << count) - 1);
@@ -51,7 +51,7 @@ WEIR_LANES void store_lanes(real* to, const Lanes& v, int count) {
         for (int l = 0; l < count; ++l) to[l] = v[l];
 #endif
 }
-/// Whether |v| is at most `limit` in every lane; a lane that is not a number is not.
+/// Returns whether |v| is at most `limit` in every lane; false for NaN.
 WEIR_LANES bool all_within(const Lanes& v, real limit) {
 #ifdef __AVX512F__
     return _mm512_cmp_pd_mask(_mm512_abs_pd(v), _mm512_set1_pd(limit), _CMP_LE_OQ) == 0xff;
@@ -79,8 +79,8 @@ WEIR_LANES LaneVec<D> load_positions(const Markers<D>& markers, std::size_t p, i
     return x;
 }
 
-/// Weights of the nodes around a cell for points at d [cells] from its centre: of those at −1, 0, 1 where nodes are centred, and where they
-/// are faces of those at ± ½, or, for points up to a cell away, at ± ½ and ± 3/2.
+/// Weights of the nodes around a cell for points at d [cells] from its centre: of those at −1, 0, 1 for centred nodes; for faces of those
+/// at ± ½, or, for points up to a cell away, at ± ½ and ± 3/2.
 template <int D, bool Wide>
 struct Hats {
     std::array<std::array<Lanes, 3>, D> centre;
@@ -128,13 +128,13 @@ struct Hats {
     }
 };
 
-/// Whether the nodes −1 .. 1 about a cell's own are there along an axis, and 2 where they are faces.
+/// Returns whether the nodes −1 .. 1 around a cell's own exist along an axis, and 2 for faces.
 template <int D>
 bool is_inner(const Frame<D>& frame, const Index<D>& I, int axis) {
     return I[axis] > 0 && I[axis] < frame.cells[axis] - 1;
 }
 
-/// Places in memory of the nodes −1 .. 2 along each axis about a cell's own; at the ends of an axis the last one repeats, or it wraps.
+/// Linear indices of the nodes −1 .. 2 along each axis around a cell's own; at the ends of an axis the last one repeats, or it wraps.
 template <int D>
 class NodeOffsets {
 public:
@@ -153,7 +153,7 @@ public:
         }
     }
     std::ptrdiff_t operator()(int i, int j, int k) const { return along(0, i) + along(1, j) + (D == 2 ? 0 : along(2, k)); }
-    /// Whether the nodes along x follow one another.
+    /// Returns whether the nodes along x are contiguous.
     bool straight() const { return straight_; }
 
 private:
@@ -162,7 +162,7 @@ private:
     bool straight_;
 };
 
-/// The nodes around one cell, where they lie in memory; beside a side of the domain a copy, continued beyond it.
+/// The nodes around one cell, in place; at a side of the domain an extrapolated copy.
 template <int D>
 class CellNodes {
 public:
@@ -173,12 +173,12 @@ public:
         node_ = &nodes(I);
         for (int d = 0; d < D; ++d) stride_[static_cast<std::size_t>(d)] = nodes.stride(d);
     }
-    /// Nodes that were made, not stored.
+    /// Uses nodes that were computed, not stored.
     void look_at(const Around<D>& around) {
         node_ = &around.phi[around.at(Index<D>{})];
         for (int d = 0; d < D; ++d) stride_[static_cast<std::size_t>(d)] = around.stride(d);
     }
-    /// Interpolation of component A of a velocity; of a cell field where A is −1.
+    /// Interpolation of velocity component A; of a cell field for A = −1.
     template <int A, bool Wide>
     WEIR_LANES Lanes at(const Hats<D, Wide>& hats) const {
         return hats.template along<A, D - 1>(node_, stride_);

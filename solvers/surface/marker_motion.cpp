@@ -5,8 +5,8 @@
 
 namespace weir::surface {
 
-/// Those that are, of a box that has changed. A corner is half a diagonal from the middle: none is nearer than that to what is further
-/// from the corner than twice the reach.
+/// Marks the cells near solids in an updated box. A corner is half a diagonal from the centre, so a corner farther than twice the reach
+/// excludes the cell.
 template <int D>
 static void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame, std::size_t box,
                              Grid<std::uint8_t, D>& near_solid) {
@@ -27,7 +27,7 @@ void mark_near_solids(const SolidPlacement<D>& placement, const Frame<D>& frame,
 
 namespace {
 
-/// The box of walls, less a margin; ends that are open or periodic do not stop anything.
+/// The box of walls, reduced by a margin; open and periodic ends do not limit.
 template <int D>
 struct Walls {
     Vec<D> lo = Vec<D>::constant(-infinity), hi = Vec<D>::constant(infinity);
@@ -55,7 +55,7 @@ struct Walls {
     }
 };
 
-/// Where the points are after dt by RK2, if their midpoints lie within half a cell of them, which the stencil of their cell covers.
+/// The points after dt by RK2, if their midpoints lie within half a cell of them, which the stencil of their cell covers.
 template <int D>
 WEIR_LANES bool trace_midpoint(const CellFaces<D>& faces, const Frame<D>& frame, const Index<D>& I, real dt, LaneVec<D>& x) {
     auto d = from_centre(frame, I, x);
@@ -79,7 +79,7 @@ template <int D>
 void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& frame, real dt, Trace order,
                   const geometry::Sides<D>& sides, const geometry::Solids<D>& solids, const Grid<std::uint8_t, D>& near_solid) {
     const Walls<D> walls(frame, sides);
-    const real eps = 1e-3 * frame.h_min();  // of the finite differences that give a solid's normal
+    const real eps = 1e-3 * frame.h_min();  // for the finite differences of a solid's normal
     const auto place = [&](std::size_t p, const Vec<D>& reached) {
         Vec<D> x = walls.keep_inside(frame, reached);
         const std::uint8_t near = near_solid.empty() ? std::uint8_t{0} : near_solid(frame.cell_of(x));

@@ -63,7 +63,7 @@ void for_each_block(int count, F&& f) {
 
 }  // namespace
 
-/// As Frame::cell_of, for many; what would be rounded down to less than 0 is 0 anyway, so that rounding towards 0 does.
+/// As Frame::cell_of, for many points; negative values are clamped to 0, so rounding towards 0 is sufficient.
 template <int D>
 void Markers<D>::find_cells(const Frame<D>& frame, int first, int last) {
     using Cells = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * marker_lanes)));
@@ -101,7 +101,7 @@ void Markers<D>::sort(const Frame<D>& frame) {
         const std::size_t first = 2 + static_cast<std::size_t>(plane) * plane_;
         for (std::size_t i = first; i < first + plane_; ++i) before = start[i] += before;
     }
-    for (int p = 0; p < n; ++p)  // the next free place of a cell is the start of the one behind it, until that is its own
+    for (int p = 0; p < n; ++p)  // while filling, the next free index of a cell ends at the start of the following cell
         from_[static_cast<std::size_t>(start[static_cast<std::size_t>(cell_[static_cast<std::size_t>(p)]) + 1]++)] = p;
     find_plane_starts(frame);
     find_rows(frame);
@@ -119,7 +119,7 @@ void Markers<D>::sort(const Frame<D>& frame) {
     });
 }
 
-/// Where the starts of a plane and of the one before are not held, there is no marker.
+/// Cells outside the stored planes have no markers.
 template <int D>
 void Markers<D>::find_plane_starts(const Frame<D>& frame) {
     const int planes = frame.cells[D - 1];
@@ -131,7 +131,7 @@ void Markers<D>::find_plane_starts(const Frame<D>& frame) {
     }
 }
 
-/// The first cell before which there are at least so many markers.
+/// The first cell with at least this many markers before it.
 template <int D>
 std::size_t Markers<D>::first_cell_from(std::size_t least) const {
     const auto plane = std::lower_bound(plane_start_.begin(), plane_start_.end(), least) - plane_start_.begin();
@@ -176,7 +176,7 @@ void Markers<D>::keep_held(const Frame<D>& frame, const Cut& cut) {
     sort(frame);
 }
 
-/// The ranks that hold the markers of each plane of cells.
+/// Returns the ranks that store the markers of each plane of cells.
 template <int D>
 void Markers<D>::find_holders(const Frame<D>& frame, const Cut& cut) {
     const int planes = frame.cells[D - 1];
@@ -187,7 +187,8 @@ void Markers<D>::find_holders(const Frame<D>& frame, const Cut& cut) {
             if (holds(frame, cut, rank, plane)) holders_[static_cast<std::size_t>(plane)].push_back(rank);
 }
 
-/// Which of this rank's own markers go to which ranks, to going_; those that do not stay, to gone_. Answers how many have left the domain.
+/// Finds the destination ranks of this rank's own markers (going_) and those that leave this rank (gone_). Returns how many have left the
+/// domain.
 template <int D>
 std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave) {
     const int planes = frame.cells[D - 1], self = slabs().rank();
@@ -218,14 +219,14 @@ std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, st
     return left;
 }
 
-/// Of markers [first, last). Answers how many have left the domain.
+/// The same for markers [first, last). Returns how many have left the domain.
 template <int D>
 std::int64_t Markers<D>::hand_on(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave) {
     const auto ranks = static_cast<std::size_t>(slabs().ranks()), self = static_cast<std::size_t>(slabs().rank());
     going_.resize(ranks), sent_.resize(ranks), received_.resize(ranks);
     find_holders(frame, cut);
     const std::int64_t left = find_going(frame, first, last, leave);
-    // How many go from each to each: a row of the table a rank.
+    // number of markers sent between each pair of ranks: one row of the table per rank
     table_.resize(ranks * ranks), table_rows_.resize(ranks + 1);
     for (std::size_t r = 0; r < ranks; ++r) table_[self * ranks + r] = static_cast<int>(going_[r].size());
     std::iota(table_rows_.begin(), table_rows_.end(), std::size_t{0});
@@ -279,7 +280,7 @@ std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut
 template <int D>
 void Markers<D>::deal(const Frame<D>& frame, const Cut& cut) {
     hand_on(frame, cut, 0, count(), false);
-    sent_.clear(), received_.clear();  // in a step few go
+    sent_.clear(), received_.clear();  // few markers migrate per step
     trim();
     sort(frame);
 }

@@ -1,5 +1,5 @@
-// Marker particles: which fluid is where (Harlow & Welch 1965), and, for PIC, FLIP and APIC, the carriers of its momentum.
-// Arrays by component, sorted by cell after every motion: all that happens between markers and grid runs in this fixed order.
+// Marker particles: they mark the fluid region (Harlow & Welch 1965) and, for PIC, FLIP and APIC, carry its momentum. Stored as arrays by
+// component, sorted by cell after every motion: all transfers between markers and grid use this fixed order.
 #pragma once
 #include "core/parallel.hpp"
 #include "core/plane_store.hpp"
@@ -14,7 +14,7 @@
 
 namespace weir::surface {
 
-/// Repeatable random numbers in [0, 1): a hash (SplitMix64, Steele et al. 2014) of a seed and a few integers, no state.
+/// Repeatable random numbers in [0, 1): a hash (SplitMix64, Steele et al. 2014) of a seed and some integers, without state.
 real hashed_random(std::uint64_t seed, std::uint64_t a, std::uint64_t b);
 
 template <int D>
@@ -23,7 +23,7 @@ public:
     static constexpr int per_cell = D == 2 ? 4 : 8;  // one in each half cell along every axis
 
     std::array<std::vector<real>, D> x;      // position [m]
-    std::array<std::vector<real>, D> v;      // velocity [m/s]; empty where the transfer carries no momentum on markers
+    std::array<std::vector<real>, D> v;      // velocity [m/s]; empty where the transfer stores no momentum on markers
     std::array<std::vector<real>, D * D> c;  // velocity gradient c[a D + d] = ∂v_a/∂x_d [1/s]; only for APIC
     real volume = 0;                         // of one marker [m^D]
 
@@ -42,47 +42,48 @@ public:
         for (int d = 0; d < D; ++d) x[static_cast<std::size_t>(d)][p] = at[d];
     }
     void add(const Vec<D>& at, const Vec<D>& velocity);
-    /// The jittered place of marker `sub` of a cell. Mirror images of a cell about the middle of the domain get mirror images of places.
+    /// The jittered position of marker `sub` of a cell. Cells mirrored about the middle of the domain get mirrored positions.
     static Vec<D> jittered(const Frame<D>& frame, const Index<D>& I, int sub, std::uint64_t seed);
-    /// Keeps the markers for which keep(p); order is kept.
+    /// Keeps the markers for which keep(p) is true; the order is kept.
     template <class Keep>
     void retain(Keep&& keep);
 
-    /// Over ranks each holds the markers of its own planes of cells and of one more beyond either cut, which give to the same faces.
+    /// In parallel each rank stores the markers of its own planes of cells and ghost markers of one plane on each side, which contribute to
+    /// the same faces.
     bool holds(const Frame<D>& frame, const Cut& cut, int rank, int plane) const;
-    /// Keeps those that this rank holds, of all.
+    /// Keeps, of all markers, those that this rank stores.
     void keep_held(const Frame<D>& frame, const Cut& cut);
-    /// After motion: every rank gets what it holds now from where it was. Each gives its own, in their order, and takes what comes in the
-    /// order of the ranks, so that the stable sort finds them as in one process. Those that are beyond the domain go, where `leave`;
-    /// answers how many were this rank's own, before and of those that left.
+    /// Migration after motion: every rank receives the markers that it stores now. Each rank sends its own in their order and receives in
+    /// rank order, so that the stable sort gives the order of one process. Markers beyond the domain are removed if `leave`. Returns the
+    /// number of this rank's own markers before, and of those that left.
     std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Cut& cut, bool leave);
-    /// The same of all that is here, which is any part of all markers, in the order of the ranks: a part of a file. Sorts.
+    /// The same for an arbitrary distribution of all markers over the ranks, in rank order: parts of a file. Sorts.
     void deal(const Frame<D>& frame, const Cut& cut);
-    /// All markers of all ranks, to `all`, as they are sorted in one process.
+    /// Gathers the markers of all ranks in `all`, in the sorted order of one process.
     void gather(const Frame<D>& frame, Markers& all) const;
-    /// Those of this rank's own planes: [first, second). Sorted.
+    /// The markers of this rank's own planes: [first, second). Sorted.
     std::pair<std::size_t, std::size_t> own(const Frame<D>& frame) const {
         const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(frame.cells[D - 1]);
         return {plane_start_[static_cast<std::size_t>(lo)], plane_start_[static_cast<std::size_t>(hi)]};
     }
 
-    /// Sorts by cell, x fastest, stable. Afterwards the markers of cell I are begin(I) .. end(I), in planes whose markers are held.
+    /// Stable sort by cell, x fastest. Afterwards the markers of cell I are begin(I) .. end(I), in the stored planes.
     void sort(const Frame<D>& frame);
     std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(cell_start_.data()[cell]); }
     std::size_t end(std::size_t cell) const { return static_cast<std::size_t>(cell_start_.data()[cell + 1]); }
-    /// The cell that holds marker p.
+    /// The cell that contains marker p.
     std::size_t cell_with(std::size_t p) const;
-    /// f(I, begin, end) for each cell of this rank's own planes that holds markers, after sort(); threaded by equal numbers of markers.
+    /// f(I, begin, end) for each cell of this rank's own planes that contains markers, after sort(); threaded by equal numbers of markers.
     template <class F>
     void for_each_occupied_cell(const Frame<D>& frame, F&& f) const;
-    /// The same for the cells [from, to) in memory, one after the other.
+    /// The same for the cells [from, to) in memory, serially.
     template <class F>
     void for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const;
-    /// The part of a row of cells along x that holds markers; `row`: the place of its first cell in memory, over the length of rows.
+    /// The part of a row of cells along x that contains markers; `row`: index of the row.
     const Extent& in_row(std::size_t row) const { return rows_[row]; }
     int in_cell(std::size_t cell) const { return cell_start_.data()[cell + 1] - cell_start_.data()[cell]; }
 
-    /// f(array) for every array of one value a marker.
+    /// f(array) for every array with one value per marker.
     template <class F>
     void for_each_array(F&& f);
     template <class F>
@@ -90,7 +91,7 @@ public:
         const_cast<Markers*>(this)->for_each_array([&](const std::vector<real>& array) { f(array); });
     }
     void reserve(std::size_t capacity);
-    /// Room for an eighth more than there are and no more.
+    /// Reduces the capacity to an eighth more than the size.
     void trim();
     std::size_t bytes() const;
 
@@ -105,12 +106,12 @@ private:
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, from_;
-    PlaneStore<int> cell_start_;            // with two entries more at its end; over ranks, of the planes whose markers are held
-    std::vector<std::size_t> plane_start_;  // how many markers there are before each plane
-    std::size_t plane_ = 0;                 // cells of one
+    PlaneStore<int> cell_start_;            // with two extra entries at its end; in parallel, of the planes whose markers are stored
+    std::vector<std::size_t> plane_start_;  // number of markers before each plane
+    std::size_t plane_ = 0;                 // cells per plane
     std::vector<Extent> rows_;
     std::vector<real> scratch_;
-    // Over ranks: who holds the markers of each plane, which go to each rank, which do not stay, what travels, array by array
+    // in parallel: ranks that store each plane's markers, markers to send to each rank, markers to remove, message buffers, array by array
     std::vector<std::vector<int>> holders_, going_;
     std::vector<int> gone_, table_;
     std::vector<std::size_t> table_rows_;

@@ -4,7 +4,7 @@
 
 namespace weir::surface {
 
-/// Sum over faces of the liquid volume that a face stands for (half of either cell's) times f.
+/// Sum over faces of f times the liquid volume of the face (half of both cells').
 template <int D>
 template <class F>
 real Measure<D>::sum_over_faces(int a, F&& f) const {
@@ -28,8 +28,8 @@ Vec<D> Measure<D>::momentum(const MacVelocity<D>& u, real rho) const {
     return sum;
 }
 
-/// The liquid's middle in a cell, from its centre, by cell. Of liquid below a surface as the level set has it; of a full cell that a solid
-/// cuts, the middle of what the solid leaves: above a plane with the slope of the open parts.
+/// The centroid of the liquid in a cell relative to its centre, per cell. For liquid below a surface by the level set; for a full cell cut
+/// by a solid, the centroid of the open part: above a plane with the slope of the open fractions.
 template <int D>
 Vec<D> Measure<D>::middle(const Index<D>& I) const {
     const real fraction = surface_.fraction(I), open = surface_.open_part(I);
@@ -52,7 +52,7 @@ real Measure<D>::potential_energy(const Vec<D>& gravity, real rho) const {
     });
 }
 
-/// Coordinate along the axis where the surface leaves liquid cell I upwards, or −infinity if its upper neighbour is liquid too.
+/// Coordinate along the axis where the surface leaves liquid cell I upwards; −infinity if its upper neighbour is liquid too.
 template <int D>
 real Measure<D>::crossing(const Index<D>& I, int axis) const {
     const real here = surface_.phi(I);

@@ -7,7 +7,7 @@ namespace weir::surface {
 
 namespace {
 
-constexpr real flat = 1e-4;  // a flatter axis changes the volume by less than 1e-8 and the formulas lose digits
+constexpr real flat = 1e-4;  // a smaller slope changes the volume by less than 1e-8, and the formulas lose digits
 
 /// Root of a3 a³ + a2 a² + a1 a + a0 between its other two (Scardovelli & Zaleski 2000, appendix).
 real middle_root(real a3, real a2, real a1, real a0) {

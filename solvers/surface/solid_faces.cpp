@@ -4,7 +4,7 @@
 
 namespace weir::surface {
 
-/// Keeps the faces that lie in no box that has changed.
+/// Keeps the faces outside all updated boxes.
 template <int D>
 void FacesInSolids<D>::forget_changed(const std::vector<CellBox<D>>& changed, int a) {
     auto& faces = faces_[static_cast<std::size_t>(a)];
@@ -37,14 +37,14 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
         for (std::size_t box = 0; box < changed.size(); ++box) {
             const auto near = placement.near(box);
             const auto see = [&](const Index<D>& I) {
-                if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) return;  // the side's own
+                if (!frame.periodic(a) && (I[a] == 0 || I[a] == frame.cells[a])) return;  // a face of the domain's side
                 for (std::size_t other = 0; other < box; ++other)
-                    if (changed[other].faces(a).holds(I)) return;  // found there
+                    if (changed[other].faces(a).holds(I)) return;  // found in that box
                 const Vec<D> x = state.u.face_centre(a, I);
                 const std::size_t nearest = solids.nearest(x, near);
                 const real distance = solids.distance(nearest, x);
                 if (distance < deepest) return;
-                // No other that is further than this is nearest within eps of x.
+                // no solid farther than this is the nearest within eps of x
                 const bool alone = std::none_of(near.begin(), near.end(), [&](std::size_t other) {
                     const geometry::Ball<D>& ball = solids.ball(other);
                     return other != nearest && norm(x - ball.middle) - ball.radius < distance + 4 * eps;
@@ -89,7 +89,7 @@ void FacesInSolids<D>::forget(FaceMarks<D>& known) const {
 
 namespace {
 
-/// The mean of the other components' four faces around a face; 0 for those that are not known.
+/// The mean of each other component's four faces around a face; 0 for unknown faces.
 template <int D>
 Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, const Frame<D>& frame, int a, const Index<D>& I) {
     Vec<D> v{};
@@ -100,7 +100,7 @@ Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, cons
         real sum = 0;
         int count = 0;
         for (const int along : {0, 1}) {
-            real pair = 0;  // the two sides of the face are added first, so that a mirror changes nothing
+            real pair = 0;  // the two sides of the face are added first: mirror symmetric
             for (const int across : {-1, 0}) {
                 Index<D> J = frame.near(I, a, across);
                 J[b] += along;
@@ -116,7 +116,7 @@ Vec<D> velocity_at_face(const MacVelocity<D>& u, const FaceMarks<D>& marks, cons
 
 }  // namespace
 
-/// Over ranks, each those of its own planes.
+/// In parallel, each rank handles the faces of its own planes.
 template <int D>
 void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, const Frame<D>& frame) {
     if (any_) refresh_faces(u, frame, 1);

@@ -6,7 +6,7 @@ namespace weir::surface {
 
 namespace {
 
-/// Whether the point of the shape's boundary next to x is a contact with a wall or a solid: there the liquid ends, but not at air.
+/// Returns whether the shape's boundary point closest to x is a contact with a wall or a solid: the liquid ends there, but not at air.
 template <int D>
 bool at_contact(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, const Vec<D>& x, real d) {
     const real h = frame.h_min(), eps = 1e-4 * h, touching = 1e-6 * h;  // round-off of a distance is far below both
@@ -16,19 +16,19 @@ bool at_contact(const geometry::Shape<D>& liquid, const geometry::Solids<D>& sol
     const Vec<D> boundary = x - d * n;
     for (int a = 0; a < D; ++a) {
         if (frame.periodic(a)) continue;
-        // On the ridge between two contacts the gradient points at neither: then the wall's own distance tells.
+        // on the ridge between two contacts the gradient points at neither: use the wall's own distance
         const real lower = x[a] - frame.origin[a], upper = frame.h[a] * frame.cells[a] - lower;
         if (n[a] < -0.3 && std::abs(lower + d) < touching) return true;
         if (n[a] > 0.3 && std::abs(upper + d) < touching) return true;
-        if (std::abs(n[a]) < 0.99) continue;  // a boundary that cuts the wall at an angle does not lie on it
+        if (std::abs(n[a]) < 0.99) continue;  // a boundary that meets the wall at an angle does not lie on it
         if (n[a] < 0 && boundary[a] < frame.origin[a] + touching) return true;
         if (n[a] > 0 && boundary[a] > frame.origin[a] + frame.h[a] * frame.cells[a] - touching) return true;
     }
     return !solids.empty() && solids.distance(boundary) < touching && dot(solids.normal(boundary, eps), n) < -0.99;
 }
 
-/// Where liquid is asked for at a centre: there, but where the centre lies inside a solid or on its surface, and the nearest part of the
-/// liquid's boundary on that surface, just outside that solid: liquid that touches a solid fills the cells that the solid cuts.
+/// The point at which the initial liquid is sampled: the cell's centre. A centre inside or on a solid, with the liquid's boundary on that
+/// solid's surface, is moved just outside it: liquid that touches a solid fills the cut cells.
 template <int D>
 Vec<D> sample_point(const geometry::Shape<D>& liquid, const geometry::Solids<D>& solids, const Frame<D>& frame, const Vec<D>& x, real d) {
     const real h = frame.h_min(), eps = 1e-4 * h, touching = 1e-6 * h;
@@ -38,7 +38,7 @@ Vec<D> sample_point(const geometry::Shape<D>& liquid, const geometry::Solids<D>&
         boundary[a] -= d * (liquid.distance(x + eps * Vec<D>::unit(a)) - liquid.distance(x - eps * Vec<D>::unit(a))) / (2 * eps);
     if (std::abs(solids.distance(boundary)) > touching) return x;
     for (int step = 0; step < 8 && solids.distance(outside) < touching;
-         ++step)  // in a corner, where solids meet, each goes a part of the way
+         ++step)  // in a corner of several solids each moves it a part of the way
         outside = solids.push_out(outside, 1e-3 * h, eps);
     return outside;
 }
@@ -65,7 +65,7 @@ void start_level_set(const geometry::Shape<D>& liquid, const geometry::Solids<D>
                 if ((raw(frame.near(I, d, by)) < 0) != (raw(I) < 0)) return true;
         return false;
     };
-    // Beside a contact φ continues linearly from two cells further in: exact for planes. D passes reach the corners of a tank.
+    // beside a contact φ is extrapolated linearly from two cells further in: exact for planes; D passes reach the corners of a tank
     Grid<std::uint8_t, D> filled = known;
     for (int pass = 0; pass < D; ++pass) {
         for_each_cell(frame.cells, [&](const Index<D>& I) {

@@ -55,7 +55,7 @@ void ThinWalls<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& clos
     marks_.store().open(deep, ring);
     if (any_) marks_.fill(0);
     any_ = false;
-    // Of walls that stencils of this rank's own cells see, both ends lie this near.
+    // the stencils of this rank's own cells reach walls with both ends within this distance
     const auto near = alone ? planes_near(frame.cells[D - 1], reach_ + thickest - 1, ring) : std::vector<char>();
     const auto is_known = [&](int plane) { return near.empty() || near[static_cast<std::size_t>(plane)] != 0; };
     for (const Index<D>& I : skin) {
@@ -81,7 +81,7 @@ void ThinWalls<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& clos
     any_ = sum_of_ranks(any_) > 0;
 }
 
-/// Follows closed cells from the first one inwards: a wall, if there is an open cell behind a few of them.
+/// Follows closed cells from the first one inwards: a thin wall, if an open cell follows after a few.
 template <int D>
 void ThinWalls<D>::mark_run(const Grid<std::uint8_t, D>& closed, const Index<D>& first, int axis, int by) {
     Index<D> I = first;
@@ -140,10 +140,10 @@ bool ThinWalls<D>::passes(const Grid<std::uint8_t, D>& closed, const Index<D>& I
 
 namespace {
 
-/// A bit for each cell of Around, as far as two cells to either side.
+/// One bit for each cell of Around, up to two cells to either side.
 __extension__ using Cells = unsigned __int128;
 
-/// Of Around's cells those with the lowest (side 0) or the highest place along an axis.
+/// The cells of Around with the lowest (side 0) or highest index along an axis.
 template <int D>
 Cells cells_at_end(const Around<D>& around, int axis, int side) {
     Cells cells = 0;
@@ -152,7 +152,7 @@ Cells cells_at_end(const Around<D>& around, int axis, int side) {
     return cells;
 }
 
-/// Those of both ends of each axis, by reach 1 and 2.
+/// The cells at both ends of each axis, for reach 1 and 2.
 template <int D>
 const std::array<std::array<Cells, 2>, D>& cells_at_ends(int reach) {
     static const auto all = [] {
@@ -172,7 +172,7 @@ const std::array<std::array<Cells, 2>, D>& cells_at_ends(int reach) {
 
 }  // namespace
 
-/// What is reached from the middle through open faces; the cells around I are all inside the domain.
+/// The cells connected to the middle through open faces; all cells around I must be inside the domain.
 template <int D>
 void ThinWalls<D>::flood_inside(const Grid<std::uint8_t, D>& closed, const Index<D>& I, Around<D>& to) const {
     Cells open = 0, reached = Cells{1} << to.at(Index<D>{});
@@ -202,7 +202,7 @@ void ThinWalls<D>::flood_inside(const Grid<std::uint8_t, D>& closed, const Index
     for (std::size_t i = 0; i < to.count(); ++i) to.reached[i] = (reached >> i & 1) != 0;
 }
 
-/// The same anywhere, and as far as Around goes.
+/// The same for any cell, over the whole range of Around.
 template <int D>
 void ThinWalls<D>::flood(const Grid<std::uint8_t, D>& closed, const Index<D>& I, Around<D>& to) const {
     struct Seen {
@@ -252,7 +252,7 @@ void ThinWalls<D>::look(const Grid<std::uint8_t, D>& closed, const Grid<real, D>
     if (!all) continue_into(to);
 }
 
-/// Layer by layer the mean of the neighbours that lie further out.
+/// Layer by layer the mean of the neighbours further out.
 template <int D>
 void ThinWalls<D>::continue_into(Around<D>& to) const {
     std::array<std::uint8_t, std::tuple_size_v<decltype(to.reached)>> layer;
@@ -266,7 +266,7 @@ void ThinWalls<D>::continue_into(Around<D>& to) const {
             real sum = 0;
             int known = 0;
             for (int axis = 0; axis < D; ++axis) {
-                real pair = 0;  // the two sides are added first, so that a mirror changes nothing
+                real pair = 0;  // the two sides are added first: mirror symmetric
                 for (const int side : {-1, 1}) {
                     if (std::abs(by[axis] + side) > to.reach) continue;
                     const std::size_t other = at + static_cast<std::size_t>(side * to.stride(axis));

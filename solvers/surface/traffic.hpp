@@ -1,5 +1,5 @@
-// What a rank sends of a level set and of the velocity that is continued beyond the liquid: the exchanges of LevelSet::redistance() and of
-// Extrapolation, for the formulas of solvers that have them (core/traffic.hpp).
+// Estimate of what a rank sends for a level set and the extrapolated velocity: the exchanges of LevelSet::redistance() and of
+// Extrapolation, for the estimates of solvers (core/traffic.hpp).
 #pragma once
 #include "core/traffic.hpp"
 #include "core/types.hpp"
@@ -11,7 +11,7 @@
 
 namespace weir::surface {
 
-/// An array over cells or faces n, of `each` bytes an entry.
+/// An array over cells or faces n, with `each` bytes per entry.
 template <int D>
 PlaneSize plane_of(const Index<D>& n, std::size_t each) {
     for (int d = 0; d + 1 < D; ++d) each *= static_cast<std::size_t>(n[d]);
@@ -23,7 +23,7 @@ struct SurfaceTally {
     Index<D> n;
     bool ring;
     int layers;  // of the band
-    int visits;  // of one of them
+    int visits;  // per layer
     PlaneSize cells;
     std::array<PlaneSize, D> faces{};
 
@@ -35,23 +35,23 @@ struct SurfaceTally {
         for (int a = 0; a < D; ++a) faces[static_cast<std::size_t>(a)] = plane_of(n + e<D>(a), sizeof(real));
     }
 
-    /// Who is inside is known as far as the band is found beyond the cuts; values of a layer are found in several visits, each time from
-    /// those beside them.
+    /// The flags of inside cells as far as the band is found in ghost planes; the values of a layer in several visits, each from their
+    /// neighbours.
     void distance(Tally& tally) const {
         const int found = 2 * layers;
         tally.refresh({plane_of(n, sizeof(std::uint8_t))}, found + 1);
         tally.refresh({cells}, 1, 1 + visits * (layers - 1));
         tally.refresh({cells}, layers);
     }
-    /// Liquid parts of cells before each sweep, before, between and after what is handed on; φ, and how far both stand apart.
+    /// Liquid fractions before each sweep and before, between and after redistributions; φ, and the difference of both.
     void liquid_parts(Tally& tally) const {
         constexpr int passes = 2;
         tally.refresh({cells}, 2, D + 1 + passes);
         tally.refresh({cells}, 3);
         tally.refresh({cells}, 1, 2);
     }
-    /// Which faces are known as far as a slope looks behind the last layer; a layer is found from three planes at the cuts, or four around
-    /// the axis, later ones from one.
+    /// The marks of known faces as far as a slope reads behind the last layer. The first layers need three ghost planes, or four around a
+    /// periodic axis; later ones need one.
     void continue_velocity(Tally& tally, int to) const {
         const int behind = ring ? 4 : 3;
         std::array<PlaneSize, D> marks;

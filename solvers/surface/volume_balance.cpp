@@ -1,5 +1,5 @@
-// What makes the level set and the liquid parts of cells agree: rests that no cell can hold go on to their neighbours, and the surface
-// moves to enclose what the cells hold.
+// Keeps the level set and the liquid fractions of cells consistent: excess volume that a cell cannot hold moves to its neighbours, and the
+// surface moves to enclose the cells' volume.
 #include "core/parallel.hpp"
 #include "surface/marker_lanes.hpp"
 #include "surface/volume_fraction.hpp"
@@ -9,15 +9,15 @@
 namespace weir::surface {
 
 namespace {
-constexpr real noise = 1e-4;    // part of a cell that the pressure's tolerance may leave
-constexpr real film = 1e-6;     // of a cell outside, that may stay
-constexpr int passes = 2;       // cells that a rest goes on in a step
-constexpr real furthest = 0.1;  // that the surface is moved in a step [h]
-constexpr real gain = 0.2;      // of what is missing, in a step: all of it at once feeds waves, 43% in 20 s of sloshing for 15%
-constexpr real unsure = 0.03;   // that the two may stand apart [h]: smooth waves of second order in both stay within it
+constexpr real noise = 1e-4;    // relative to a cell: error within the tolerance of the pressure
+constexpr real film = 1e-6;     // relative to a cell: volume that may stay outside the surface
+constexpr int passes = 2;       // cells that an excess moves per step
+constexpr real furthest = 0.1;  // largest motion of the surface per step [h]
+constexpr real gain = 0.2;      // fraction corrected per step: the whole adds energy to waves, 43% in 20 s of sloshing instead of 15%
+constexpr real unsure = 0.03;   // tolerated distance between the two [h]: second-order errors of smooth waves are within it
 }  // namespace
 
-/// What of a cell's part is to go on: > 0 more than there is room, < 0 less than nothing, or a hole where φ says that there is none.
+/// Excess of a cell's volume: > 0 above its capacity or outside the surface, < 0 negative or a hole deep inside the liquid.
 template <int D>
 real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const Grid<std::uint8_t, D>& exempt) const {
     if (!exempt.empty() && exempt[cell]) return 0;
@@ -29,8 +29,7 @@ real LiquidVolume<D>::rest_of(std::size_t cell, real phi, const Grid<std::uint8_
     return 0;
 }
 
-/// f(first, last) for the parts of lines with liquid, of this rank's own planes and the next ones beyond its cuts, in the order of the
-/// grid.
+/// f(first, last) for the parts of lines with liquid in this rank's own planes and one ghost plane on each side, in the order of the grid.
 template <int D>
 template <class F>
 void LiquidVolume<D>::for_each_near_line(F&& f) const {
@@ -44,7 +43,7 @@ void LiquidVolume<D>::for_each_near_line(F&& f) const {
     }
 }
 
-/// Whether any of so many cells may have a rest: rest_of() without what exempts.
+/// Returns whether any of `count` cells may have an excess: rest_of() without exemptions.
 template <int D>
 bool LiquidVolume<D>::may_have_rests(std::size_t first, int count, const Grid<real, D>& phi, const MacState<D>& state) const {
     const real h = frame_.h_max(), deep = -1.5 * h;
@@ -78,8 +77,8 @@ void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& st
     });
 }
 
-/// To neighbours in proportion to how far φ rises to them, where there is too much or a hole; or falls, where there is less than nothing,
-/// or liquid outside. To all alike where φ does neither.
+/// Distributes excess to neighbours in proportion to the rise of φ towards them (for too much volume or a hole), or to its fall (for
+/// negative volume, or liquid outside). Equal parts where φ is flat.
 template <int D>
 void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state) {
     for (const Rest& rest : rests_) {
@@ -127,7 +126,7 @@ void LiquidVolume<D>::settle(const Grid<real, D>& phi, const MacState<D>& state,
     find_reach(true);
 }
 
-/// F minus φ's fraction, and the surface that there is, in the cells near it.
+/// F minus the fraction of φ, and the surface area, in the cells near the surface.
 template <int D>
 void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt) {
     const real h = frame_.h_min();
@@ -146,7 +145,7 @@ void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& sta
     refresh(near_, frame_.periodic(D - 1));
 }
 
-/// Sums of both over a cell and those around it.
+/// Sums of both over a cell and its neighbours.
 template <int D>
 std::array<real, 2> LiquidVolume<D>::around(const Index<D>& I) const {
     real excess = 0, area = 0;
@@ -203,7 +202,7 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
     for (const std::size_t drop : drops_) join_drop(phi, frame_.index_of(drop));
 }
 
-/// Cells more than half full in which φ shows no liquid.
+/// Cells more than half full outside the liquid of φ.
 template <int D>
 void LiquidVolume<D>::find_drops(const Grid<real, D>& phi, const MacState<D>& state) {
     drops_.clear();
@@ -215,7 +214,7 @@ void LiquidVolume<D>::find_drops(const Grid<real, D>& phi, const MacState<D>& st
     });
 }
 
-/// Liquid of a cell that φ does not show: as full as the cell is under a flat surface, and as far below the middles of the cells around.
+/// Adds a drop to φ: its value at the centre is that of a flat surface for the cell's fraction, increasing with the distance to neighbours.
 template <int D>
 void LiquidVolume<D>::join_drop(Grid<real, D>& phi, const Index<D>& I) {
     const real h = frame_.h_min(), here = (0.5 - std::min<real>(part_(I), 1)) * h;

@@ -6,11 +6,11 @@
 namespace weir::surface {
 
 namespace {
-/// Parts nearer to 0 or 1 than this are not cut. What is full flows whole; what is as good as empty stays where it is, or it would soon be
-/// everywhere.
+/// Fractions closer to 0 or 1 are not reconstructed by a plane. Full cells are advected whole; nearly empty ones stay, or traces would
+/// spread everywhere.
 constexpr real dust = 1e-6;
 
-/// From the first to the last of a part of n that is more than dust; {n, 0} where none is.
+/// Extent of entries above dust in a part of n; {n, 0} where there are none.
 Extent extent_of_liquid(const real* F, Extent extent, int n) {
     constexpr int block = 8;
     const auto is_empty = [&](int first) {
@@ -69,7 +69,7 @@ void LiquidVolume<D>::follow(const LevelSet<D>& surface, const MacState<D>& stat
             part_(I) += capacity(part_.linear(I)) * (surface.fraction(I) - surface.fraction(I, -shift));
 }
 
-/// Gradient of a plane in cell I, by cell: φ's, or where φ has none that is near a distance's, that of −F (Youngs 1984: central, smoothed).
+/// Gradient of the plane in cell I, per cell: that of φ, or, where |∇φ| is far from 1, that of −F (Youngs 1984: central, smoothed).
 template <int D>
 Vec<D> LiquidVolume<D>::normal(const Grid<real, D>& phi, const Index<D>& I) const {
     Vec<D> g;
@@ -99,7 +99,7 @@ Vec<D> LiquidVolume<D>::normal(const Grid<real, D>& phi, const Index<D>& I) cons
     return steep > 1e-9 ? g : Vec<D>{};
 }
 
-/// Of the donor's liquid what leaves with |courant| of its volume, through its upper face where courant > 0.
+/// Volume that leaves the donor cell with |courant| of its volume, through its upper face where courant > 0.
 template <int D>
 real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const {
     const real room = std::max(capacity(part_.linear(donor)), dust), F = std::min(part_(donor) / room, real(1));
@@ -112,8 +112,8 @@ real LiquidVolume<D>::liquid_through(const Grid<real, D>& phi, const Index<D>& d
     return courant > 0 ? through : -through;
 }
 
-/// f(line) for the lines of cells of this rank's own planes, of `below` planes before them and `above` after them, around a periodic axis
-/// too where `ring`; threaded over planes.
+/// f(line) for the lines of cells in this rank's own planes, `below` planes before them and `above` after them, also around a periodic axis
+/// where `ring`; threaded over planes.
 template <int D>
 template <class F>
 void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) const {
@@ -127,8 +127,8 @@ void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) 
     });
 }
 
-/// Of each line the part that holds liquid, and the part that liquid can come to in one sweep along each axis. `within`: it lies in what
-/// was found to be so reached before.
+/// For each line the part that contains liquid, and the part that liquid can reach in one sweep along each axis. `within`: it is inside the
+/// previous such part.
 template <int D>
 void LiquidVolume<D>::find_reach(bool within) {
     const int n = frame_.cells[0];
@@ -154,7 +154,7 @@ void LiquidVolume<D>::find_reach(bool within) {
     });
 }
 
-/// The fluxes of the faces first, first + 1, .. of a line along `axis`; `lower` and `upper`: the cells beside the first one.
+/// The fluxes of the faces first, first + 1, .. of a line along `axis`; `lower` and `upper`: the cells on both sides of the first one.
 template <int D>
 void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t lower, std::size_t upper, int count) {
     const real *u = s.u + face, *open = s.open ? s.open + face : nullptr, *below = part_.data() + lower, *above = part_.data() + upper;
@@ -178,7 +178,7 @@ void LiquidVolume<D>::find_fluxes(const Sweep& s, std::size_t face, std::size_t 
     }
 }
 
-/// On a side of the domain: through walls nothing, through open sides only outwards; around a periodic axis as inside.
+/// Flux on a side of the domain: none through walls, outflow only through open sides, regular across a periodic boundary.
 template <int D>
 void LiquidVolume<D>::find_side_flux(const Sweep& s, const MacState<D>& state, const Index<D>& I, std::size_t face) {
     const int end = I[s.axis] == 0 ? 0 : 1;
@@ -190,7 +190,7 @@ void LiquidVolume<D>::find_side_flux(const Sweep& s, const MacState<D>& state, c
     find_fluxes(s, face, donor, donor, 1);
 }
 
-/// One direction: fluxes of all faces along `axis` near liquid, then F −= ΔF − c ΔC.
+/// One sweep: fluxes of all faces along `axis` near liquid, then F −= ΔF − c ΔC.
 template <int D>
 void LiquidVolume<D>::sweep(const MacState<D>& state, const Grid<real, D>& phi, real dt, int axis, real& departed) {
     const auto at = static_cast<std::size_t>(axis), n = static_cast<std::size_t>(frame_.cells[0]);
@@ -198,7 +198,7 @@ void LiquidVolume<D>::sweep(const MacState<D>& state, const Grid<real, D>& phi, 
     const Sweep s{
         axis, dt * frame_.inv_h[axis], state.u[axis].data(), state.solid.any() ? state.solid.open[at].data() : nullptr, &phi, flux.data()};
     for_each_own_line(0, axis == D - 1 ? 1 : 0, false, [&](std::size_t line) {
-        // The faces below a line's cells, and those above the last line's
+        // the faces below a line's cells, and those above the last line's
         const Index<D> I = frame_.index_of(line * n);
         Extent reach = reach_of_[line];
         if (axis > 0 && I[axis] > 0) reach.join(reach_of_[line - static_cast<std::size_t>(part_.stride(axis)) / n]);
@@ -250,7 +250,7 @@ void LiquidVolume<D>::add_fluxes(const Sweep& s, const Grid<real, D>& flux) {
     });
 }
 
-/// Parts of cells that have left through an open side.
+/// Volume, in cells, that has left through open sides.
 template <int D>
 real LiquidVolume<D>::through_side(const Grid<real, D>& flux, int axis, int side) const {
     const int n = frame_.cells[axis];

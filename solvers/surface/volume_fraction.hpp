@@ -1,7 +1,7 @@
-// The liquid part F of every cell, which only declared sources and sinks change in sum: moved by geometric fluxes in direction-split sweeps
-// (Weymouth & Yue 2010), with planes whose normals are those of the level set. The level set stays the geometry that everything else looks
-// at; after it has moved it is corrected, locally, to enclose what F holds (coupled level set and volume of fluid: Sussman & Puckett 2000;
-// mass-conserving level set: van der Pijl et al. 2005). What F says of liquid or air too thin for the level set moves on to the surface.
+// The liquid volume fraction F of every cell; its sum changes only by declared sources and sinks. It is advected by geometric fluxes in
+// direction-split sweeps (Weymouth & Yue 2010), with planes whose normals are those of the level set. The level set remains the geometry
+// for everything else; after advection it is corrected locally to enclose F (coupled level set and volume of fluid: Sussman & Puckett 2000;
+// mass-conserving level set: van der Pijl et al. 2005). Liquid or air in F too thin for the level set moves on to the surface.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "staggered/state.hpp"
@@ -17,32 +17,31 @@ public:
     LiquidVolume() = default;
     explicit LiquidVolume(const Frame<D>& frame);
 
-    /// F of a level set. Cells that solids cut hold what is outside them.
+    /// Initializes F from a level set. Cells cut by solids contain the liquid outside them.
     void start(const LevelSet<D>& surface, const MacState<D>& state);
-    /// Where they stand now.
+    /// Updates the solids.
     void see_solids(const LevelSet<D>& surface, const MacState<D>& state);
-    /// Moves F by dt in state.u, through the open parts of faces; φ is of before the step, `reversed` the order of the sweeps. Answers
-    /// what has left through open sides [m^D].
+    /// Advects F by dt in state.u, through the open fractions of faces. φ is that before the step; `reversed`: the order of the sweeps.
+    /// Returns the volume that left through open sides [m^D].
     real advect(const MacState<D>& state, const Grid<real, D>& phi, real dt, bool reversed);
-    /// Adds to a cell of this rank's own planes [cells].
+    /// Adds volume to a cell of this rank's own planes [cells].
     void add(const Index<D>& I, real cells) {
         if (is_own_plane(I[D - 1])) part_(I) += cells;
     }
-    /// What a level set has gained that has been moved outwards by `shift`, for a source or sink that moves the surface.
+    /// Adds the volume that a level set gained by a shift outwards, for a source or sink that moves the surface.
     void follow(const LevelSet<D>& surface, const MacState<D>& state, real shift);
-    /// Hands on what no cell can hold (F > 1, F < 0), towards where there is room; and what stands deep in the liquid or just outside it
-    /// to the surface. Nothing is lost.
+    /// Redistributes volume outside [0, 1] to neighbours with room, and liquid or holes far from the surface to the surface. Conservative.
     void settle(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
-    /// Moves the surface so that in each neighbourhood it encloses what F holds, by a part of the way that goes with the step's Courant
-    /// number: shorter steps do not correct it more often. φ is a distance only nearly.
+    /// Moves the surface so that in each neighbourhood it encloses the volume in F. The correction is proportional to the Courant number of
+    /// the step: shorter steps do not correct more. φ is only approximately a distance.
     void correct(LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt, real courant);
-    /// Of a step of dt while the fastest flow crosses `rate` cells a second: with the speed that gravity g adds in a cell, and the gravity
-    /// wave of two cells (ω dt ≤ 1).
+    /// Courant number of a step dt for a flow that crosses `rate` cells per second. It includes the speed gained from gravity g over a
+    /// cell, and the gravity wave of two cells (ω dt ≤ 1).
     real courant(real dt, real rate, real g) const;
 
     const Grid<real, D>& part() const { return part_; }
     real volume() const;  // [m^D]
-    /// Gathers the planes of all ranks, where each rank stores all planes and keeps its own.
+    /// Gathers the planes of all ranks, where each rank stores all planes but computes only its own.
     void make_whole() { gather(part_); }
     void save(Checkpoint& to) const;
     static bool is_saved(const Checkpoint& from) { return from.has("surface.liquid_part"); }
@@ -68,7 +67,7 @@ private:
     Vec<D> normal(const Grid<real, D>& phi, const Index<D>& I) const;
     real liquid_through(const Grid<real, D>& phi, const Index<D>& donor, int axis, real courant) const;
     real rest_of(std::size_t cell, real phi, const Grid<std::uint8_t, D>& exempt) const;
-    /// What a cell can hold: its part outside solids.
+    /// Capacity of a cell: its open fraction outside solids.
     real capacity(std::size_t cell) const;
     bool may_have_rests(std::size_t first, int count, const Grid<real, D>& phi, const MacState<D>& state) const;
     void find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
@@ -81,13 +80,13 @@ private:
     void join_drop(Grid<real, D>& phi, const Index<D>& I);
 
     Frame<D> frame_;
-    real reach_ = 0;                // of the level set's band [m]
-    Grid<real, D> part_, open_;     // open_: parts outside solids; none without solids
+    real reach_ = 0;                // half width of the level set's band [m]
+    Grid<real, D> part_, open_;     // open_: fractions outside solids; empty without solids
     Grid<real, D> dilation_;        // Σ c dC of the sweeps so far
-    Grid<std::uint8_t, D> full_;    // c: F > ½ as the step began
-    Grid<real, D> missing_, near_;  // F − φ's fraction, and how much surface a cell has
+    Grid<std::uint8_t, D> full_;    // c: F > ½ at the start of the step
+    Grid<real, D> missing_, near_;  // F minus the fraction of φ; surface area per cell
     std::array<Grid<real, D>, D> flux_;
-    std::vector<Extent> lines_, reach_of_;  // of every line of cells: where F is not 0, and where it may come to be
+    std::vector<Extent> lines_, reach_of_;  // per line of cells: where F is not 0, and where it may become so
     struct Rest {
         std::size_t cell;
         real part;

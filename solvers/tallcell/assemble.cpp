@@ -1,5 +1,5 @@
-// The matrix of TallPressure: which rows columns share, what stands in them, and what flows between. The surface enters by ghost fluid
-// (Gibou et al. 2002), 1/θ towards air; solids by open fractions (Batty et al. 2007).
+// Assembly of TallPressure's matrix: shared rows of the columns, unknowns, and couplings. The surface enters by ghost fluid (Gibou et al.
+// 2002), 1/θ towards air; solids by open fractions (Batty et al. 2007).
 #include "tallcell/pressure.hpp"
 
 #include "core/parallel.hpp"
@@ -9,18 +9,18 @@ namespace weir::tallcell {
 
 using poisson::Cell;
 
-/// A column in a line, and the one beside it across one side.
+/// A column of a line, and its neighbour across one side.
 struct FaceOfColumns {
-    std::size_t own, other;                // their places in a shared row
+    std::size_t own, other;                // their indices in a shared row
     std::size_t own_cell, other_cell;      // on the lattice, in row 0
     std::size_t face;                      // between them, in row 0
     std::size_t cell_stride, face_stride;  // from row to row
     int axis;
-    bool lower;  // the other stands on the lower side
+    bool lower;  // the neighbour is on the lower side
     real weight;
 };
 
-/// The side of a line of columns (add_horizontal) towards the one before it.
+/// The side of a line of columns (add_horizontal) towards the previous line.
 constexpr int towards_lower_line = 2;
 
 template <int D>
@@ -60,7 +60,7 @@ void TallPressure<D>::place_column(int column) {
     }
 }
 
-/// Vertical faces of a column: (q₁ − q₀)²/(H − 1) in an element, 1/θ towards air, nothing towards a wall or a solid.
+/// Vertical faces of a column: (q₁ − q₀)²/(H − 1) in an element, 1/θ towards air, zero towards a wall or a solid.
 template <int D>
 void TallPressure<D>::add_vertical(const Grid<real, D>& phi, const MacState<D>& state, int column) {
     const std::size_t foot = A_.at(column % A_.n[0], column / A_.n[0], 0), stride = at(static_cast<int>(A_.row_stride()));
@@ -87,7 +87,7 @@ void TallPressure<D>::add_vertical(const Grid<real, D>& phi, const MacState<D>& 
     }
 }
 
-/// Horizontal faces on side f of the columns of a line: between two that are liquid they are the face's own, 1/θ towards air.
+/// Horizontal faces on side f of the columns of a line: the open fraction between two liquid cells, 1/θ towards air.
 template <int D>
 void TallPressure<D>::add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int z, int f) {
     const int h = f / 2, n = A_.n[0];
@@ -122,7 +122,7 @@ void TallPressure<D>::add_horizontal(const Grid<real, D>& phi, const MacState<D>
     }
 }
 
-/// Rows between shared row k and the next, in which the own column is liquid.
+/// Rows between shared row k and the next, in which the column is liquid.
 template <int D>
 void TallPressure<D>::add_inner_rows(const Grid<real, D>& phi, const MacState<D>& state, const FaceOfColumns& face, int k) {
     const auto stride = static_cast<std::size_t>(A_.row_stride());

@@ -58,7 +58,7 @@ bool ColumnMatrix::any_inside(int k) const {
     return (any & inside) != 0;
 }
 
-/// Over ranks there are two lines for the first at least, so that each has one whose lower side is none of the domain's.
+/// In parallel the first rank has at least two lines, so that every rank has a line whose lower side is not a side of the domain.
 ColumnMatrix::Alike ColumnMatrix::look_beside(int k) const {
     const LineRange lines = own();
     Alike found{1, {}, {}};
@@ -84,7 +84,7 @@ ColumnMatrix::Alike ColumnMatrix::look_beside(int k) const {
     return found;
 }
 
-/// Over ranks the first looks become those of all lines.
+/// In parallel combines the flags of all ranks' lines.
 void ColumnMatrix::join_looks() {
     if (cut.empty()) return;
     std::vector<std::size_t> begins;

@@ -1,9 +1,9 @@
-// The matrix of pressures on columns of knots, on rows that all columns share: every row that is a knot of any column. Between two shared
-// rows next to one another a pressure is linear in every column, so with a value in each shared row all columns have the same elements, and
-// the matrix couples a row to the next above and below in its own column and in the four beside it. A column has no unknown in a row that
-// lies inside an element of its own; it takes there what is between its knots: x = R q. So the matrix of the knots is
+// The pressure matrix on columns of knots, stored on shared rows: every row with a knot in any column. Between two adjacent shared rows the
+// pressure is linear in every column. With a value in each shared row all columns have the same elements, and the matrix couples a row to
+// the rows above and below in its own column and in the four neighbouring columns. A column has no unknown in a row inside one of its
+// elements; the value there is interpolated between its knots: x = R q. So the matrix of the knots is
 //   A = Rᵀ (Σ_columns T + Σ_faces W ⊗ [1 −1; −1 1]) R      T: vertical faces and faces of air; W: faces between two columns
-// with T and W tridiagonal, and nothing in it is searched for. Coarser columns keep the shared rows, so that theirs are plain sums.
+// with T and W tridiagonal, without any index search. Coarser columns keep the shared rows, so their matrices are plain sums.
 #pragma once
 #include "core/parallel.hpp"
 #include "core/plane_store.hpp"
@@ -20,24 +20,24 @@ struct LineRange {
     int begin = 0, end = 0;
 };
 
-/// Where the entries of columns lie in memory: line by line along the first horizontal axis, in a line row by row, and in a row the columns
-/// of even number before those of odd number. So columns of one colour of a checkerboard lie beside one another, and so do their
-/// neighbours along either axis. Lines begin and end with a row, and rows of either parity with an entry, that no column has.
-/// Before the first line stands one of zeros: the neighbour of those that have none.
+/// Memory layout of column entries: line by line along the first horizontal axis, row by row within a line, and within a row columns of
+/// even index before those of odd index. So columns of one checkerboard colour are contiguous, and so are their neighbours along either
+/// axis. Lines start and end with an unused row, and each parity of a row with an unused entry. A line of zeros precedes the first line:
+/// the neighbour where there is none.
 struct ColumnPlaces {
     std::array<int, 2> n{1, 1};      // columns along the horizontal axes
-    std::array<bool, 2> periodic{};  // they
-    int rows = 0;                    // that columns share
-    Cut cut;                         // over ranks, whose lines are whose; empty where everybody does all
+    std::array<bool, 2> periodic{};  // of these axes
+    int rows = 0;                    // number of shared rows
+    Cut cut;                         // in parallel, the partition of lines; empty for replicated work
 
-    static constexpr int block = 8192;  // entries of a line that are added up together
-    static constexpr int no_line = -1;  // that of zeros
+    static constexpr int block = 8192;  // entries of a line summed together
+    static constexpr int no_line = -1;  // index of the line of zeros
 
     bool operator==(const ColumnPlaces&) const = default;
     int blocks_of_line() const { return (static_cast<int>(line_stride()) + block - 1) / block; }
-    /// The lines that are done here.
+    /// The lines that this rank owns.
     LineRange own() const { return cut.empty() ? LineRange{0, n[1]} : LineRange{cut.begin(slabs().rank()), cut.end(slabs().rank(), n[1])}; }
-    /// Over ranks the line after the last of these, whose faces towards it are theirs too; −1 where there is none.
+    /// In parallel the line after these, whose faces towards them they own too; −1 where there is none.
     int beyond() const {
         if (cut.empty()) return -1;
         const int z = own().end;
@@ -48,17 +48,17 @@ struct ColumnPlaces {
     std::ptrdiff_t width() const { return even() + 2; }
     std::ptrdiff_t row_stride() const { return 2 * width(); }
     std::ptrdiff_t line_stride() const { return (rows + 2) * row_stride(); }
-    /// Where a line begins.
+    /// Offset of a line.
     std::size_t line(int z) const { return static_cast<std::size_t>((z + 1) * line_stride()); }
     std::size_t first(int z, int k, int parity) const {
         return line(z) + static_cast<std::size_t>((k + 1) * row_stride() + parity * width() + 1);
     }
     std::size_t at(int x, int z, int k) const { return first(z, k, x % 2) + static_cast<std::size_t>(x / 2); }
-    /// An axis along which the first and the last column have one colour and are neighbours.
+    /// Returns whether the first and the last column along a periodic axis are neighbours of the same colour.
     bool joint(int axis) const { return periodic[static_cast<std::size_t>(axis)] && n[static_cast<std::size_t>(axis)] % 2 == 1; }
 };
 
-/// f(i) for the entries of the lines that are done here and of so many beyond the cuts, around a periodic axis too; a line has `count`.
+/// f(i) for the entries of this rank's lines and of `beyond` ghost lines, also around a periodic axis; a line has `count` entries.
 template <class F>
 void for_each_near(const ColumnPlaces& places, int beyond, int count, F&& f) {
     const LineRange own = places.own();
@@ -70,23 +70,24 @@ void for_each_near(const ColumnPlaces& places, int beyond, int count, F&& f) {
     });
 }
 
-/// f(line) for the lines that are done here and so many beyond the cuts.
+/// f(line) for this rank's lines and `beyond` ghost lines.
 template <class F>
 void for_each_line_near(const ColumnPlaces& places, int beyond, F&& f) {
     for_each_near(places, beyond, 1, f);
 }
 
-/// f(column), line after line.
+/// f(column), line by line.
 template <class F>
 void for_each_column_near(const ColumnPlaces& places, int beyond, F&& f) {
     for_each_near(places, beyond, places.n[0], f);
 }
 
-/// What has an entry for each column in a row: of all lines, or, where a rank holds its own alone, of those and one beyond either cut.
+/// An array with an entry for each column in a row: of all lines, or, with distributed storage, of this rank's and one ghost line on each
+/// side.
 template <class T>
 using LineStore = PlaneStore<T>;
 
-/// Room for entries of lines; what fits is kept, with what stands in it.
+/// Allocates entries of lines; memory that fits is reused with its contents.
 template <class T>
 void resize_lines(const ColumnPlaces& places, LineStore<T>& values) {
     const auto line = static_cast<std::size_t>(places.line_stride());
@@ -103,19 +104,19 @@ void refill_lines(const ColumnPlaces& places, LineStore<T>& values) {
     values.fill(T{});
 }
 
-/// As planes, for whoever brings them.
+/// As planes, for the halo exchange.
 template <class T>
 Planes lines_of(const ColumnPlaces& places, LineStore<T>& values) {
     return {values.data() + places.line(0), sizeof(T) * static_cast<std::size_t>(places.line_stride()), places.n[1], 0, values.held()};
 }
 
-/// Over ranks, brings the line beyond either cut.
+/// In parallel, fills one ghost line on each side.
 template <class T>
 void refresh_lines(const ColumnPlaces& places, LineStore<T>& values) {
     if (!places.cut.empty()) slabs().refresh(places.cut, lines_of(places, values), 1, places.periodic[1]);
 }
 
-/// From the entry of a column to those of the columns beside it.
+/// Strides from the entry of a column to those of its neighbours.
 struct Beside {
     std::ptrdiff_t x_lower, x_upper, z_lower, z_upper;
     Beside(const ColumnPlaces& places, int z, int parity)
@@ -129,19 +130,19 @@ struct Beside {
 };
 
 struct ColumnMatrix : ColumnPlaces {
-    enum State : std::uint8_t { wet = 1, inside = 2, goes_on = 4 };  // inside: of an element, no knot; goes_on: up to the next shared row
+    enum State : std::uint8_t { wet = 1, inside = 2, goes_on = 4 };  // inside: an element, no knot; goes_on: up to the next shared row
     std::vector<int> row;                                            // of the lattice
     LineStore<std::uint8_t> state;                                   // of a column in a row
-    LineStore<real> share;                                           // inside: the weight of the knot above
+    LineStore<real> share;                                           // inside: the interpolation weight of the knot above
     LineStore<real> vertical;                                        // T: between a row and the next
-    LineStore<real> lid;                                             // faces of air above and below
-    LineStore<real> sink, sink_next;                     // faces of air beside: the diagonal, and the entry between a row and the next
+    LineStore<real> lid;                                             // air faces above and below
+    LineStore<real> sink, sink_next;                     // air faces beside: the diagonal, and the entry between a row and the next
     std::array<LineStore<real>, 2> beside, beside_next;  // W of the face on the lower side along either axis
     std::vector<std::uint8_t> mixed;                     // rows inside an element of any column
-    int mixed_end = 0;                                   // none at or above this row, nor in the one below
-    std::vector<std::uint8_t> tall;                      // rows at an end of an element longer than one
+    int mixed_end = 0;                                   // all rows from this one on, and the one below it, are outside elements
+    std::vector<std::uint8_t> tall;                      // rows at an end of an element longer than one cell
 
-    /// A row in which W is the same for all faces along an axis, but for sides of the domain, where it is nothing.
+    /// A row in which W is equal on all faces along an axis, except on sides of the domain, where it is 0.
     struct Alike {
         std::uint8_t yes = 0;
         std::array<real, 2> beside{}, beside_next{};
@@ -149,20 +150,20 @@ struct ColumnMatrix : ColumnPlaces {
     };
     std::vector<Alike> alike;
 
-    /// Room for `row`, filled with nothing; `everybodys`: all ranks are to have all of it.
+    /// Allocates zeros for `row`; `everybodys`: storage of all lines on all ranks.
     void resize(bool everybodys = false);
-    /// What lies beyond the ends of lines around a periodic axis; and which rows are mixed, tall and alike.
+    /// Fills the entries beyond the ends of lines around a periodic axis, and finds the mixed, tall and alike rows.
     void finish();
-    /// All that has an entry for each column in a row.
+    /// All arrays with an entry for each column in a row.
     auto lists() {
         return std::array{&share, &vertical, &lid, &sink, &sink_next, &beside[0], &beside_next[0], &beside[1], &beside_next[1]};
     }
     std::size_t bytes() const;
-    /// Over ranks, of what each says of a row.
+    /// In parallel, the bytes that each rank sends per row.
     static constexpr std::size_t bytes_of_look();
 
 private:
-    /// What a row is, as far as the lines that are done here go.
+    /// Properties of a row within this rank's lines.
     struct Look {
         Alike alike;
         std::uint8_t inside = 0;
@@ -172,13 +173,13 @@ private:
     void join_looks();
     void find_shares(int x, int z);
 
-    std::vector<Look> looks_;  // over ranks those of all, one after another
-    ColumnPlaces cleared_;     // where the line of zeros is that
+    std::vector<Look> looks_;  // in parallel those of all ranks, concatenated
+    ColumnPlaces cleared_;     // the layout for which the line of zeros was cleared
 };
 
 constexpr std::size_t ColumnMatrix::bytes_of_look() { return sizeof(Look); }
 
-/// Copies the columns at the ends of line z to beyond its other end, where the axis is periodic.
+/// Copies the columns at the ends of line z beyond its other end, where the axis is periodic.
 template <class T>
 void wrap_line(const ColumnPlaces& places, int z, T* values) {
     const int n = places.n[0];

@@ -1,5 +1,5 @@
-// What sweeps over columns side by side do row by row: the couplings to the columns beside them, and what rows inside elements take from
-// their knots (R) and give to them (Rᵀ).
+// Row operations for sweeps over adjacent columns: the couplings to neighbouring columns, interpolation of rows inside elements from their
+// knots (R), and its transpose (Rᵀ).
 #pragma once
 #include "core/parallel.hpp"
 #include "tallcell/column_matrix.hpp"
@@ -8,14 +8,14 @@
 
 namespace weir::tallcell {
 
-inline constexpr int lanes = 64;  // columns of one line that are solved side by side
+inline constexpr int lanes = 64;  // columns of one line that are solved together
 
 template <class I>
 constexpr std::size_t at(I i) {
     return static_cast<std::size_t>(i);
 }
 
-/// f(z, begin, end) for the columns of one parity of every line, in blocks. `parity(z)` says which.
+/// f(z, begin, end) for the columns of one parity of every line, in blocks; `parity(z)` returns the parity.
 template <class Parity, class F>
 void for_each_block(const ColumnPlaces& places, int z_begin, int z_end, Parity&& parity, F&& f) {
     const int blocks = (places.even() + lanes - 1) / lanes;
@@ -25,7 +25,7 @@ void for_each_block(const ColumnPlaces& places, int z_begin, int z_end, Parity&&
     });
 }
 
-/// to[i] += Σ W x of the four columns beside one another's, in one shared row; all pointers are at the first column.
+/// to[i] += Σ W x of the four neighbouring columns, in one shared row; all pointers are at the first column.
 template <class T, bool Tall>
 inline void add_beside(const std::array<LineStore<T>, 2>& W, const std::array<LineStore<T>, 2>& W_next, const T* x, std::size_t first,
                        const Beside& to, std::ptrdiff_t row, int count, T* sum) {
@@ -45,7 +45,7 @@ inline void add_beside(const std::array<LineStore<T>, 2>& W, const std::array<Li
     }
 }
 
-/// The same where all columns have the row's faces in common. Beyond sides of the domain x is 0.
+/// The same where all columns of the row have equal face weights. Beyond sides of the domain x is 0.
 template <bool Tall>
 inline void add_alike(const ColumnMatrix::Alike& W, const ColumnMatrix::Alike& below, const float* v, const Beside& to, std::ptrdiff_t row,
                       int count, float* sum) {
@@ -63,7 +63,7 @@ inline void add_alike(const ColumnMatrix::Alike& W, const ColumnMatrix::Alike& b
     }
 }
 
-/// sum += Σ W x of the columns beside, in row k, whichever kind it is.
+/// sum += Σ W x of the neighbouring columns in row k, of either kind.
 inline void add_row(const ColumnMatrix& A, const std::array<LineStore<float>, 2>& W, const std::array<LineStore<float>, 2>& W_next,
                     const float* x, int k, std::size_t first, const Beside& to, int count, float* sum) {
     const std::ptrdiff_t row = A.row_stride();
@@ -75,7 +75,7 @@ inline void add_row(const ColumnMatrix& A, const std::array<LineStore<float>, 2>
     add_beside<float, false>(W, W_next, x, first, to, row, count, sum);
 }
 
-/// Rᵀ downwards: what rows inside elements say to the knot below. `above` is what has been gathered for it.
+/// Rᵀ downwards: adds rows inside elements to the knot below. `above` accumulates its sum.
 template <class T>
 inline void gather_down(const real* share, T* y, T* above, int count) {
     for (int i = 0; i < count; ++i) {
@@ -86,7 +86,7 @@ inline void gather_down(const real* share, T* y, T* above, int count) {
     }
 }
 
-/// Rᵀ upwards: what they say to the knot above; nothing is left of them.
+/// Rᵀ upwards: adds them to the knot above and sets them to zero.
 template <class T>
 inline void gather_up(const real* share, T* y, T* below, int count) {
     for (int i = 0; i < count; ++i) {
@@ -100,7 +100,7 @@ inline void gather_up(const real* share, T* y, T* below, int count) {
 template <class T>
 using Lanes = std::array<T, at(lanes)>;
 
-/// y := Rᵀ y in columns of one parity of a line.
+/// y := Rᵀ y in the columns of one parity of a line.
 template <class T>
 void gather(const ColumnMatrix& A, int z, int parity, int begin, int end, T* y) {
     Lanes<T> carried{};
@@ -115,7 +115,7 @@ void gather(const ColumnMatrix& A, int z, int parity, int begin, int end, T* y) 
     }
 }
 
-/// x := R x: rows inside elements from their knots.
+/// x := R x: interpolates rows inside elements from their knots.
 template <class T>
 void interpolate(const ColumnMatrix& A, int z, int parity, int begin, int end, T* x) {
     const int count = end - begin;

@@ -34,7 +34,7 @@ std::vector<char> Layout<D>::near_lines() const {
     return planes_near(n[1], 1, periodic[1]);
 }
 
-/// Tops of tall parts lie on multiples of this, so that a surface that rises or falls by less moves no knot.
+/// Tops of tall cells lie on multiples of this: smaller motions of the surface change no knot.
 constexpr int top_step = 4;
 
 int divide(Division division, int bottom, int top, int surface, std::array<int, 64>& rows) {
@@ -45,7 +45,7 @@ int divide(Division division, int bottom, int top, int surface, std::array<int, 
         rows[1] = top;
         return 2;
     }
-    // Downwards: each element about a quarter as long as its top is deep, its lower end on a multiple of that power of two.
+    // Downwards: the length of each element is about a quarter of the depth of its top; its lower end is a multiple of that power of two.
     std::size_t count = 0;
     rows[count++] = top;
     for (int row = top; row > bottom;) {

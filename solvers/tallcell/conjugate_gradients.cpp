@@ -1,4 +1,4 @@
-// The iteration around the multigrid cycle, in double precision on shared rows.
+// Conjugate gradients preconditioned by the multigrid cycle, in double precision on shared rows.
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "tallcell/column_rows.hpp"
@@ -11,7 +11,7 @@ namespace weir::tallcell {
 
 namespace {
 
-/// What the blocks of all lines give, N numbers each.
+/// All-gather of the partial sums of the blocks of all lines, N numbers each.
 template <std::size_t N>
 struct Parts {
     const std::vector<real>& of_block;
@@ -32,7 +32,7 @@ private:
     }
 };
 
-/// f(block, begin, end) for the entries of the lines that are done here, in blocks of one size.
+/// f(block, begin, end) for the entries of this rank's lines, in blocks of equal size.
 template <class F>
 void for_each_block_of_lines(const ColumnPlaces& places, F&& f) {
     const std::size_t line = at(places.line_stride());
@@ -43,7 +43,7 @@ void for_each_block_of_lines(const ColumnPlaces& places, F&& f) {
     });
 }
 
-/// f(begin, end) of all blocks, those of other ranks from them: no result depends on the number of threads or ranks.
+/// Sum of f(begin, end) over all blocks of all ranks: independent of the number of threads and ranks.
 template <std::size_t N, class F>
 Parts<N> parts_of_lines(const ColumnPlaces& places, F&& f) {
     const int blocks = places.blocks_of_line(), count = places.n[1] * blocks;
@@ -56,7 +56,7 @@ Parts<N> parts_of_lines(const ColumnPlaces& places, F&& f) {
     return {parts, count};
 }
 
-/// y = A x, and x·y. Over ranks x must be known beyond the cuts.
+/// y = A x; returns x·y. In parallel the ghost lines of x must be filled.
 real multiply_and_dot(const ColumnMatrix& A, LineStore<real>& x, LineStore<real>& y) {
     const std::ptrdiff_t row = A.row_stride();
     auto& parts = detail::reduction_scratch(at(A.n[1]));
@@ -112,7 +112,7 @@ real multiply_and_dot(const ColumnMatrix& A, LineStore<real>& x, LineStore<real>
 
 }  // namespace
 
-/// From values by knots to the shared rows, those inside elements zero.
+/// Copies values by knots to the shared rows; rows inside elements are zero.
 void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& from, LineStore<real>& to) const {
     const std::size_t stride = at(A.row_stride());
     for_each_line_near(A, 0, [&](int z) {
@@ -129,7 +129,7 @@ void ColumnMultigrid::place(const ColumnMatrix& A, const Knots& knots, const std
     });
 }
 
-/// Back; over ranks beyond the cuts too.
+/// Copies back; in parallel also from ghost lines.
 void ColumnMultigrid::fetch(const ColumnMatrix& A, const Knots& knots, const LineStore<real>& from, std::vector<real>& to) const {
     const std::size_t stride = at(A.row_stride());
     for_each_line_near(A, 1, [&](int z) {
@@ -222,8 +222,8 @@ ColumnMultigrid::Residual ColumnMultigrid::residual(const ColumnMatrix& A) {
     return {std::sqrt(parts.sum(0)), parts.largest(1), parts.sum(2), parts.largest(3)};
 }
 
-/// p = z + β p, β in Polak and Ribière's form, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p: single precision leaves the preconditioner not
-/// quite the same. rz becomes z·r.
+/// p = z + β p, with Polak and Ribière's β, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p, because a single-precision preconditioner is not
+/// exactly constant. Sets rz to z·r.
 void ColumnMultigrid::turn(const ColumnMatrix& A, bool first, real alpha, real& rz) {
     const LineStore<float>& z = levels_[0].x;
     const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
@@ -243,11 +243,11 @@ void ColumnMultigrid::turn(const ColumnMatrix& A, bool first, real alpha, real& 
         else
             for (std::size_t i = begin; i < end; ++i) p_[i] = scale_ * static_cast<real>(z[i]) + beta * p_[i];
     });
-    interpolate(A, p_);  // single precision has it nearly so
+    interpolate(A, p_);  // exact interpolation: single precision has it only nearly
     refresh_lines(A, p_);
 }
 
-/// x += α p,  r −= α A p; answers ‖r‖.
+/// x += α p,  r −= α A p; returns ‖r‖.
 real ColumnMultigrid::advance(const ColumnMatrix& A, real alpha, real& largest) {
     const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
         real squares = 0, most = 0;

@@ -66,7 +66,7 @@ Key scheme_keys() {
                    {.name = "fixed", .type = Type::flag, .doc = "Run exactly max_iterations and take what comes.", .fallback = false}}}});
 }
 
-/// What of a scene is not shared by ranks.
+/// Rejects keys of a scene that are not supported in parallel.
 void over_ranks(const scene::Scene& scene) { scene::refuse_hand(scene); }
 
 }  // namespace

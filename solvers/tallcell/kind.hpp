@@ -1,4 +1,4 @@
-// What a scene may say to the solver "tallcell".
+// The schema of the solver "tallcell".
 #pragma once
 #include "staggered/effects.hpp"
 
@@ -6,7 +6,7 @@ namespace weir::tallcell {
 
 using namespace staggered;
 
-/// Forces on the liquid's bulk, which act between momentum and pressure.
+/// Forces on the bulk of the liquid, applied between momentum and pressure.
 const EffectKinds& body_forces();
 
 }  // namespace weir::tallcell

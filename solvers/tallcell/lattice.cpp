@@ -1,12 +1,12 @@
-// Between the lattice and the unknowns of TallPressure: moments over rows, what they flow together to, and back to every row. Columns
-// beside one another in a line are looked at together as long as they have the same runs and elements.
+// Transfer between the lattice and the unknowns of TallPressure: moments over rows, their divergence, and interpolation back to every row.
+// Adjacent columns of a line are processed together while they have equal runs and elements.
 #include "tallcell/pressure.hpp"
 
 #include <algorithm>
 
 namespace weir::tallcell {
 
-/// max f(block) over columns; those of a block are beside one another along x, if that is no vertical axis.
+/// max f(block) over columns; the columns of a block are adjacent along x, unless x is vertical.
 template <int D>
 template <class F>
 real TallPressure<D>::largest_of_blocks(const ColumnRange& columns, F&& f) const {
@@ -17,15 +17,15 @@ real TallPressure<D>::largest_of_blocks(const ColumnRange& columns, F&& f) const
     });
 }
 
-/// The largest that any rank gives; NaN if any is NaN.
+/// Maximum over the ranks; NaN if any is NaN.
 static real largest_of_ranks(real own) {
     if (!over_ranks()) return own;
     const std::vector<real> all = of_ranks(own);
     return detail::largest_of(all, static_cast<int>(all.size()));
 }
 
-/// Upwards through the runs along horizontal axis h of a block's columns: together(first, run, places) as long as all of its columns from
-/// the first that has a face have the same, places[i] being that of column i; then one(column, place) for the others.
+/// Walks up the runs along horizontal axis h of a block's columns. Calls together(first, run, indices) while all columns with a face, from
+/// `first` on, have the same run; indices[i] is that of column i. Then calls one(column, index) for the others.
 template <int D>
 template <class Together, class One>
 void TallPressure<D>::for_each_run(int h, const Block& block, Together&& together, One&& one) const {
@@ -49,7 +49,7 @@ void TallPressure<D>::for_each_run(int h, const Block& block, Together&& togethe
         for (; place[at(i)] < end[at(i)]; ++place[at(i)]) one(block.column + i, place[at(i)]);
 }
 
-/// The same of elements longer than one: together(row, length, places), one(column, knot).
+/// The same for elements longer than one cell: together(row, length, indices), one(column, knot).
 template <int D>
 template <class Together, class One>
 void TallPressure<D>::for_each_element(const Block& block, Together&& together, One&& one) const {
@@ -160,7 +160,7 @@ typename TallPressure<D>::Sides TallPressure<D>::sides_of(const MacState<D>& sta
         const int axis = layout_.axes[at(h)];
         const Line lower = line(state.u[axis], block.column);
         Line upper = lower;
-        upper.first += static_cast<std::size_t>(state.u[axis].stride(axis));  // walls are at rest: they count for nothing
+        upper.first += static_cast<std::size_t>(state.u[axis].stride(axis));  // walls are at rest: zero flux
         if (layout_.periodic[at(h)]) upper = line(state.u[axis], layout_.upper(block.column, h));
         sides.side[at(2 * h)] = {lower, state.u[axis].data(), frame_.inv_h[axis]};
         sides.side[at(2 * h + 1)] = {upper, state.u[axis].data(), -frame_.inv_h[axis]};
@@ -171,7 +171,7 @@ typename TallPressure<D>::Sides TallPressure<D>::sides_of(const MacState<D>& sta
     return sides;
 }
 
-/// f(knot, what flows into its cell over h) for the knots of a block above all elements: there each is the lattice's cell.
+/// f(knot, flux into its cell over h) for the knots of a block above all elements, where each is a lattice cell.
 template <int D>
 template <class F>
 void TallPressure<D>::inflow_above_elements(const MacState<D>& state, const Block& block, const Sides& sides, F&& f) const {
@@ -216,7 +216,7 @@ void TallPressure<D>::weak_divergence(const MacState<D>& state, std::vector<real
     });
 }
 
-/// Of a column below row `end`.
+/// The part of a column below row `end`.
 template <int D>
 void TallPressure<D>::weak_divergence(const MacState<D>& state, int c, int end, std::vector<real>& b) const {
     const Knots& knots = knots_;
@@ -276,13 +276,13 @@ void TallPressure<D>::spread(MacState<D>& state, real dt) {
     });
 }
 
-/// Answers the largest |u|/h in them.
+/// Returns the largest |u|/h of the runs.
 template <int D>
 real TallPressure<D>::spread_runs(MacState<D>& state, int h, const Block& block) const {
     auto& u = state.u[layout_.axes[at(h)]];
     std::array<real, at(block_columns)> mean{}, slope{};
     real fastest = 0;
-    const auto reaches = [&](const Run& run, real m, real by) {  // a linear function is largest at an end
+    const auto reaches = [&](const Run& run, real m, real by) {  // a linear function has its maximum at an end
         fastest = std::max(fastest, std::abs(m) + std::abs(by) * 0.5 * (run.count - 1));
     };
     const auto together = [&](int first, const Run& run, const auto& place) {
@@ -309,8 +309,8 @@ real TallPressure<D>::spread_runs(MacState<D>& state, int h, const Block& block)
     return fastest * frame_.inv_h[layout_.axes[at(h)]];
 }
 
-/// v_{j+1} = v_j − what leaves cell j through its sides, from the bottom of each element to its top. The two weak equations of the element
-/// say that its top cell then has what flows through its own top face, and that the mean of v is the stored one. Answers the largest |v|/h.
+/// v_{j+1} = v_j minus the flux out of cell j through its sides, from the bottom of each element to its top. By the two weak equations of
+/// the element, its top cell then has the flux of its own top face, and the mean of v is the stored one. Returns the largest |v|/h.
 template <int D>
 real TallPressure<D>::rebuild(MacState<D>& state, const Block& block) const {
     const int up = layout_.up;
@@ -366,10 +366,10 @@ real TallPressure<D>::rebuild(MacState<D>& state, const Block& block) const {
     return fastest * frame_.inv_h[up];
 }
 
-/// Interpolated in elements, 0 outside the liquid.
+/// Pressure on the lattice: interpolated in elements, 0 outside the liquid.
 template <int D>
 void TallPressure<D>::spread_pressure(MacState<D>& state, const Block& block, real scale) const {
-    std::array<int, block_columns> row{};  // up to which each column is done
+    std::array<int, block_columns> row{};  // next row of each column
     const auto fill = [&](int column, int i) {
         const Line cell = line(state.p, column);
         int& done = row[at(column - block.column)];
@@ -419,7 +419,7 @@ real TallPressure<D>::max_divergence(const MacState<D>& state) const {
     return largest_of_ranks(own);
 }
 
-/// Of the cells of a column that are knots, below row `end`.
+/// The cells of a column that are knots, below row `end`.
 template <int D>
 real TallPressure<D>::largest_divergence(const MacState<D>& state, int c, int end) const {
     const int up = layout_.up;

@@ -19,14 +19,14 @@ void ColumnMultigrid::setup(const ColumnMatrix& finest) {
         A = l == 0 ? &finest : &levels_[l].coarse;
         coarsen(*A, levels_[l + 1].coarse);
     }
-    if (places_ == finest) return;  // what lies between lines and rows is zero
+    if (places_ == finest) return;  // entries between lines and rows are zero
     places_ = finest;
     for (auto* list : {&x_, &b_, &r_, &p_, &Ap_}) refill_lines(finest, *list);
 }
 
-/// A level whose lines are cut so is worth messages: it has enough entries, and none of its parents has children of two ranks.
+/// Returns whether a level is distributed with this partition of its lines: it is large enough, and no parent has children on two ranks.
 bool worth_sharing(const ColumnPlaces& places, const Cut& cut) {
-    constexpr std::size_t small_level = 20000;  // as of poisson's multigrid
+    constexpr std::size_t small_level = 20000;  // as in poisson's multigrid
     const bool whole_pairs = std::all_of(cut.at.begin(), cut.at.end(), [&](int z) { return z % 2 == 0 || z == places.n[1]; });
     return whole_pairs && at(places.n[0]) * at(places.n[1]) * at(places.rows) >= small_level;
 }
@@ -36,7 +36,7 @@ Cut halved(Cut cut) {
     return cut;
 }
 
-/// Children (sx X + dx, sz Z + dz) of parent (X, Z). Faces between children of one parent vanish; of the others half counts.
+/// Adds children (sx X + dx, sz Z + dz) to parent (X, Z). Faces between children of one parent vanish; other faces are halved.
 void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
     to.n = {(A.n[0] + 1) / 2, (A.n[1] + 1) / 2};
     to.periodic = A.periodic;
@@ -60,7 +60,7 @@ void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
     to.finish();
 }
 
-/// Of all of a parent but its faces towards the line below.
+/// All contributions to a parent except its faces towards the line below.
 void ColumnMultigrid::add_children(const ColumnMatrix& A, ColumnMatrix& to, int Z) {
     const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     for (int k = 0; k < A.rows; ++k)
@@ -94,14 +94,14 @@ void ColumnMultigrid::add_lower_faces(const ColumnMatrix& A, ColumnMatrix& to, i
 
 namespace {
 
-/// L D Lᵀ of columns side by side, upwards: what is known of the knot whose pivot is not yet complete.
+/// L D Lᵀ of adjacent columns, upwards: the data of the knot whose pivot is incomplete.
 struct Elimination {
-    Lanes<real> diagonal{}, whole{};  // of it, and without what has been taken from it
-    Lanes<real> coupling{}, above{};  // with the next knot, and what the element between gives to that
-    Lanes<std::size_t> place{};       // of it
+    Lanes<real> diagonal{}, whole{};  // its pivot, and the pivot before elimination
+    Lanes<real> coupling{}, above{};  // with the next knot; contribution of the element between to that knot
+    Lanes<std::size_t> place{};       // its index
 
-    /// The pivot's inverse and the ratio to the next entry. A column that touches neither air nor another is singular: its last pivot is
-    /// round-off, and counts as none.
+    /// Inverse pivot and ratio to the next entry. A column without contact to air or other columns is singular: its last pivot is round-off
+    /// and is set to zero.
     static std::array<real, 2> divide(real diagonal, real whole, real coupling) {
         const bool sound = diagonal > 64 * std::numeric_limits<real>::epsilon() * whole;
         const real inverse = sound ? 1 / (sound ? diagonal : 1) : 0;
@@ -157,7 +157,7 @@ void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
                         diagonal[i] = static_cast<float>(D[at(i)]);
                         next[i] = static_cast<float>(O[at(i)]);
                     }
-                    if (k == 0 || k < A.mixed_end) {  // knots stand in different rows: one column after the other
+                    if (k == 0 || k < A.mixed_end) {  // knots are in different rows: one column after the other
                         const real *share = A.share.data() + first, *share_below = share - row;
                         for (int i = 0; i < count; ++i) {
                             const std::size_t l = at(i);

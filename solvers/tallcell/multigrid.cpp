@@ -18,8 +18,8 @@ std::size_t ColumnMultigrid::bytes() const {
     return total;
 }
 
-/// x of columns side by side from b and from the columns beside them: L D Lᵀ, upwards and down again. `alone`: those beside are zero. Only
-/// columns of the other colour, and the line's ends, are read; x of these holds what is between.
+/// Solves for x of adjacent columns from b and their neighbours: L D Lᵀ, upwards and down again. `alone`: the neighbours are zero. Only
+/// columns of the other colour, and the line's ends, are read; their x is interpolated inside elements.
 void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, int parity, int begin, int end, bool alone) {
     const int count = end - begin, mixed_end = A.mixed_end;
     const Beside to(A, z, parity);
@@ -91,13 +91,13 @@ void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, 
     }
 }
 
-/// Whether columns of the first colour alone may have a residual after sweeps that end with the second, and need a correction before
-/// sweeps that begin with it.
+/// Returns whether, after sweeps that end with the second colour, only the first colour may have a residual; only it then needs a
+/// correction before sweeps that start with it.
 static bool one_colour(const ColumnMatrix& A) { return !A.joint(0) && !A.joint(1); }
 
-/// All columns, one colour of the checkerboard after the other. Around a periodic axis with an odd number of columns the last line comes by
-/// itself; along a line the neighbour beyond the end is what it was before. Over ranks each colour is brought from beyond the cuts, the
-/// last one where it is `read`.
+/// Sweeps over all columns, one checkerboard colour after the other. Around a periodic axis with an odd number of columns the last line is
+/// a colour of its own; along a line the neighbour beyond the end has its old value. In parallel the ghost lines are filled after each
+/// colour, the last one only if `read`.
 void ColumnMultigrid::sweep(const ColumnMatrix& A, Level& level, bool upwards, bool from_zero, bool read) {
     const int last = A.n[1] - 1, lines = A.joint(1) && last > 0 ? last : A.n[1], phases = lines < A.n[1] ? 4 : 2;
     const LineRange own = A.own();
@@ -137,7 +137,7 @@ void ColumnMultigrid::residual(const ColumnMatrix& A, Level& level) {
     }
 }
 
-/// b of the parents: Pᵀ r. Over ranks everybody gets all of the first level that is not shared.
+/// b of the parents: Pᵀ r. In parallel all ranks get the first level that is not distributed.
 void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& level, const ColumnMatrix& coarse, Level& next) {
     const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     const bool all = !one_colour(A);
@@ -163,7 +163,7 @@ void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& leve
     if (!A.cut.empty() && coarse.cut.empty()) slabs().gather(parents.cut, lines_of(coarse, next.b));
 }
 
-/// x += P x of the parents; over ranks beyond the cuts too, where x is known of children and parents.
+/// x += P x of the parents; in parallel also on ghost lines, where x of children and parents is known.
 void ColumnMultigrid::add_correction(const ColumnMatrix& A, Level& level, const ColumnMatrix& coarse, const Level& next) {
     const int sx = A.n[0] > 1 ? 2 : 1, sz = A.n[1] > 1 ? 2 : 1;
     const bool all = !one_colour(A);
@@ -198,7 +198,7 @@ void ColumnMultigrid::cycle(std::size_t l, const ColumnMatrix& A) {
 /// x of the finest level times scale_ = M⁻¹ r_.
 void ColumnMultigrid::precondition(const ColumnMatrix& A, real largest) {
     Level& level = levels_[0];
-    scale_ = largest > 0 ? largest : 1;  // single precision has no room for what is very small
+    scale_ = largest > 0 ? largest : 1;  // single precision has a limited range
     for_each_line_near(A, 0, [&](int z) {
         for (std::size_t i = A.line(z); i < A.line(z + 1); ++i) level.b[i] = static_cast<float>(r_[i] / scale_);
     });

@@ -1,12 +1,12 @@
-// Conjugate gradients with multigrid for pressures on columns of knots (column_matrix.hpp). Knots of one column couple to the next above
-// and below, and to knots of the columns beside it; so every block of a column is tridiagonal and is solved exactly.
+// Multigrid-preconditioned conjugate gradients for pressures on columns of knots (column_matrix.hpp). Knots couple to the next above and
+// below in their column, and to knots of neighbouring columns. So every diagonal block of a column is tridiagonal and is solved exactly.
 //   smoother        exact column solves in the order of a checkerboard, mirrored after the correction; half of the columns at once
 //   coarser         2 (or 2 × 2) columns become one; it has each row that is a knot of every child covering it, so the spaces are nested
 //   prolongation    constant across, the parent's linear functions at the child's knots
 //   operator        Galerkin: Pᵀ A_v P + ½ Pᵀ A_h P; the half makes constants across as stiff as they should be (Braess 1995)
 //   cycle           V(2,2): symmetric and positive, as conjugate gradients need it
-// Over ranks each has some lines of columns (ColumnPlaces::cut), and after each colour those beyond its cuts are brought. Levels that are
-// not worth messages are everybody's. What is summed is summed line by line, so that no bit depends on the number of ranks.
+// In parallel each rank has a range of lines of columns (ColumnPlaces::cut), and ghost lines are exchanged after each colour. Levels too
+// small for messages are replicated. Sums are taken line by line: bitwise independent of the number of ranks.
 #pragma once
 #include "poisson/poisson.hpp"
 #include "tallcell/column_matrix.hpp"
@@ -15,7 +15,7 @@
 
 namespace weir::tallcell {
 
-/// Whether a level's lines are worth sharing among ranks by this cut; and the cut of the level below it.
+/// Returns whether a level is distributed with this partition of its lines.
 bool worth_sharing(const ColumnPlaces& places, const Cut& cut);
 Cut halved(Cut cut);
 
@@ -25,7 +25,8 @@ public:
     explicit ColumnMultigrid(const poisson::Options& options, int sweeps = usual_sweeps) : options_(options), sweeps_(sweeps) {}
     /// Builds all coarser levels from the finest.
     void setup(const ColumnMatrix& finest);
-    /// A x = b by knots; x holds the first guess, dropped where zero is nearer. The report's residuals are as poisson::Report says.
+    /// A x = b by knots. x holds the initial guess, which is replaced by zero where that has the smaller residual. The report's residuals
+    /// are as in poisson::Report.
     const poisson::Report& solve(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& b, std::vector<real>& x);
     int levels() const { return static_cast<int>(levels_.size()); }
     std::size_t bytes() const;
@@ -38,12 +39,12 @@ public:
 private:
     struct Level {
         ColumnMatrix coarse;  // unused on the finest level, whose matrix is the caller's
-        // What a cycle reads, in single precision: a preconditioner need be no more exact, and memory is what its time goes to.
+        // data read by a cycle, in single precision: sufficient for a preconditioner, whose time is memory-bound
         std::array<LineStore<float>, 2> beside, beside_next;  // W
         LineStore<float> diagonal, next;                      // of T + Σ W on shared rows
         LineStore<float> inverse, ratio;                      // L D Lᵀ of Rᵀ (T + Σ W) R
         LineStore<float> x, b, r;
-        ColumnPlaces places;  // of all these
+        ColumnPlaces places;  // layout of all these
     };
     static void coarsen(const ColumnMatrix& A, ColumnMatrix& to);
     static void add_children(const ColumnMatrix& A, ColumnMatrix& to, int Z);
@@ -71,7 +72,7 @@ private:
     std::vector<Level> levels_;
     ColumnPlaces places_;
     LineStore<real> x_, b_, r_, p_, Ap_;  // on shared rows
-    real scale_ = 1;                      // of what the last cycle was given
+    real scale_ = 1;                      // scale of the last preconditioned residual
     poisson::Report report_;
 };
 

@@ -1,6 +1,5 @@
-// Eight faces of one kind beside one another along x, traced and sampled together: where no point moves farther than one cell, the samples
-// that it can lie between are the three (or, from faces of another kind, two) nearest along each axis, and their weights are hats. So all
-// loads are of neighbours in memory.
+// Traces and samples eight faces of one kind, adjacent along x. Where no point moves farther than one cell, the stencil consists of the
+// three nearest samples (or two, for faces of another kind) along each axis, with hat functions as weights. So all loads are contiguous.
 #pragma once
 #include "staggered/velocity.hpp"
 
@@ -35,7 +34,7 @@ WEIR_EIGHT bool all_of_eight(const EightFlags& flags) {
 template <int D>
 using Moved = std::array<Eight, D>;
 
-/// Weights of the nodes along one axis, and the offset of the first: of the node's own kind at −1, 0, 1; of the other at ± ½.
+/// Weights of the nodes along one axis, and the offset of the first: −1, 0, 1 for the same kind of node; ± ½ for the other.
 template <bool Own>
 struct Hat {
     static constexpr int count = Own ? 3 : 2;
@@ -50,7 +49,7 @@ struct Hat {
     }
 };
 
-/// Σ of weights along x, y and z times the samples from q on, which is that of the first face.
+/// Σ of the weights along x, y and z times the samples; q is the first sample of the first face.
 template <int D, bool X, bool Y, bool Z>
 WEIR_EIGHT Eight sum_of_hats(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Hat<X>& x, const Hat<Y>& y, const Hat<Z>& z) {
     Eight sum{};
@@ -69,7 +68,7 @@ WEIR_EIGHT Eight sum_of_hats(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz
 }
 
 /// Component `component` at points displaced by d from eight faces along axis `home`; q is that component's sample with the index of the
-/// first face. Points may lie at most half a cell away where the face is of another kind, one cell where it is its own.
+/// first face. Displacements are at most half a cell for faces of another kind, and one cell for the same kind.
 template <int D>
 inline Eight sample_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Moved<D>& d, int home, int component) {
     const auto sum = [&](auto x_own, auto y_own, auto z_own) {
@@ -83,7 +82,7 @@ inline Eight sample_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, co
     return home + component == 2 ? sum(other, own, other) : sum(own, other, other);
 }
 
-/// The smallest and the largest of the own samples whose weight is not zero.
+/// The minimum and maximum of the own samples with nonzero weight.
 template <int D>
 inline void bounds_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Moved<D>& d, Eight& low, Eight& high) {
     const Hat<true> x(d[0], false), y(d[1], false), z(d[D - 1], false);
@@ -93,7 +92,7 @@ inline void bounds_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, con
         for (std::size_t j = 0; j < 3; ++j) {
             const real* row = q + (D == 3 ? (static_cast<std::ptrdiff_t>(k) - 1) * sz : 0) + (static_cast<std::ptrdiff_t>(j) - 1) * sy;
             const EightFlags counts = D == 3 ? (y.weight[j] > none) & (z.weight[k] > none) : y.weight[j] > none;
-            // Of a displacement by a whole cell the middle weighs nothing; it lies beside what does, and is let in.
+            // for a displacement by a whole cell the middle has zero weight; it is adjacent and is included
             const Eight middle = load_eight(row);
             const Eight a = x.weight[0] > none ? load_eight(row - 1) : middle, b = x.weight[2] > none ? load_eight(row + 1) : middle;
             low = counts ? least(low, least(middle, least(a, b))) : low;

@@ -20,7 +20,7 @@ void Pockets::join(int a, int b) {
     parent_[at(std::max(i, k))] = least;
 }
 
-/// The knot at or below each shared row of the columns of a line, −1 where a column is dry.
+/// The knot at or below each shared row of a line's columns, −1 where a column is dry.
 static void find_knots(const ColumnMatrix& A, const Knots& knots, int z, std::vector<int>& of) {
     const auto at = [](auto i) { return static_cast<std::size_t>(i); };
     resize_scratch(of, at(A.n[0]) * at(A.rows));
@@ -81,7 +81,7 @@ void Pockets::number_knots(const ColumnMatrix& A, const Knots& knots) {
         for (int i = begin_[at(z)]; i < end_[at(z)]; ++i) number_[at(i)] = first[at(z)] + i - begin_[at(z)];
 }
 
-/// Of all ranks; none where one does all.
+/// Links of all ranks; empty for replicated work.
 std::vector<Pockets::Link> Pockets::links_beside_cuts(const ColumnMatrix& A) {
     if (A.cut.empty()) return {};
     std::vector<Link> links;
@@ -93,7 +93,7 @@ std::vector<Pockets::Link> Pockets::links_beside_cuts(const ColumnMatrix& A) {
     return of_all_ranks(links);
 }
 
-/// The pockets of all ranks, in the order of their first knots.
+/// Numbers the pockets of all ranks in the order of their first knots.
 void Pockets::number_pockets(const ColumnMatrix& A) {
     std::map<int, int> parent;
     std::set<int> open;
@@ -126,7 +126,7 @@ void Pockets::number_pockets(const ColumnMatrix& A) {
         if (pocket >= 0) pocket = static_cast<int>(std::lower_bound(firsts.begin(), firsts.end(), pocket) - firsts.begin());
 }
 
-/// 1, and of the elements above and below a knot Σ j/H over the rows inside, j = 1 .. H − 1.
+/// Weight of each knot: 1, plus Σ j/H over the rows inside the elements above and below, j = 1 .. H − 1.
 void Pockets::weigh(const Knots& knots) {
     refill_scratch<real>(mass_, number_.size(), 1);
     for (std::size_t i = 0; i < number_.size(); ++i) {
@@ -137,7 +137,7 @@ void Pockets::weigh(const Knots& knots) {
     sum_up([](std::size_t) { return 1.0; }, size_);
 }
 
-/// Σ of(knot) times its rows, by pockets.
+/// Σ of(knot) times its rows, per pocket.
 template <class F>
 void Pockets::sum_up(F&& of, std::vector<real>& sums) const {
     const std::size_t pockets = at(count_);

@@ -1,7 +1,8 @@
-// Liquid that walls close in all around, no way from it to air: its pressure is known up to a constant, and what a wall that moves sweeps
-// into it no pressure can make good. As on the uniform grid (poisson/poisson.hpp) the right-hand side is made compatible: what comes in is
-// spread evenly over the pocket's rows, and its pressure has the mean 0. In parallel each rank joins the knots of its lines; which sets are
-// one across the cuts all learn from the knots of the lines beside them. Sums are added line by line, so that no bit depends on the ranks.
+// Pockets: liquid enclosed by walls without connection to air. Its pressure is determined up to a constant, and the volume swept by a
+// moving wall violates the compatibility condition. As on the uniform grid (poisson/poisson.hpp) the right-hand side is made compatible:
+// the excess is distributed evenly over the pocket's rows, and the pressure has mean 0. In parallel each rank joins the knots of its lines;
+// sets are joined across subdomain boundaries by the knots of adjacent lines. Sums are taken line by line: bitwise independent of the
+// number of ranks.
 #pragma once
 #include "tallcell/column_matrix.hpp"
 
@@ -11,19 +12,19 @@ namespace weir::tallcell {
 
 class Pockets {
 public:
-    /// Sets of knots that the matrix couples to one another and to no air.
+    /// Finds sets of knots that the matrix couples to one another but not to air.
     void find(const ColumnMatrix& A, const Knots& knots);
     void clear() { count_ = 0; }
     bool any() const { return count_ > 0; }
-    /// b − λ m in each pocket, Σ b = 0 after it; m: the rows that a knot stands for.
+    /// Subtracts λ m in each pocket so that Σ b = 0; m: the number of rows that a knot represents.
     void make_compatible(std::vector<real>& b) const;
-    /// q less its mean over the rows of each pocket.
+    /// Subtracts from q its mean over the rows of each pocket.
     void remove_means(std::vector<real>& q) const;
     std::size_t bytes() const;
 
 private:
     using Ints = std::vector<int>;
-    /// A knot beside a cut, and the first of its set as one rank sees it: numbers among all knots, line after line.
+    /// A knot beside a subdomain boundary, and the first knot of its set on one rank: global indices, line by line.
     struct Link {
         int first, knot, open;
     };
@@ -41,13 +42,13 @@ private:
     int count_ = 0;
     ColumnPlaces places_;
     LineRange own_;
-    Ints begin_, end_;               // the knots of lines, as far as they are known here
-    Ints number_;                    // of these among all
-    Ints parent_, pocket_;           // by knot: of the same set; of its pocket the number, -1 where there is air
+    Ints begin_, end_;               // the knots of lines, where known on this rank
+    Ints number_;                    // their global indices
+    Ints parent_, pocket_;           // per knot: parent in its set; index of its pocket, -1 where connected to air
     Ints here_, lower_;              // knots at or below the shared rows of a line, column by column, and of the line on its lower side
-    Ints firsts_;                    // of lines, and of pockets
-    std::vector<char> open_;         // by root: whether any of its knots touches air
-    std::vector<real> mass_, size_;  // rows by knot and by pocket
+    Ints firsts_;                    // first knots of lines, and of pockets
+    std::vector<char> open_;         // per root: whether any of its knots touches air
+    std::vector<real> mass_, size_;  // rows per knot and per pocket
     mutable std::vector<real> mean_, by_line_;
 };
 

@@ -28,7 +28,7 @@ void TallPressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::ui
     const auto deep = [&](std::size_t cell) {
         if (layer[cell] != 0) return false;
         if (!state.solid.any()) return true;
-        // A face of a cell, but for those on the upper sides, has the cell's index on a larger grid.
+        // a cell's face, except on the upper sides, has the cell's index on a larger grid
         const Index<D> I = frame_.index_of(cell);
         const auto& open = state.solid.open[vertical];
         return open(I) == 1 && open(I + e<D>(layout_.up)) == 1;
@@ -66,7 +66,7 @@ void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>
     for (auto* list : {&b_, &q_, &mean_}) resize_scratch(*list, at(knots_.count()));
 }
 
-/// Over ranks, of all columns: which rows they share, above which there is no element, and below which all faces are in runs.
+/// In parallel, combines over all columns: the shared rows, the row above all elements, and the row below which all faces are in runs.
 template <int D>
 void TallPressure<D>::agree_on_rows() {
     if (!over_ranks()) return;
@@ -112,7 +112,7 @@ void TallPressure<D>::find_runs(const MacState<D>& state) {
         -static_cast<int>(ordered_max(own.end - own.begin, [&](int i) { return static_cast<real>(-covered_from_below(own.begin + i)); }));
 }
 
-/// Up to which row, from the bottom, a column's faces on its lower sides, and its own, are in runs. Walls have a velocity of their own.
+/// The row up to which a column's faces on its lower sides, and its own, are in runs. Walls have a prescribed velocity.
 template <int D>
 int TallPressure<D>::covered_from_below(int column) const {
     int covered = layout_.rows;
@@ -123,7 +123,7 @@ int TallPressure<D>::covered_from_below(int column) const {
             row += runs_[at(h)][at(i)].count;
         covered = std::min(covered, row);
     }
-    int row = 0;  // the face on the floor is one of its own
+    int row = 0;  // the face on the floor belongs to the column
     for (int i = knots_.start[at(column)]; i < knots_.start[at(column) + 1] && knots_.row[at(i)] == row && knots_.length[at(i)] > 1; ++i)
         row += knots_.length[at(i)];
     return std::min(covered, row);
@@ -138,7 +138,7 @@ const poisson::Report& TallPressure<D>::project(const Grid<real, D>& phi, MacSta
     pockets_.make_compatible(b_);
     const real scale = dt / state.rho;
     const ColumnRange own = layout_.own();
-    parallel_for(own.begin, own.end, [&](int c) {  // the last pressure is the first guess
+    parallel_for(own.begin, own.end, [&](int c) {  // the last pressure is the initial guess
         const Line cell = line(state.p, c);
         for (int i = knots_.start[at(c)]; i < knots_.start[at(c) + 1]; ++i) q_[at(i)] = scale * state.p[cell(knots_.row[at(i)])];
     });

@@ -1,8 +1,8 @@
-// Pressure on tall cells: the uniform grid's, restricted to functions that are linear inside elements (p = P q), so that the matrix is
-// Pᵀ A_f P, symmetric and positive, and the projection is orthogonal: idempotent, never adds energy, exact for the pressure of water at
-// rest. The surface enters by ghost fluid (Gibou et al. 2002) and solids by open fractions (Batty et al. 2007), as on the uniform grid.
-// After a projection the vertical velocity inside elements is rebuilt from the bottom up, which makes it free of divergence cell by cell.
-// Over ranks each has its own lines of columns, the faces that these share with the line beyond, and the knots of a line beyond either cut.
+// Pressure on tall cells: that of the uniform grid, restricted to functions that are linear inside elements (p = P q). The matrix is Pᵀ A_f
+// P, symmetric positive definite. The projection is orthogonal: idempotent, never increases energy, exact for the hydrostatic pressure. The
+// surface enters by ghost fluid (Gibou et al. 2002) and solids by open fractions (Batty et al. 2007), as on the uniform grid. After a
+// projection the vertical velocity inside elements is rebuilt from the bottom up, so that every cell is divergence-free. In parallel each
+// rank owns lines of columns, their faces towards the line after them, and has the knots of one ghost line on each side.
 #pragma once
 #include "staggered/state.hpp"
 #include "surface/level_set.hpp"
@@ -16,10 +16,10 @@ namespace weir::tallcell {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, as on the uniform grid.
+/// Cells with a thinner layer of liquid, relative to h, have no unknown: this bounds 1/θ by 1 + 1/thinnest, as on the uniform grid.
 inline constexpr real thinnest = 0.02;
 
-/// What transport changes the samples of runs by: by axis, in the order of the runs; of the vertical axis by knots.
+/// Changes of the samples of runs by advection: per axis, in the order of the runs; for the vertical axis per knot.
 template <int D>
 using RunChanges = std::array<std::vector<Pair>, D>;
 
@@ -27,7 +27,7 @@ struct FaceOfColumns;
 
 struct Shape {
     Division division = Division::stacked;
-    int depth = 8;  // rows that stay regular below the surface, at least
+    int depth = 8;  // minimum number of regular rows below the surface
 };
 
 template <int D>
@@ -35,7 +35,7 @@ class TallPressure {
 public:
     TallPressure(const Frame<D>& frame, int up, const poisson::Options& options);
 
-    /// Which cells are liquid (state.cells, where not `closed`), and the knots: rows outside the level set's band may be tall.
+    /// Finds the liquid cells (state.cells, where not `closed`) and the knots: rows outside the level set's band may be tall.
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, const Shape& shape, MacState<D>& state);
     /// The same with knots of any kind in `place(layout, cells, knots)`; φ [m] at cell centres. For tests and studies.
     template <class Place>
@@ -45,29 +45,29 @@ public:
         finish_surface(phi, state);
     }
 
-    /// Takes from the lattice what the unknowns can carry: moments over rows. Orthogonal, so it adds no energy; where the lattice's
-    /// velocity is free of divergence the unknowns' is too, whatever knots it was made on.
+    /// Restricts the lattice velocity to the unknowns: moments over rows. Orthogonal, so it adds no energy. Where the lattice's velocity is
+    /// divergence-free the unknowns' is too, for any knots.
     void restrict_velocity(const MacState<D>& state);
     void change_runs(const RunChanges<D>& by);
     /// Below this row all faces of the lattice are in runs.
     int floor_of_singles() const { return floor_; }
-    /// How many runs there are along an axis; of the vertical one, knots.
+    /// The number of runs along an axis; for the vertical one, of knots.
     std::size_t run_count(int a) const { return a == layout_.up ? at(knots_.count()) : runs_[layout_.axes[0] == a ? 0 : 1].size(); }
     /// Unknowns of the pressure.
     std::int64_t unknowns() const;
-    /// Whether all columns have been set here; over ranks not once a step has begun.
+    /// Returns whether this rank has found all columns; in parallel false once a step has begun.
     bool has_all() const { return A_.cut.empty(); }
-    /// Solves for the pressure and makes the unknowns free of divergence; but for what walls that move sweep into pockets, if `pockets`
-    /// says that there may be any.
+    /// Solves for the pressure and makes the unknowns divergence-free, except for the volume that moving walls sweep into pockets;
+    /// `pockets`: whether there may be any.
     const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt, bool pockets = false);
-    /// Back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
+    /// Interpolates back to the lattice: linear over rows, the vertical velocity rebuilt, the pressure interpolated.
     void spread(MacState<D>& state, real dt);
-    /// max |u|/h over the rows of runs, as the last spread() made them [1/s]; rows below that of fastest_run_below() are all among them.
+    /// max |u|/h over the rows of runs, as of the last spread() [1/s]; it includes all rows below that of fastest_run_below().
     real fastest_run() const { return fastest_run_; }
     int fastest_run_below() const { return fastest_run_below_; }
-    /// Largest |∇·u| over cells that are knots [1/s]; inside elements it is zero as spread() makes it.
+    /// Largest |∇·u| over cells that are knots [1/s]; inside elements spread() makes it zero.
     real max_divergence(const MacState<D>& state) const;
-    /// −Cᵀw: minus the divergence that the unknowns have, tested with each knot's hat.
+    /// −Cᵀw: minus the divergence of the unknowns, tested with each knot's hat function.
     void weak_divergence(const MacState<D>& state, std::vector<real>& b) const;
     /// Σ mass w² over all unknowns: twice the kinetic energy, in units of ρ times a cell.
     real energy(const Grid<real, D>& phi, const MacState<D>& state) const;
@@ -79,22 +79,22 @@ public:
     ColumnMultigrid& solver() { return solver_; }
     /// y = A x, by knots.
     void multiply(const std::vector<real>& x, std::vector<real>& y) { solver_.multiply(A_, knots_, x, y); }
-    /// Of every cell of the columns that are done here: how high the element is in which it lies [m]; 0 outside the liquid.
+    /// The height of the element that contains each cell of this rank's columns [m]; 0 outside the liquid.
     void show_heights(Grid<real, D>& to) const;
-    /// The runs of faces along axis a above one another, on the lower side of a column (its own vertical faces where a is up), bottom up.
+    /// Iterates over the runs of faces along axis a on the lower side of a column (its own vertical faces where a is up), bottom up.
     class RunsUp {
     public:
-        /// Moves to the run that has this row, or is above it; whether it has it. Rows only grow.
+        /// Moves to the first run at or above this row; returns whether it contains it. Rows must not decrease.
         bool reaches(int row) {
             while (k_ < end_ && run().row + run().count <= row) advance();
             return k_ < end_ && run().row <= row;
         }
-        /// Its place among all of its axis.
+        /// Its index among all runs of its axis.
         std::size_t index() const { return at(k_); }
-        /// Whether any is left.
+        /// Returns whether any run is left.
         bool ahead() const { return k_ < end_; }
         Run run() const { return knots_ ? Run{knots_->row[at(k_)] + 1, knots_->length[at(k_)], k_, k_} : (*runs_)[at(k_)]; }
-        /// Not so at a wall, whose faces have a velocity of their own.
+        /// False at a wall, whose faces have a prescribed velocity.
         bool any_faces() const { return faces_; }
 
     private:
@@ -126,17 +126,17 @@ private:
     void add_horizontal(const Grid<real, D>& phi, const MacState<D>& state, int z, int f);
     void add_inner_rows(const Grid<real, D>& phi, const MacState<D>& state, const FaceOfColumns& face, int k);
     real cut(const Grid<real, D>& phi, std::size_t liquid, std::size_t air) const {
-        return std::min(1 - phi[air] / phi[liquid], largest_cut_);  // 1/θ between a liquid cell and one of air
+        return std::min(1 - phi[air] / phi[liquid], largest_cut_);  // 1/θ between a liquid cell and an air cell
     }
     static constexpr int faces() { return 2 * (D - 1); }
     void project_faces(const Grid<real, D>& phi, MacState<D>& state, int h, const ColumnRange& columns);
     void project_vertical(const Grid<real, D>& phi, MacState<D>& state);
-    /// Places in memory of a column's cells, or of its faces on the lower side along an axis.
+    /// Linear indices of a column's cells, or of its faces on the lower side along an axis.
     struct Line {
         std::size_t first, stride;
         std::size_t operator()(int row) const { return first + static_cast<std::size_t>(row) * stride; }
     };
-    /// Columns beside one another in a line, of which `count` stand side by side in memory.
+    /// Adjacent columns of a line; `count` of them are contiguous in memory.
     struct Block {
         int column, count;
     };
@@ -151,7 +151,7 @@ private:
     void for_each_run(int h, const Block& block, Together&& together, One&& one) const;
     template <class Together, class One>
     void for_each_element(const Block& block, Together&& together, One&& one) const;
-    /// The faces around a block's columns: where they begin in memory, and what a velocity into the column counts, over h [1/m].
+    /// The faces around a block's columns: first indices, and the factor of a velocity into the column, over h [1/m].
     struct Sides {
         struct Side {
             Line line;
@@ -159,7 +159,7 @@ private:
             real into;
         };
         std::array<Side, 4> side;
-        bool side_by_side;  // else it is not so, or solids cut them, and every column is looked at by itself
+        bool side_by_side;  // otherwise not contiguous, or cut by solids: columns are processed one by one
     };
     Sides sides_of(const MacState<D>& state, const Block& block) const;
     template <class F>
@@ -175,7 +175,7 @@ private:
         if (!row.wet) return 0;
         return row.share > 0 ? (1 - row.share) * q_[at(row.knot)] + row.share * q_[at(row.knot) + 1] : q_[at(row.knot)];
     }
-    /// At a row of the element above a knot.
+    /// Pressure at a row of the element above a knot.
     real pressure_at(int knot, real row) const {
         const real share = (row - knots_.row[at(knot)]) / knots_.length[at(knot)];
         return (1 - share) * q_[at(knot)] + share * q_[at(knot) + 1];
@@ -184,15 +184,15 @@ private:
     Line line(const Grid<T, D>& q, int column) const {
         return {q.linear(layout_.foot(column)), static_cast<std::size_t>(q.stride(layout_.up))};
     }
-    /// visit_faces of horizontal axis h, on the lower side of `column`; single(face, ...) gets its place in memory first.
+    /// visit_faces of horizontal axis h, on the lower side of `column`; single(face, ...) additionally gets the face's linear index.
     template <class Single, class Tall>
     void visit(const MacState<D>& state, int h, int column, Single&& single, Tall&& run) const {
         visit(state, h, column, layout_.rows, single, run);
     }
-    /// The same below row `end`, which lies inside no run.
+    /// The same below row `end`, which must lie inside no run.
     template <class Single, class Tall>
     void visit(const MacState<D>& state, int h, int column, int end, Single&& single, Tall&& run) const;
-    /// The open fraction of a face, and what flows through it with the solid's part.
+    /// The open fraction of a face; flux() also includes the solid's part of the flux.
     static real open(const MacState<D>& state, int axis, std::size_t face) {
         return state.solid.any() ? state.solid.open[at(axis)][face] : 1;
     }
@@ -206,15 +206,15 @@ private:
     Layout<D> layout_;
     poisson::Options options_;
     Knots knots_;
-    std::vector<int> row_index_;      // of the lattice's rows among those that columns share, −1 for others
-    std::vector<int> rows_of_ranks_;  // what each knows of the lattice's rows
+    std::vector<int> row_index_;      // index of a lattice row among the shared rows, −1 for others
+    std::vector<int> rows_of_ranks_;  // flags of lattice rows, from each rank
     ColumnMatrix A_;
     ColumnMultigrid solver_;
     Pockets pockets_;
-    std::array<PlaneStore<int>, 2> run_start_;  // by horizontal axis and the column on the upper side
+    std::array<PlaneStore<int>, 2> run_start_;  // per horizontal axis and column on the upper side
     std::array<std::vector<Run>, 2> runs_;
     std::array<std::vector<Pair>, 2> w_;  // the samples of runs [m/s]
-    int elements_end_ = 0;                // at and above this row there is no element longer than one
+    int elements_end_ = 0;                // from this row on there is no element longer than one cell
     int floor_ = 0, fastest_run_below_ = 0;
     real fastest_run_ = 0;
     std::vector<real> mean_;   // of the vertical velocity in the element above each knot [m/s]

@@ -1,5 +1,5 @@
-// What several ranks that run one scene of tall cells have of one another. Each owns the planes between two cuts, and in them whole lines
-// of columns, their knots and their pressure; coarse levels of this are everybody's (multigrid.hpp).
+// Communication of a scene with tall cells distributed over several ranks. Each rank owns the planes of its slab, and in them whole lines
+// of columns with their knots and pressure; coarse multigrid levels are replicated (multigrid.hpp).
 #include "tallcell/solver.hpp"
 
 namespace weir::tallcell {
@@ -7,14 +7,15 @@ namespace weir::tallcell {
 Cut cut_of_columns(const scene::Scene& scene, int ranks) {
     if (scene.dim() == 2 || up_axis<3>(gravity_of<3>(scene)) == 2) return {};
     const int lines = scene.index<3>("grid.cells")[2];
-    const bool pairs = lines >= 2 * ranks;  // of lines, which are one on the next level of the multigrid: one for each rank, or all do all
+    const bool pairs = lines >= 2 * ranks;  // pairs of lines are one line on the next multigrid level: each rank gets at least one pair,
+                                            // otherwise work is replicated
     return lines >= ranks && !pairs ? Cut{} : cut_of(lines, ranks);
 }
 
 bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !slabs().holds_whole(); }
 
-/// The velocity as far beyond the cuts as anything moves in the step, and reads there: a point at the end of its path looks at two samples,
-/// and runs of the line of columns beyond move too.
+/// Halo exchange of the velocity, as deep as the motion of the step plus the two samples at the end of a trajectory; runs of one ghost line
+/// move too.
 template <int D>
 void TallCells<D>::bring_faces(real dt) {
     whole_ = held_.cut().empty();
@@ -27,13 +28,13 @@ void TallCells<D>::bring_faces(real dt) {
     solids_.know(state_, reach_);
 }
 
-/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
+/// Gathers the planes of other ranks for reading whole fields; collective.
 template <int D>
 void TallCells<D>::make_whole() const {
     if (whole_) return;
     if (held_.alone()) return bring_beside();
     const OwnPlanes mine(held_.cut());
-    auto& state = const_cast<MacState<D>&>(state_);  // what is written is what was not here: the state stays the same
+    auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
     gather(const_cast<Grid<real, D>&>(surface_.phi));
@@ -44,7 +45,7 @@ void TallCells<D>::make_whole() const {
     whole_ = true;
 }
 
-/// Where each holds its own planes alone, what it looks at beside them. The level set is known there since it is a distance.
+/// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
 template <int D>
 void TallCells<D>::bring_beside() const {
     const OwnPlanes mine = held_.own();
@@ -56,10 +57,10 @@ void TallCells<D>::bring_beside() const {
     whole_ = true;
 }
 
-/// Here, not beside the other passes: what the compiler makes of these depends on how much stands with them.
+/// Separate from the other passes, because the compiler's code for these depends on the size of the file.
 ///
-/// f(first, count) for the faces of u along a from `from` upwards, in pieces that lie together in memory; over ranks of this one's planes
-/// and `beside` more beyond its cuts.
+/// f(first, count) for the faces of u along a from row `from` upwards, in contiguous pieces; in parallel for this rank's planes and
+/// `beside` ghost planes on each side.
 template <int D, class F>
 static void for_each_kept(const Grid<real, D>& u, int up, int from, int beside, bool ring, F&& f) {
     Index<D> lo{}, hi = u.extent();

@@ -1,4 +1,4 @@
-// What water on tall cells shows of itself, and a hand in it: fields, integrals, checkpoints, a velocity that is written.
+// Output and steering of liquid on tall cells: fields, integrals, checkpoints, an edited velocity.
 #include "geometry/hand.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
@@ -40,7 +40,7 @@ template <int D>
 void TallCells<D>::save(Checkpoint& to) const {
     make_whole();
     const OwnPlanes mine = held_.own();
-    if (!held_.alone()) {  // of everybody's, as all of the state
+    if (!held_.alone()) {  // global values, as in the whole state
         const_cast<LevelSet<D>&>(surface_).make_layers_whole();
         const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
         const_cast<LiquidVolume<D>&>(volume_).make_whole();
@@ -62,13 +62,13 @@ void TallCells<D>::restore(const Checkpoint& from) {
     state_.time = from.get_value<real>("time");
     steps_ = from.get_value<std::int64_t>("tallcell.steps");
     place_solids(state_.time);
-    state_.restore(from);  // what is liquid, after the solids have said what is not
+    state_.restore(from);  // liquid flags after the solids' flags
     surface_.restore(from);
     leapfrog_.restore(from);
     if (volume_.is_saved(from))
         volume_.restore(from);
     else
-        volume_.start(surface_, state_);  // a file from before there was one
+        volume_.start(surface_, state_);  // files of older versions have no such block
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
     if (hand_ && from.has("hand")) hand_->restore(from);
@@ -84,8 +84,8 @@ std::vector<EditableField> TallCells<D>::editable() {
     return {std::move(velocity)};
 }
 
-/// A velocity that tall cells can have (linear within each), that walls and ∇·u = 0 allow, known throughout the band. The pressure that the
-/// next step begins with is that of before.
+/// Projects an edited velocity: representable by tall cells (linear within each), with ∇·u = 0 and the conditions of walls, known
+/// throughout the band. The next step starts with the previous pressure.
 template <int D>
 void TallCells<D>::edited(const EditableField&) {
     set_fixed_faces();

@@ -6,8 +6,8 @@
 
 namespace weir::tallcell {
 
-/// One step of water on tall cells (Chentanez & Müller 2011, algorithm 1, in the order of this library's water). Enters and leaves with a
-/// velocity that is known throughout the band of the level set and free of divergence in the liquid, to the tolerance of the pressure.
+/// One step of liquid on tall cells (Chentanez & Müller 2011, algorithm 1, in the order of mac_water). Before and after it the velocity is
+/// known throughout the band of the level set, and divergence-free in the liquid to the tolerance of the pressure.
 template <int D>
 StepReport TallCells<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
@@ -15,11 +15,11 @@ StepReport TallCells<D>::step(real dt) {
     leapfrog_.advance(state_.u, dt);  // u at the middle of the step
     const real kick = leapfrog_.kick(dt, true);
     leapfrog_.keep(state_.u);
-    bring_faces(dt);  // over ranks, as far as anything moves
+    bring_faces(dt);  // halo exchange in parallel, as deep as the motion
     place_solids(state_.time + dt);
     move_surface(dt);                               // Dφ/Dt = 0, and φ is a distance again
     control_volume();                               // only if the scene names it
-    remesh();                                       // tall cells below the surface as it is now
+    remesh();                                       // tall cells below the new surface
     advect(dt);                                     // Du/Dt = 0
     forces(kick);                                   // u += dt f
     const poisson::Report poisson = project(kick);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
@@ -39,7 +39,7 @@ StepReport TallCells<D>::step(real dt) {
             .residual_max = poisson.residual_max * state_.rho / kick};
 }
 
-/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it.
+/// Initial rate of change of the velocity: the result of a step of dt without motion.
 template <int D>
 void TallCells<D>::find_rate(real dt) {
     const Hand account = hand_ ? *hand_ : Hand();
@@ -80,8 +80,8 @@ void TallCells<D>::move_surface(real dt) {
     if (hand_) pour_and_drain_by_hand();
 }
 
-/// The level set becomes that of the liquid with the brush, or without it. What is poured has the brush's velocity, what is drained takes
-/// its own away, and the volume is what the level set has gained or lost.
+/// Unites the level set with the brush, or subtracts the brush. Poured liquid has the brush's velocity, drained liquid removes its own; the
+/// volume is the change of the level set.
 template <int D>
 void TallCells<D>::pour_and_drain_by_hand() {
     const auto brush = hand_->at<D>(state_.time);
@@ -90,7 +90,7 @@ void TallCells<D>::pour_and_drain_by_hand() {
     const real before = surface_.volume();
     Vec<D> u{};  // mean over the cells that change sides
     real changed = 0;
-    std::vector<std::pair<Index<D>, real>> part_before;  // of cells that the brush may change, and their neighbours
+    std::vector<std::pair<Index<D>, real>> part_before;  // cells that the brush may change, and their neighbours
     for (std::size_t cell = 0; cell < product(frame_.cells); ++cell) {
         const Index<D> I = frame_.index_of(cell);
         if ((closed_.empty() || !closed_(I)) && norm(frame_.centre(I) - brush.centre) < brush.radius + 3 * norm(frame_.h))
@@ -168,7 +168,7 @@ void TallCells<D>::extend_velocity() {
     rate_ = max_speed_rate();
 }
 
-/// Faces whose velocity the pressure decided, as far as solids leave them open, and those that walls prescribe.
+/// Marks the faces updated by the pressure, as far as solids leave them open, and those prescribed by walls.
 template <int D>
 void TallCells<D>::mark_liquid_faces() {
     using poisson::Cell;
@@ -196,7 +196,7 @@ void TallCells<D>::set_fixed_faces() {
     solids_.set_faces(state_);
 }
 
-/// Of rows that are all in runs the pressure tells.
+/// Rows wholly in runs are covered by the pressure's maximum.
 template <int D>
 real TallCells<D>::max_speed_rate() const {
     real rate = pressure_.fastest_run();
@@ -231,7 +231,7 @@ real TallCells<D>::max_speed_rate() const {
     return rate;
 }
 
-/// As on the uniform grid: CFL with the speed that gravity adds within the step, and the gravity wave of two cells (ω dt ≤ 1).
+/// As on the uniform grid: CFL with the speed gained from gravity within the step, and the gravity wave of two cells (ω dt ≤ 1).
 template <int D>
 real TallCells<D>::advised_dt() const {
     const real h = frame_.h_min(), g = norm(gravity_);
@@ -242,7 +242,7 @@ real TallCells<D>::advised_dt() const {
     return std::min(dt, effects_.max_dt(state_));
 }
 
-/// As advised_dt(), at the edge: as far as the surface's band reaches, and ω dt = 2 for the shortest waves.
+/// As advised_dt(), at the stability limit: the width of the surface's band, and ω dt = 2 for the shortest waves.
 template <int D>
 StepLimit TallCells<D>::stable_dt() const {
     const real h = frame_.h_min(), g = norm(gravity_), cells = 1 + std::ceil(options_.cfl);

@@ -1,7 +1,7 @@
 // The solver "tallcell": liquid with a free surface on a restricted tall cell grid (Chentanez & Müller 2011): regular cells near the
-// surface, tall cells below them, one to a column as in the paper or several stacked. The velocity and the level set live on the lattice
-// that the tall cells stand for; the pressure, which is what costs, has unknowns at the knots of columns only. Where this departs from the
-// paper, and why, is docs/adr/0016-tall-cells.md.
+// surface, tall cells below them, one per column as in the paper or several stacked. Velocity and level set are stored on the lattice that
+// the tall cells represent. The pressure, the most expensive part, has unknowns at the knots of columns only. Differences to the paper and
+// their reasons: docs/adr/0016-tall-cells.md.
 #pragma once
 #include "core/effects.hpp"
 #include "core/held_planes.hpp"
@@ -20,11 +20,11 @@ namespace weir::tallcell {
 /// The registered solver "tallcell".
 scene::SolverKind kind();
 
-/// Over ranks, where the planes of a scene are cut: nowhere where columns go through all of them, along the slowest axis.
+/// In parallel, the partition of a scene's planes: empty where columns run along the slowest axis and so pass through all planes.
 Cut cut_of_columns(const scene::Scene& scene, int ranks);
-/// May each then hold its own planes alone? Not where somebody looks at whole fields on all ranks.
+/// Returns whether fields can have distributed storage: not where whole fields are read on all ranks.
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
-/// What a rank sends in a step of a scene that is cut so.
+/// Estimate of what a rank sends in a step of a scene with this partition.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
 
 struct TallOptions {
@@ -81,7 +81,7 @@ private:
     poisson::Report project(real dt);
     void extend_velocity();
 
-    // Over ranks (ranks.cpp)
+    // In parallel (ranks.cpp)
     void bring_faces(real dt);
     void make_whole() const;
     void bring_beside() const;
@@ -91,30 +91,30 @@ private:
     real max_speed_rate() const;
 
     TallOptions options_;
-    HeldPlanes held_;  // cut nowhere in one process, nor where every rank does all
+    HeldPlanes held_;  // empty partition in one process, and for replicated work
     MacState<D> state_;
     Frame<D> frame_;
     SolidPlacement<D> solids_;
     Effects<MacState<D>> effects_;
     Vec<D> gravity_{};
-    int up_ = 1;  // the axis that gravity is most along, as are tall cells
+    int up_ = 1;  // the axis closest to gravity, along which cells are tall
     Grid<std::uint8_t, D> closed_;
     FacesInSolids<D> in_solids_;
     LevelSet<D> surface_;
-    LiquidVolume<D> volume_;  // what the surface is to enclose
+    LiquidVolume<D> volume_;  // the volume that the surface must enclose
     TallPressure<D> pressure_;
     Transport<D> transport_;
     Extrapolation<D> extrapolate_;
     Leapfrog<D> leapfrog_;
     FaceMarks<D> known_;
-    mutable Grid<real, D> tall_;  // height of the element that a cell lies in [m], made when it is shown
+    mutable Grid<real, D> tall_;  // height of the element that contains a cell [m], computed on request
     real volume_target_ = 0, volume_shift_ = 0;
     real rate_ = 0;  // max |u|/h over known faces [1/s]
     std::int64_t steps_ = 0;
-    std::shared_ptr<Hand> hand_;  // none where the scene names none
+    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
     Passes passes_;
-    int reach_ = 0;              // planes beyond the cuts that motion reads in this step
-    mutable bool whole_ = true;  // all planes stand here, or those that this rank looks at
+    int reach_ = 0;              // ghost planes that motion reads in this step
+    mutable bool whole_ = true;  // other ranks' planes, or the ghost planes, are up to date
 };
 
 }  // namespace weir::tallcell

@@ -1,4 +1,4 @@
-// What a scene of tall cells is at t = 0, and what it cannot be.
+// Initial state of a scene with tall cells, and its unsupported combinations.
 #include "surface/start.hpp"
 #include "geometry/hand.hpp"
 #include "scene/names.hpp"
@@ -11,7 +11,7 @@ namespace weir::tallcell {
 
 namespace {
 
-/// The velocity's halo: as far as anything moves in a step, and reads there.
+/// Depth of the velocity's halo: the motion of a step plus the interpolation stencil.
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, real cfl) {
     const Cut cut = cut_of_columns(scene, slabs().ranks());
@@ -58,7 +58,7 @@ template <int D>
 void TallCells<D>::refuse_what_it_cannot(const scene::Scene& scene) const {
     refuse_flat_cells(scene, frame_);
     const char* axis_name[] = {"x", "y", "z"};
-    constexpr real nothing = 1e-9;  // [m/s²]: moves nothing in any run
+    constexpr real nothing = 1e-9;  // [m/s²]: no noticeable motion in any run
     if (gravity_[up_] > nothing)
         scene.refuse("effects.gravity.g",
                      std::string("gravity pulls most towards ") + axis_name[up_] + "_max: tall cells stand on the floor at " +

@@ -1,4 +1,4 @@
-// What a rank sends in a step of the solver "tallcell": the exchanges of solver.cpp and of what stands in surface/, pass by pass.
+// Estimate of what a rank sends in a step of the solver "tallcell": the exchanges of solver.cpp and of surface/, pass by pass.
 #include "core/traffic.hpp"
 #include "geometry/wet_part.hpp"
 #include "surface/traffic.hpp"
@@ -11,7 +11,7 @@ namespace weir::tallcell {
 
 namespace {
 
-/// Rows of the knots of a column whose lowest `wet` cells are liquid below a flat surface, with a band of so many layers.
+/// Rows of the knots of a column whose lowest `wet` cells are liquid below a flat surface, with `layers` layers of the band.
 void add_knots(const Shape& shape, int layers, int wet, std::set<int>& rows) {
     const int top = wet - std::max(shape.depth, layers);
     std::array<int, 64> list;
@@ -20,7 +20,7 @@ void add_knots(const Shape& shape, int layers, int wet, std::set<int>& rows) {
     for (int row = count > 0 ? list[static_cast<std::size_t>(count) - 1] : 0; row < wet; ++row) rows.insert(row);
 }
 
-/// Setting up the levels, and a solve of so many iterations (levels.cpp, multigrid.cpp, conjugate_gradients.cpp).
+/// Setup of the levels, and a solve of `iterations` iterations (levels.cpp, multigrid.cpp, conjugate_gradients.cpp).
 void tally_pressure(const ColumnPlaces& finest, int sweeps, int iterations, Tally& tally) {
     const auto ranks = static_cast<std::size_t>(tally.cut().ranks());
     const auto line_of = [](const ColumnPlaces& places, std::size_t bytes) {
@@ -42,13 +42,13 @@ void tally_pressure(const ColumnPlaces& finest, int sweeps, int iterations, Tall
     }
     const auto numbers = [&](std::size_t count) { return PlaneSize{sizeof(real) * count, finest.n[1]}; };
     const auto blocks = static_cast<std::size_t>(finest.blocks_of_line());
-    tally.refresh({line_of(finest, sizeof(real))}, 1, 2 + iterations);  // x of both true residuals, and directions
-    tally.gather(numbers(1), 2 + iterations);                           // their products
+    tally.refresh({line_of(finest, sizeof(real))}, 1, 2 + iterations);  // x of both true residuals, and search directions
+    tally.gather(numbers(1), 2 + iterations);                           // their inner products
     tally.gather(numbers(4 * blocks), 2);                               // residuals and right-hand side
     tally.gather(numbers(2 * blocks), 2 * iterations);                  // z·r and z·Ap, and residuals
 }
 
-/// What the formula does not know the messages of.
+/// Keys whose messages the estimate does not include.
 std::vector<std::string> not_counted(const scene::Scene& scene) {
     std::vector<std::string> keys;
     for (const char* key : {"solids", "probes"})
@@ -62,7 +62,7 @@ std::vector<std::string> not_counted(const scene::Scene& scene) {
 
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
     const Cut cut = cut_of_columns(scene, of.ranks);
-    if (cut.empty()) {  // every rank does all
+    if (cut.empty()) {  // replicated work
         Tally tally(of.cut, of.rank);
         tally_run(tally);
         return tally.sent();
@@ -76,18 +76,18 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     Tally tally(cut, of.rank, sides.periodic(2));
     const int up = up_axis<3>(gravity_of<3>(scene));
     const int reach = std::min(n[2], shape.cells_crossed + 3);
-    tally.gather({sizeof(real), across.count});  // how far anything moves
+    tally.gather({sizeof(real), across.count});  // the largest displacement
     tally.refresh(surface.faces, reach);
     tally.refresh({cells}, reach, 2);  // the level set, before and after it moves
     surface.liquid_parts(tally);
     surface.distance(tally);
-    const std::size_t told = sizeof(int) * static_cast<std::size_t>(n[up] + 2);  // of rows of the lattice, once knots are placed
+    const std::size_t told = sizeof(int) * static_cast<std::size_t>(n[up] + 2);  // flags of lattice rows, after knots are placed
     tally.everywhere(told, 1, told * static_cast<std::size_t>(of.ranks));
     if (options.maccormack) {
-        tally.refresh({across}, 1);  // what is predicted
+        tally.refresh({across}, 1);  // predicted values
         tally.refresh(surface.faces, reach);
     }
-    tally.refresh({across}, 1, 3);  // the velocity after motion, before walls and after
+    tally.refresh({across}, 1, 3);  // the velocity after advection, before walls and after
     std::set<int> rows;
     for (int z = 0; z < n[2]; ++z)
         add_knots(options.shape, surface.layers, static_cast<int>(std::lround(geometry::wet_part_of_plane<3>(scene, z) * n[up])), rows);
@@ -97,11 +97,11 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     finest.rows = static_cast<int>(rows.size());
     finest.cut = cut;
     tally_pressure(finest, ColumnMultigrid::usual_sweeps, shape.iterations, tally);
-    tally.everywhere(sizeof(real), 2, sizeof(real) * static_cast<std::size_t>(of.ranks));  // the fastest run, what diverges
+    tally.everywhere(sizeof(real), 2, sizeof(real) * static_cast<std::size_t>(of.ranks));  // the fastest run, the maximum divergence
     tally.refresh({across}, 1);
     surface.continue_velocity(tally, surface.layers - 1);
     tally.refresh({across}, 1);
-    for (const PlaneSize& component : surface.faces) tally.gather({sizeof(real), component.count});  // the fastest flow
+    for (const PlaneSize& component : surface.faces) tally.gather({sizeof(real), component.count});  // the maximum speed
     tally_run(tally);
     tally.sent().besides = not_counted(scene);
     return tally.sent();

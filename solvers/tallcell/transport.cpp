@@ -27,7 +27,7 @@ void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& 
     source_ = &u;
     ends_ = static_cast<int>(std::clamp(std::ceil(fastest * dt), 1.0, 1e6));
     move_runs(mesh, dt);
-    // A point travels no farther than this, by a midpoint that may be faster than where it starts, and then looks at two samples.
+    // bound of a point's displacement, by a midpoint that may be faster than the start, plus two samples
     kept_from_ = std::max(0, mesh.floor_of_singles() - static_cast<int>(std::min(1e6, 1.5 * fastest * dt)) - 3);
     keep(u, beside);
     source_ = &before_;
@@ -40,7 +40,7 @@ void Transport<D>::operator()(const TallPressure<D>& mesh, const Grid<real, D>& 
 
 namespace {
 
-/// A point in cells from the domain's lower corner; between which samples it lies, and whether all of them are inside the domain.
+/// A point in cells from the domain's lower corner, its interpolation interval, and whether all samples are inside the domain.
 template <int D>
 struct Inside {
     std::array<int, D> face, centre;
@@ -88,7 +88,7 @@ struct Inside {
 
 }  // namespace
 
-/// As sample() of frame.hpp anywhere; fast where all samples around the point are inside the domain.
+/// As sample() of frame.hpp at any point; fast where all samples around the point are inside the domain.
 template <int D>
 real Transport<D>::at_point(const Grid<real, D>& u, int a, const Vec<D>& s) const {
     const Inside<D> inside(frame_, s);
@@ -102,7 +102,7 @@ Stencil<D> Transport<D>::stencil(const Vec<D>& s) const {
     return Stencil<D>(frame_, frame_.wrap(x));
 }
 
-/// Where a point at s [cells], at which the velocity is `here` [cells/s], is dt later: the midpoint rule.
+/// The position after dt of a point at s [cells] with the velocity `here` [cells/s]: the midpoint rule.
 template <int D>
 Vec<D> Transport<D>::moved(const Vec<D>& s, const Vec<D>& here, real dt) const {
     const Vec<D> middle = s + (0.5 * dt) * here;
@@ -124,14 +124,14 @@ Vec<D> Transport<D>::speed(const Vec<D>& s) const {
     return k;
 }
 
-/// The value from which s is reached in dt.
+/// The value at the point from which s is reached in dt.
 template <int D>
 real Transport<D>::departed(int a, const Vec<D>& s, real dt) const {
     return at_point((*source_)[a], a, moved(s, speed(s), -dt));
 }
 
-/// û + (u − ũ)/2, û the prediction and ũ what it gives when it is carried back; no more and no less than the values around the point of
-/// departure (Selle et al. 2008, section 4).
+/// û + (u − ũ)/2, û the prediction and ũ its backward advection; clamped to the values around the departure point (Selle et al. 2008,
+/// section 4).
 template <int D>
 real Transport<D>::corrected(int a, const Vec<D>& s, real here, real dt) const {
     const Vec<D> k = speed(s), from = moved(s, k, -dt);
@@ -163,17 +163,17 @@ Vec<D> face_place(int a, const Index<D>& I) {
 
 }  // namespace
 
-/// Where the last block of eight columns ends, counted from column 0.
+/// Number of blocks of eight columns, counted from column 0.
 static int blocks_of(const ColumnRange& columns) { return (columns.end + row_lanes - 1) / row_lanes; }
 
-/// What all runs of tall cells change by at their Gauss points. Eight columns beside one another along x are looked at together.
+/// Changes of all runs of tall cells at their Gauss points. Eight columns adjacent along x are processed together.
 template <int D>
 void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
     const Layout<D>& layout = mesh.layout();
     for (int a = 0; a < D; ++a) {
         auto& changes = changes_[static_cast<std::size_t>(a)];
         resize_scratch(changes, mesh.run_count(a));
-        // Columns that are done here; of runs along the last axis the line beyond them too.
+        // this rank's columns; for runs along the last axis the line after them too
         const ColumnRange own = layout.own(), above = a == layout.axes[D - 2] ? layout.above() : ColumnRange{};
         const int own_begin = own.begin / row_lanes, own_blocks = blocks_of(own) - own_begin, above_begin = above.begin / row_lanes;
         parallel_for(0, own_blocks + blocks_of(above) - above_begin, [&](int i_block) {
@@ -195,7 +195,7 @@ void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
             while (together) {
                 bool alike = true;
                 const auto ahead = [&](std::size_t i) { return runs[i].ahead() && runs[i].any_faces(); };
-                std::size_t last = row_lanes - 1;  // one that is no wall tells which run it is
+                std::size_t last = row_lanes - 1;  // a column that is not a wall defines the run
                 if (!ahead(last)) break;
                 const Run run = runs[last].run();
                 for (std::size_t i = 0; i < row_lanes; ++i)
@@ -219,9 +219,9 @@ void Transport<D>::move_runs(const TallPressure<D>& mesh, real dt) {
     }
 }
 
-/// Moments over the rows of a run of what they change by, by Euler's trace: deep below the surface paths are straight for as long as a step
-/// takes. Rows that a path may reach from beyond the run's ends count each for itself: by them alone does what is beyond come in. From the
-/// two Gauss points of the whole run, which see only its own linear function, a mean would drift along its slope without end.
+/// Moments over the rows of a run of their changes, by Euler's trace: deep below the surface trajectories are straight within a step. Rows
+/// that a trajectory may reach from beyond the run's ends are single points: only they transport the outside into the run. The two Gauss
+/// points of the whole run read only its own linear function; with them alone the mean would drift along its slope.
 template <int D>
 Pair Transport<D>::move_run(int a, Index<D> I, const Run& run, real dt) const {
     I[up_] = run.row;
@@ -238,7 +238,7 @@ Pair Transport<D>::move_run(int a, Index<D> I, const Run& run, real dt) const {
     return {pair[0], pair[1]};
 }
 
-/// The same of eight columns beside one another along x that have the same run. False, and nothing done, where a point comes too near to a
+/// The same for eight columns adjacent along x with the same run. Returns false, without any change, where a point comes too close to a
 /// side or moves too far.
 template <int D>
 bool Transport<D>::move_run_of_eight(int a, Index<D> I, const Run& run, real dt, std::array<Eight, 2>& change) const {
@@ -256,7 +256,7 @@ bool Transport<D>::move_run_of_eight(int a, Index<D> I, const Run& run, real dt,
     return near;
 }
 
-/// What eight points at a row between faces, or on one, change by.
+/// Changes of eight points at a row between faces, or on one.
 template <int D>
 bool Transport<D>::change_of_eight(int a, Index<D> I, real row, real dt, Eight& change) const {
     const auto at = [](int i) { return static_cast<std::size_t>(i); };
@@ -278,7 +278,7 @@ bool Transport<D>::change_of_eight(int a, Index<D> I, real row, real dt, Eight& 
     return true;
 }
 
-/// Eight faces beside one another along x, all at least a cell from the ends of the other axes. False, and nothing done, where a point
+/// Eight faces adjacent along x, all at least a cell from the ends of the other axes. Returns false, without any change, where a point
 /// moves farther than a cell.
 template <int D>
 template <bool Correct>
@@ -315,7 +315,7 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
         Eight low, high;
         bounds_near<D>(u.data() + first, sy, sz, from, low, high);
         if (!trace(1)) return false;
-        const auto& predicted = predicted_[a];  // what departed() gives, by the first pass
+        const auto& predicted = predicted_[a];  // the result of departed() in the first pass
         const Eight back = sample_near<D>(predicted.data() + first, sy, sz, from, a, a);
         to = least(most(load_eight(predicted.data() + first) + 0.5 * (load_eight(u.data() + first) - back), low), high);
     }
@@ -324,28 +324,28 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
 
 namespace {
 
-/// A column on its way up: places in memory of its lowest face and cell, and the run that comes next or has begun.
+/// A column during the upward walk: linear indices of its lowest face and cell, and the present or next run.
 template <int D>
 struct ColumnUp {
     typename TallPressure<D>::RunsUp runs;
     Index<D> foot;
     std::size_t face, cell;
-    std::ptrdiff_t below;  // to the cell on the other side of the face
+    std::ptrdiff_t below;  // offset of the cell on the other side of the face
     int begin = 0, end = 0;
     bool moves = false;
 };
 
 }  // namespace
 
-/// One pass over all faces from kept_from_ upwards. Those with φ < near beside them move; the others stay as they are. Rows in runs of
-/// tall cells take part only in what is predicted, from which others come. Eight columns go up together, since what stands beside one
-/// another stands together in memory.
+/// One pass over all faces from kept_from_ upwards. Faces with φ < near beside them are advected; the others are unchanged. Rows in runs of
+/// tall cells take part only in the prediction, which other faces read. Eight columns are processed together, since neighbours are
+/// contiguous in memory.
 template <int D>
 template <bool Correct>
 void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
                         MacVelocity<D>& to) const {
     const Layout<D>& layout = mesh.layout();
-    const bool all_faces = &to == &predicted_;  // else those that stay have their values
+    const bool all_faces = &to == &predicted_;  // otherwise unchanged faces keep their values
     const int up = layout.up;
     const ColumnRange own = layout.own();
     constexpr int never = std::numeric_limits<int>::max();
@@ -365,7 +365,7 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                                        : static_cast<std::ptrdiff_t>(phi.linear(frame_.near(column.foot, a, -1))) -
                                              static_cast<std::ptrdiff_t>(column.cell);
                 if (column.runs.any_faces()) continue;
-                column.end = never;  // a wall: as if all of it lay in one run, which others move
+                column.end = never;  // a wall: treated as one run, moved elsewhere
                 for (int row = first; all_faces && row < layout.rows; ++row) {
                     const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
                     to[a][face] = before_[a][face];
@@ -436,7 +436,7 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
     sync_periodic(to, sides);
 }
 
-/// Faces on the sides of the domain that no column has on its lower side.
+/// Faces on the sides of the domain that are on no column's lower side.
 template <int D>
 void Transport<D>::keep_sides(MacVelocity<D>& to) const {
     for (int a = 0; a < D; ++a)

@@ -1,6 +1,6 @@
-// Du/Dt = 0 on tall cells, by semi-Lagrangian advection (Stam 1999) or MacCormack's correction of it (Selle, Fedkiw, Kim, Liu & Rossignac
-// 2008) on the lattice's velocity. Regular faces move as on the uniform grid. Of rows inside tall cells the moments change, over each run,
-// by those of what its rows change by: its end rows, into which the runs beyond are carried, and Gauss points between them stand for all.
+// Du/Dt = 0 on tall cells, by semi-Lagrangian advection (Stam 1999) or its MacCormack correction (Selle, Fedkiw, Kim, Liu & Rossignac 2008)
+// of the lattice velocity. Regular faces are advected as on the uniform grid. Inside tall cells the moments over each run are advected: its
+// end rows, into which neighbouring runs are transported, and Gauss points between them represent all rows.
 #pragma once
 #include "surface/marker_motion.hpp"
 #include "tallcell/near_rows.hpp"
@@ -13,12 +13,12 @@ class Transport {
 public:
     Transport() = default;
     Transport(const Frame<D>& frame, const MacVelocity<D>& u, bool maccormack, int reach);
-    /// u of all faces near the liquid, dt later, where nothing moves by more than `fastest` cells a second; but for those in runs of tall
-    /// cells: what these change by is changes(). u must be known throughout the level set's band. Over ranks, of each its own columns;
-    /// u must then be known `beside` planes beyond its cuts, as far as anything moves and two more.
+    /// u of all faces near the liquid after dt, where nothing moves by more than `fastest` cells per second; except for runs of tall cells,
+    /// whose changes are changes(). u must be known throughout the level set's band. In parallel for this rank's columns; u must then be
+    /// known on `beside` ghost planes, the largest displacement plus two.
     void operator()(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real fastest,
                     MacVelocity<D>& u, int beside = 0);
-    /// By axis, in the order of the mesh's runs; of the vertical axis by knots.
+    /// Per axis, in the order of the mesh's runs; for the vertical axis per knot.
     const RunChanges<D>& changes() const { return changes_; }
     std::size_t bytes() const;
 
@@ -33,8 +33,8 @@ private:
               MacVelocity<D>& to) const;
     void keep_sides(MacVelocity<D>& to) const;
     bool inner(const Index<D>& I, int axis) const { return I[axis] >= 1 && I[axis] + 1 < frame_.cells[axis]; }
-    /// Whether the eight columns from x = `first` on can be moved together, and by how much farther in those that are taken for it start:
-    /// one at an end of the row has nothing beside it in the row, and at an end of memory nothing at all. It is moved by itself.
+    /// Returns whether the eight columns from x = `first` on can be processed together, and by how much their start is shifted inwards. A
+    /// column at an end of the row has no neighbour in memory; it is processed separately.
     bool fits_eight(int first) const { return first + row_lanes <= frame_.cells[0] && frame_.cells[0] >= row_lanes + 2; }
     int inward(int first) const { return first == 0 ? 1 : first + row_lanes == frame_.cells[0] ? -1 : 0; }
     template <bool Correct>
@@ -50,10 +50,10 @@ private:
     bool maccormack_ = true, open_above_ = false;
     int up_ = 1;
     int reach_ = 1;                           // cells that a point may travel in one step
-    int ends_ = 1;                            // rows at either end of a run that what is beyond it may reach in one step
-    int kept_from_ = 0;                       // below this row all faces are in runs, and so are those that any other may come from
+    int ends_ = 1;                            // rows at either end of a run that its outside may reach in one step
+    int kept_from_ = 0;                       // below this row all faces are in runs, and so are all departure points
     MacVelocity<D> before_, predicted_;       // from that row upwards
-    const MacVelocity<D>* source_ = nullptr;  // what is carried
+    const MacVelocity<D>* source_ = nullptr;  // the advected velocity
     RunChanges<D> changes_;
 };
 

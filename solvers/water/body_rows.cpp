@@ -25,7 +25,7 @@ void BodyRows<D>::add_wall(const MacState<D>& s, const WallLink<D>& link, real w
     if (stiffness > 0) walls_.push_back({link.axis, link.node, link.body, stiffness, link.there});
 }
 
-/// What the bodies' faces inside add to the diagonal of their rows is about what their walls feel, as far as the next faces are away.
+/// Scale of a row's diagonal from the faces inside bodies: about that of the walls, for the distance of the next faces.
 template <int D>
 void BodyRows<D>::add_diagonal(const MacState<D>& s, real dt_nu, Faces& diagonal) {
     const real unit = s.rho * s.u.cell_volume();
@@ -54,7 +54,7 @@ void BodyRows<D>::carry(const MacState<D>& s, Faces& u) const {
     move_inside(s, velocity_, u);
 }
 
-/// Adds dt ν K u of the walls to the image, and of walls and faces inside to the bodies' rows.
+/// Adds dt ν K u of the walls to the image, and that of walls and inside faces to the bodies' rows.
 template <int D>
 void BodyRows<D>::pull(const MacState<D>& s, real dt_nu, const Faces& u, const Twists& velocity, Faces& image, Twists& bodies) const {
     for (const Wall& wall : walls_) {

@@ -1,12 +1,12 @@
-// The bodies that viscous liquid sticks to, as rows of its viscous solve (viscosity.hpp). The faces inside a body move as it does, so that
-// what strains the liquid beside them acts on it. A wall that stands at the part θ of the way from a face to the next one inside is nearer
-// than that; of the stress, which is the Laplacian and the gradient of the divergence, the former feels it (Gibou, Fedkiw, Cheng & Kang
-// 2002). With J: a face's velocity by the body's, and w: the part of the wall that is liquid,
+// No-slip bodies as rows of the viscous solve of a liquid (viscosity.hpp). The faces inside a body move with it, so the strain beside them
+// acts on it. A wall at a fraction θ of the distance from a face to the next one inside is closer than that face. Of the stress, which is
+// the Laplacian plus the gradient of the divergence, the Laplacian is corrected for it (Gibou, Fedkiw, Cheng & Kang 2002). With J: a face's
+// velocity per unit of the body's, and w: the liquid fraction of the wall,
 //
-//     ½ Σ_walls w (1/θ − 1) (u − J V)²/h²  more in the weak form,      M δV + ρ ΔV dt ν ∂/∂V = R:  a body's own row
+//     ½ Σ_walls w (1/θ − 1) (u − J V)²/h²  added to the weak form,      M δV + ρ ΔV dt ν ∂/∂V = R:  a body's own row
 //
-// J is taken at the face itself, so that liquid and body that turn as one are not strained: of momentum and of angular momentum a body gets
-// what the liquid loses. M, R: staggered/wall_grip.hpp.
+// J is evaluated at the face itself, so liquid and body in common rotation have no strain. Momentum and angular momentum are conserved
+// between body and liquid. M, R: staggered/wall_grip.hpp.
 #pragma once
 #include "staggered/state.hpp"
 #include "staggered/wall_grip.hpp"
@@ -18,33 +18,33 @@ namespace weir::water {
 
 using namespace staggered;
 
-/// All rows are over ρ ΔV, as the liquid's are.
+/// All rows are divided by ρ ΔV, as the liquid's are.
 template <int D>
 class BodyRows {
 public:
     using Faces = std::array<Grid<real, D>, D>;
     explicit BodyRows(const MacState<D>& s);
 
-    /// What bodies close of the grid as they stand.
+    /// Finds the cells and faces that bodies close in their present position.
     void find(const MacState<D>& s, const Grid<std::uint8_t, D>& closed);
-    /// Whether what closes the cell is a body that liquid sticks to.
+    /// Returns whether the cell is closed by a no-slip body.
     bool closes(const Index<D>& cell) const { return closes_(cell) != 0; }
-    /// Beside a face the wall of a body, of which the part w is liquid.
+    /// Adds the wall of a body beside a face; w: its liquid fraction.
     void add_wall(const MacState<D>& s, const WallLink<D>& link, real w);
-    /// The walls' part of the diagonal of K; the diagonal of the bodies' own rows.
+    /// Adds the walls' part to the diagonal of K; computes the diagonal of the bodies' rows.
     void add_diagonal(const MacState<D>& s, real dt_nu, Faces& diagonal);
 
-    /// The faces inside get the velocities that the bodies have by now.
+    /// Sets the inside faces to the present velocities of the bodies.
     void carry(const MacState<D>& s, Faces& u) const;
-    /// r: has −dt ν K u of the liquid's faces and of those inside; gets that of the walls. Bodies begin from their velocities of before.
+    /// On entry r contains −dt ν K u of the liquid's and inside faces; adds that of the walls. Bodies start with their previous velocities.
     void begin(const MacState<D>& s, real dt_nu, const Faces& u, Faces& r);
-    /// As of the liquid's part of conjugate gradients: z = r/diagonal, answered by r·z; p = z + β p; image = A p, answered by p·image;
-    /// V and r go by α along p. `image` has dt ν K p of faces inside.
+    /// The bodies' part of conjugate gradients, as for the liquid: z = r/diagonal, returns r·z; p = z + β p; image = A p, returns p·image;
+    /// updates V and r by α along p. `image` contains dt ν K p of inside faces.
     real precondition();
     void turn(const MacState<D>& s, real beta, Faces& p);
     real multiply(const MacState<D>& s, real dt_nu, const Faces& p, Faces& image);
     void walk(real alpha);
-    /// The impulses of friction [N s], [N m s]; `image` has dt ν K u of faces inside.
+    /// Computes the friction impulses [N s], [N m s]; `image` contains dt ν K u of inside faces.
     void finish(MacState<D>& s, real dt_nu, const Faces& u, Faces& image);
 
     std::size_t bytes() const;
@@ -65,7 +65,7 @@ private:
 
     Grid<std::uint8_t, D> closes_;
     std::vector<Wall> walls_;
-    Twists velocity_, r_, p_, z_, diagonal_;  // velocity_: the solution; z_: the image, too
+    Twists velocity_, r_, p_, z_, diagonal_;  // velocity_: the solution; z_: also the image
 };
 
 }  // namespace weir::water

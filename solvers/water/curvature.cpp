@@ -8,12 +8,12 @@ namespace weir::water {
 
 namespace {
 
-constexpr int reach = 2;  // cells on either side that are looked at
+constexpr int reach = 2;  // cells on either side that are read
 template <int D>
 constexpr real width =
-    D == 2 ? 2.2 : 2.5;          // cells: where the weight of a crossing has become 0; wider, and short waves are pushed the wrong way
-constexpr real slanted = 0.3;    // of the normal along a line of the grid: less, and the crossing is not sure
-constexpr real steepest = 0.75;  // of the surface against its own tangent, for half a cell and more: beyond, it is another surface
+    D == 2 ? 2.2 : 2.5;          // cells: distance at which the weight of a crossing vanishes; a larger one reverses forces on short waves
+constexpr real slanted = 0.3;    // minimum of the normal's component along a grid line; below it the crossing is inaccurate
+constexpr real steepest = 0.75;  // maximum slope of the surface against its tangent plane, at half a cell and more: else another surface
 
 /// φ in the cells around one, mirrored at walls.
 template <int D>
@@ -52,7 +52,7 @@ struct Window {
             for (int j = -reach; j <= reach; ++j, to += side)
                 std::copy_n(middle + (D == 2 ? 0 : k * all.stride(D - 1)) + j * all.stride(1) - reach, side, to);
     }
-    /// From the middle [cells].
+    /// Offset from the centre [cells].
     static Vec<D> offset(std::size_t at) {
         Vec<D> by;
         auto rest = static_cast<int>(at);
@@ -61,7 +61,7 @@ struct Window {
     }
 };
 
-/// The sums of a least-squares fit of n coefficients.
+/// Normal equations of a least-squares fit with n coefficients.
 template <int n>
 struct Fit {
     std::array<std::array<real, n + 1>, n> rows{};
@@ -71,7 +71,7 @@ struct Fit {
             rows[i][n] += weight * basis[i] * value;
         }
     }
-    /// Cholesky's method; false where the points do not tell all coefficients apart.
+    /// Cholesky's method; false where the points do not determine all coefficients.
     bool solve(std::array<real, n>& x) {
         constexpr real dependent = 1e-6;
         for (std::size_t i = 0; i < n; ++i)
@@ -94,7 +94,7 @@ struct Fit {
     }
 };
 
-/// Two directions along the surface.
+/// Two tangent directions of the surface.
 template <int D>
 std::array<Vec<D>, D - 1> tangents(const Vec<D>& n) {
     if constexpr (D == 2) {
@@ -133,10 +133,10 @@ real curvature_of_differences(const Window<D>& window, const Frame<D>& frame) {
     return g2 > 1e-6 ? (laplacian - bending / g2) / std::sqrt(g2) : 0;
 }
 
-/// Where the surface crosses a line of the grid along `axis`: at θ of the way between two cells, φ rising (1) or falling (−1).
+/// A crossing of the surface with a grid line along `axis`: at fraction θ between two cells, φ rising (1) or falling (−1).
 template <int D>
 struct Crossing {
-    Vec<D> x;  // from the middle [m]
+    Vec<D> x;  // from the cell's centre [m]
     real theta;
     int axis, rising;
 };
@@ -163,7 +163,7 @@ struct Crossings {
     }
 };
 
-/// κ of the fit, or NaN. Between distances of a surface with the curvature `bend` linear interpolation errs by a parabola.
+/// κ of the fit, or NaN. Linear interpolation between distances has a parabolic error for a surface of curvature `bend`.
 template <int D>
 real fitted(const Crossings<D>& crossings, const Frame<D>& frame, const Vec<D>& n, const Vec<D>& foot, real bend) {
     constexpr int coefficients = D == 2 ? 3 : 6;
@@ -173,8 +173,8 @@ real fitted(const Crossings<D>& crossings, const Frame<D>& frame, const Vec<D>& 
     for (std::size_t i = 0; i < crossings.count; ++i) {
         auto [x, theta, a, rising] = crossings.list[i];
         const Vec<D> from_foot = x - foot, side = bend * (from_foot - dot(n, from_foot) * n);
-        const real across = (n[a] + side[a]) / std::sqrt(1 + dot(side, side));  // of the normal there
-        if (rising * across < slanted) continue;                                // the other side of a sheet, or a poor crossing
+        const real across = (n[a] + side[a]) / std::sqrt(1 + dot(side, side));  // component of the normal there
+        if (rising * across < slanted) continue;                                // the other side of a sheet, or an inaccurate crossing
         x[a] += 0.5 * theta * (1 - theta) * frame.h[a] * frame.h[a] * bend * (1 - across * across) / across;
         const Vec<D> r = x - foot;
         const real up = dot(n, r) / h, far2 = dot(r, r) / (h * h * width<D> * width<D>);
@@ -218,7 +218,7 @@ real curvature_near(const Grid<real, D>& phi, const Frame<D>& frame, const Index
     const Vec<D> foot = -(window.phi[middle] / std::max(steep, 0.5)) * n;
     const Crossings<D> crossings(window, frame);
     const real rough = fitted(crossings, frame, n, foot, 0.0);
-    const real kappa = fitted(crossings, frame, n, foot, std::clamp(rough, -limit, limit) / (D - 1));  // NaN stays
+    const real kappa = fitted(crossings, frame, n, foot, std::clamp(rough, -limit, limit) / (D - 1));  // NaN is kept
     return std::isnan(kappa) ? differences : std::clamp(kappa, -limit, limit);
 }
 

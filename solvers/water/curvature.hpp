@@ -1,6 +1,6 @@
-// Curvature of the surface, κ = ∇·n, n outwards: of the parabola (paraboloid in 3D) that fits the places where the surface crosses the
-// lines of the grid near a cell (Renardy & Renardy 2002; Popinet 2009, sec. 2.4.3). Those depend on φ in the cells beside the surface
-// alone, where motion keeps it smooth; second differences of φ look at cells further away, whose distances are of first order.
+// Curvature of the surface, κ = ∇·n, n outwards: of the parabola (paraboloid in 3D) fitted to the crossings of the surface with grid lines
+// near a cell (Renardy & Renardy 2002; Popinet 2009, sec. 2.4.3). The crossings depend only on φ in cells beside the surface, where
+// advection keeps it smooth. Second differences of φ would read cells further away, whose distances are first-order accurate.
 #pragma once
 #include "surface/level_set.hpp"
 
@@ -8,7 +8,7 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// [1/m] at the place of the surface that is next to the centre of cell I, which must be beside it.
+/// [1/m] at the surface point closest to the centre of cell I, which must be beside the surface.
 template <int D>
 real curvature_near(const Grid<real, D>& phi, const Frame<D>& frame, const Index<D>& I);
 

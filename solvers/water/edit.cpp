@@ -1,11 +1,12 @@
-// Water that is changed between two steps: its velocity, and markers that come and go. What is made good afterwards: a velocity that walls,
-// solids and ∇·u = 0 allow, known throughout the band; markers that carry it; a level set that has the markers in it; the ledger.
+// Steering a liquid between two steps: editing its velocity, adding and removing markers. Invariants restored afterwards: a velocity with
+// ∇·u = 0 that satisfies the conditions of walls and solids and is known throughout the band; the momentum on markers; a level set that
+// contains the markers; the volume balance.
 #include "staggered/inflow.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
 
-/// Not beside bodies, whose motion goes with the water's, nor with heat, whose ledger would not know.
+/// Not editable with bodies, whose motion is coupled to the water's, nor with heat, whose balance would not include the edit.
 template <int D>
 std::vector<EditableField> Water<D>::editable() {
     if (bodies_ || heat_) return {};
@@ -20,14 +21,14 @@ void Water<D>::edited(const EditableField&) {
     take_velocity();
 }
 
-/// As they are before an edit.
+/// Stores the faces before an edit.
 template <int D>
 void Water<D>::keep_faces() {
     for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
 }
 
-/// The velocity as it stands on the faces, made possible; markers are given the difference to before_, as after a step (FLIP without any
-/// PIC), or what the grid has. The pressure that the next step begins with is that of before.
+/// Projects the edited face velocity. Markers get the difference to before_, as after a step (FLIP without PIC), or the grid's velocity.
+/// The next step starts with the previous pressure.
 template <int D>
 void Water<D>::take_velocity() {
     set_fixed_faces();
@@ -48,8 +49,8 @@ void Water<D>::take_velocity() {
     }
 }
 
-/// Each is a part of a cell's liquid, as those that are poured are: the level set joins it, the ledger counts it. New liquid moves as its
-/// markers do.
+/// Each marker adds its part of a cell's liquid, as poured markers do: the level set and the volume balance include it. New liquid has the
+/// velocity of its markers.
 template <int D>
 bool Water<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) {
     if (set != marker_set_name || bodies_ || heat_) return false;
@@ -71,7 +72,7 @@ bool Water<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, s
     return true;
 }
 
-/// They take their share of the ledger's volume with them. A cell that loses the last of its markers is air.
+/// Removed markers reduce the volume balance by their share. A cell that loses its last marker becomes air.
 template <int D>
 bool Water<D>::remove_particles(std::string_view set, std::span<const unsigned char> gone) {
     if (set != marker_set_name || bodies_ || heat_) return false;
@@ -92,8 +93,8 @@ bool Water<D>::remove_particles(std::string_view set, std::span<const unsigned c
     return true;
 }
 
-/// A cell is as full of liquid as of markers: c of it under a flat surface, which lies c h above its floor and as far below the middles of
-/// the cells around. What there is already stays.
+/// The liquid fraction of the cell is that of its markers, c. φ is that of a flat surface at height c h above the cell's floor, and
+/// increases by h in the surrounding cells. Existing liquid is kept.
 template <int D>
 void Water<D>::join_cell(const Index<D>& I) {
     const real h = frame_.h_min(), full = static_cast<real>(markers_.in_cell(surface_.phi.linear(I))) / Markers<D>::per_cell;
@@ -116,7 +117,7 @@ void Water<D>::find_liquid() {
     pressure_.set_surface(surface_, not_solved_for(0), state_);
 }
 
-/// Faces beside cells that were no liquid move as the added markers near them.
+/// Faces beside new liquid cells get the velocity of the added markers near them.
 template <int D>
 void Water<D>::follow_new_liquid(const Grid<poisson::Cell, D>& before, const Markers<D>& added) {
     keep_faces();

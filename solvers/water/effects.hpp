@@ -7,11 +7,11 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Forces on the liquid's bulk, which act between momentum and pressure.
+/// Forces on the bulk of the liquid, applied between momentum and pressure.
 const EffectKinds& body_forces();
 
-/// What a scene may name: body forces, and what is solved for inside other passes: surface tension (a jump of the pressure), viscosity;
-/// and what moves the surface: volume control.
+/// The effects that a scene may name: body forces; terms of other passes, namely surface tension (a jump of the pressure) and viscosity;
+/// and volume control, which moves the surface.
 std::vector<scene::Variant> effect_schemas();
 
 }  // namespace weir::water

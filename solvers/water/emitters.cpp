@@ -7,10 +7,10 @@ namespace weir::water {
 
 namespace {
 
-constexpr int samples = 16;  // along each axis of a cell: an edge of the cross-section is right to 1/32 of a cell
+constexpr int samples = 16;  // along each axis of a cell: an edge of the cross-section is accurate to 1/32 of a cell
 
-/// f(x) for the centres of samples^(D-1) equal parts of a cell's section across `axis`, at the cell's middle along it; `axis` = -1: of the
-/// cell.
+/// f(x) for the centres of samples^(D-1) equal parts of a cell's cross-section across `axis`, at the cell's middle along it; for `axis` =
+/// -1, of the cell's volume.
 template <int D, class F>
 void for_each_part(const Frame<D>& frame, const Index<D>& I, int axis, F&& f) {
     Index<D> lo{}, hi = Index<D>::constant(samples), part = lo;
@@ -26,10 +26,10 @@ void for_each_part(const Frame<D>& frame, const Index<D>& I, int axis, F&& f) {
     }
 }
 
-/// Part of the section of the column through I along `axis` in which the shape lies anywhere between the cells lo and hi.
+/// Fraction of the cross-section of the column through I along `axis` that the shape covers anywhere between the cells lo and hi.
 template <int D>
 real section(const geometry::Shape<D>& shape, const Frame<D>& frame, Index<D> I, int axis, int lo, int hi) {
-    constexpr int along = 4;  // places in a cell where a ray looks
+    constexpr int along = 4;  // samples of a ray per cell
     int hit = 0, rays = 0;
     for_each_part(frame, I, axis, [&](Vec<D> x) {
         bool inside = false;
@@ -77,7 +77,7 @@ void Emitter<D>::place(const Frame<D>& frame) {
                 const bool inside = frame.step(beyond, a, side == 0 ? -1 : 1), within = inside && covers(beyond);
                 if (within && side == 1) continue;  // it is the next cell's lower face
                 const bool ahead = velocity[a] * (side == 0 ? -1 : 1) > 0;
-                if (ahead && !inside) continue;  // into a wall nothing pours
+                if (ahead && !inside) continue;  // no flow into a wall
                 const real moves = (ahead && !within ? section(*shape, frame, I, a, lo[a], hi[a]) : 1) * velocity[a];
                 Index<D> face = I;
                 face[a] += side;

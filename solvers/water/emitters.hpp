@@ -1,5 +1,5 @@
-// Emitters of liquid: regions whose velocity is prescribed, as that of an inflow is. The pressure sees a nozzle: through the faces in
-// front, area times speed flows out; behind and beside them it is closed, so that what surrounds it is neither sucked in nor pushed aside.
+// Emitters of liquid: regions with a prescribed velocity, like an inflow. The pressure solve treats them as nozzles: a flux of area times
+// speed through the front faces, and closed faces behind and beside. So the surrounding liquid is neither sucked in nor pushed aside.
 #pragma once
 #include "geometry/shape.hpp"
 #include "surface/frame.hpp"
@@ -13,22 +13,22 @@ using namespace surface;  // the words of the grid and of its free surface are t
 
 template <int D>
 struct Emitter {
-    /// A face of a cell that the emitter covers, by its place in memory.
+    /// A face of a cell that the emitter covers, by its linear index.
     struct Face {
         std::size_t at;
-        real moves;  // velocity component with which liquid inside moves [m/s]
-        real pours;  // that part of it which the pressure sees flow through the face [m/s]
+        real moves;  // velocity component of the liquid inside [m/s]
+        real pours;  // the part of it that is a flux for the pressure solve [m/s]
     };
     geometry::ShapePtr<D> shape;
     Vec<D> velocity{};
     real start = 0, end = infinity;
-    Index<D> lo{}, hi{};             // the cells that it can reach
-    std::vector<std::size_t> cells;  // that it covers, in part or whole
+    Index<D> lo{}, hi{};             // bounds of the cells that it may cover
+    std::vector<std::size_t> cells;  // that it covers, partly or wholly
     std::array<std::vector<Face>, D> faces;
 
-    /// Whether it pours at some time of a step from `from` to `to`.
+    /// Returns whether it is open at any time of a step from `from` to `to`.
     bool works(real from, real to) const { return from < end && to > start; }
-    /// Finds the cells and faces: emitters do not move.
+    /// Finds the cells and faces once: emitters do not move.
     void place(const Frame<D>& frame);
     std::size_t bytes() const {
         std::size_t total = cells.capacity() * sizeof(std::size_t);

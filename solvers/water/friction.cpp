@@ -1,11 +1,12 @@
-// Friction, weight and pressure of one step as one system,
+// Coupling of friction, weight and pressure in one step,
 //
 //     u = uⁿ + dt ν∇²u + dt f − (dt/ρ) ∇p,      ∇·u = 0,
 //
-// by turns: friction with a pressure p, then the pressure that makes the liquid free of divergence (van Kan 1986), F(p). Each turn ends so;
-// what is not converged is an error of splitting. One is enough where dt ν/h² is small, or the last pressure is right; more are taken by
-// Anderson's mixing, where the divergence d that friction leaves tells the pressure of a thick liquid, −2 ρ ν d (Cahouet & Chabard 1988):
-// that the weak form balances a stress 2 ρν D(u) on the surface by p is what makes a thick liquid's slump right (Larionov et al. 2017).
+// by partitioned iterations: friction with a given pressure p, then the projection (van Kan 1986), F(p). Every iteration ends with the
+// projection; what is not converged is a splitting error. One iteration suffices where dt ν/h² is small or the last pressure is accurate.
+// More iterations use Anderson mixing, where the divergence d after friction gives the pressure correction of a thick liquid, −2 ρ ν d
+// (Cahouet & Chabard 1988). In the weak form p balances the stress 2 ρν D(u) on the surface, which is required for the slump of thick
+// liquids (Larionov et al. 2017).
 #include "water/solver.hpp"
 
 #include "staggered/inflow.hpp"
@@ -16,17 +17,17 @@ using poisson::Cell;
 
 namespace {
 
-/// Of the velocity: what friction may not have seen of the pressure. The slump of a block is 5 times as exact.
+/// Relative to the velocity: the splitting error that is accepted. The slump of a block is 5 times as accurate.
 constexpr real unseen_part = 0.01;
 
-/// What the pressure's own tolerance leaves of the forces is not to be balanced, this many times over.
+/// Factor of the pressure's tolerance below which the forces need not be balanced.
 constexpr real of_tolerance = 100;
 
 constexpr int most_turns = 20;
 
 }  // namespace
 
-/// On this rank's planes.
+/// Copies this rank's planes.
 template <int D>
 static void copy(const std::array<Grid<real, D>, D>& from, std::array<Grid<real, D>, D>& to) {
     for (std::size_t a = 0; a < D; ++a) for_each_cell(from[a].extent(), [&](const Index<D>& I) { to[a](I) = from[a](I); });
@@ -43,20 +44,21 @@ std::size_t StepOfFriction<D>::bytes() const {
     return total;
 }
 
-/// Before the forces.
+/// Called before the forces.
 template <int D>
 void Water<D>::remember_velocity() {
     copy<D>(state_.u.face, friction_->before.face);
 }
 
-/// After the forces: u* = uⁿ + dt f + dt ν∇²(uⁿ + Δ). A thick liquid's surface is slow, so that the last pressure is right there, too.
+/// Called after the forces: u* = uⁿ + dt f + dt ν∇²(uⁿ + Δ). A thick liquid's surface moves slowly, so the last pressure is accurate there,
+/// too.
 template <int D>
 void Water<D>::rub(real dt) {
     const auto timed = passes_.time("effect viscosity");
     StepOfFriction<D>& s = *friction_;
     for (int a = 0; a < D; ++a)
         for_each_cell(s.forces[a].extent(), [&](const Index<D>& I) { s.forces[a](I) = state_.u[a](I) - s.before[a](I); });
-    if (heat_) heat_->slow(state_, dt);  // how far the faces of this step follow; the velocity itself is slowed before the pressure
+    if (heat_) heat_->slow(state_, dt);  // the face coefficients of this step; the velocity itself is reduced before the projection
     copy<D>(s.before.face, state_.u.face);
     if (state_.grip) bodies_->grip(state_, solids_, dt);
     const bool thick = !bodies_ && dt * state_.nu > frame_.h_min() * frame_.h_min();
@@ -69,7 +71,7 @@ void Water<D>::rub(real dt) {
     sync_periodic(state_.u, state_.sides);
 }
 
-/// dt a = dt f − (dt/ρ) ∇p of this step's pressure; where ice holds the liquid back, as much less.
+/// dt a = dt f − (dt/ρ) ∇p with this step's pressure; reduced by the drag of ice.
 template <int D>
 void Water<D>::what_friction_feels(real dt) {
     StepOfFriction<D>& s = *friction_;
@@ -83,7 +85,7 @@ void Water<D>::what_friction_feels(real dt) {
     viscosity_->continue_felt(state_, s.felt);
 }
 
-/// Friction with s.felt; leaves the divergence of u + Δ in s.residual.
+/// Friction with s.felt; stores the divergence of u + Δ in s.residual.
 template <int D>
 void Water<D>::rub_again(real dt) {
     StepOfFriction<D>& s = *friction_;
@@ -99,7 +101,7 @@ void Water<D>::rub_again(real dt) {
     set_fixed_faces();
 }
 
-/// The pressure of the next turn, from F(p) of this one.
+/// The pressure of the next iteration, from F(p) of this one.
 template <int D>
 void Water<D>::mix_pressures() {
     StepOfFriction<D>& s = *friction_;
@@ -110,7 +112,7 @@ void Water<D>::mix_pressures() {
     refresh(state_.p, frame_.periodic(D - 1));
 }
 
-/// Turns until friction has seen the pressure.
+/// Iterates until the splitting error of friction is small.
 template <int D>
 poisson::Report Water<D>::balance_friction(real dt, real kick, poisson::Report report) {
     StepOfFriction<D>& s = *friction_;

@@ -33,7 +33,7 @@ std::vector<Key> LiquidHeat<D>::keys() {
 
 namespace {
 
-/// What would carry heat in or out that nobody knows.
+/// Rejects sides and effects that would transport heat without a known enthalpy.
 template <int D>
 void refuse_open(const scene::Scene& scene, const MacState<D>& s) {
     if (!scene.root().tables("emitters").empty())
@@ -99,7 +99,7 @@ real LiquidHeat<D>::mean(const MacState<D>& s) const {
     return cells_ > 0 ? sum / static_cast<real>(cells_) : mean_;
 }
 
-/// The liquid's cells that have air beside them; and how many there are of all.
+/// Finds the liquid cells beside air, and counts all liquid cells.
 template <int D>
 void LiquidHeat<D>::find_surface(const MacState<D>& s) {
     surface_cells_.clear();
@@ -118,7 +118,7 @@ void LiquidHeat<D>::find_surface(const MacState<D>& s) {
     }
 }
 
-/// Temperature and share of liquid that belong to the enthalpies; beside the liquid all counts as melt.
+/// Computes temperature and liquid fraction from the enthalpies; cells outside the liquid count as melt.
 template <int D>
 void LiquidHeat<D>::note(const MacState<D>& s) {
     for_each_cell(s.extent(), [&](const Index<D>& I) {
@@ -135,12 +135,12 @@ void LiquidHeat<D>::note(const MacState<D>& s) {
                                                                   : "the liquid begins to boil, and solver \"mac_water\" has no bubbles");
 }
 
-/// H of cells beside the liquid is the mean of their neighbours', layer by layer.
+/// H of cells near the liquid is the mean of their neighbours, layer by layer.
 template <int D>
 void LiquidHeat<D>::continue_outwards(const MacState<D>& s, int layers) {
     for_each_cell(s.extent(), [&](const Index<D>& I) { known_(I) = s.cells(I) == Cell::fluid ? 1 : 0; });
     for (int layer = 2; layer < layers + 2; ++layer)
-        for_each_cell(s.extent(), [&](const Index<D>& I) {  // reads earlier layers alone, so that no order matters
+        for_each_cell(s.extent(), [&](const Index<D>& I) {  // reads earlier layers only: independent of the order
             if (known_(I) != 0) return;
             real sum = 0;
             int count = 0;
@@ -163,11 +163,11 @@ void LiquidHeat<D>::carry(const MacState<D>& s, const LevelSet<D>& surface, real
         const Vec<D> from = trace(s.u, frame_, frame_.centre(I), -dt, order);
         moved_(I) = sample_cells(enthalpy_, Stencil<D>(frame_, frame_.wrap(from)));
     });
-    enthalpy_.swap(moved_);  // moved_: as it was
+    enthalpy_.swap(moved_);  // moved_: the previous values
 }
 
-/// Cells bear what the mean lacks, each as much as it has changed but none so much that it leaves the range that there was; where that is
-/// not enough, each in proportion to what it is from the end of that range.
+/// Restores the mean enthalpy. The deficit is distributed over cells in proportion to their change, limited by the previous range. Where
+/// that is not enough, it is distributed in proportion to the distance from the end of that range.
 template <int D>
 void LiquidHeat<D>::keep_mean(const MacState<D>& s) {
     if (cells_ == 0) return;
@@ -184,7 +184,7 @@ void LiquidHeat<D>::keep_mean(const MacState<D>& s) {
         return true;
     };
     if (give(bears) || give(room)) return;
-    for_each_cell(s.extent(), [&](const Index<D>& I) {  // all as warm as the end, but for rounding
+    for_each_cell(s.extent(), [&](const Index<D>& I) {  // all are at the end of the range, up to rounding
         if (is_liquid(I)) enthalpy_(I) += lacks / static_cast<real>(cells_);
     });
 }
@@ -242,7 +242,7 @@ void LiquidHeat<D>::conduct(const MacState<D>& s, real volume, real area, real d
         const real outside = exchange_ > 0 ? supply_.ambient().temperature(s.time + 0.5 * dt) : 0;
         for (const std::size_t c : surface_cells_)
             source_[c] += (exchange_ * area * (outside - melting_.temperature(enthalpy_[c])) - pending_ / dt) / cell;
-        added_ += pending_, pending_ = 0;  // not from outside: counted as the vapour's
+        added_ += pending_, pending_ = 0;  // not from outside: recorded as the vapour's
     }
     added_ += conduction_.step(enthalpy_, {s.cells, true, source_}, dt);
     mean_ = mean(s);
@@ -263,7 +263,7 @@ real LiquidHeat<D>::max_dt(const MacState<D>& s, real area) const {
     if (surface_cells_.empty()) return limit;
     const real capacity = surface_capacity(s);
     if (exchange_ > 0) limit = std::min(limit, 0.5 * capacity / (exchange_ * area));
-    if (evaporation_ > 0) {  // a tenth of a cell, and a kelvin of those at the surface
+    if (evaporation_ > 0) {  // limits: a tenth of a cell, and one kelvin of the surface cells
         const real T = surface_temperature(), K = evaporation_ * area;
         const auto line = matter::line_to_vapour(*substance_, T);
         const real latent = substance_->latent_heat(line, T);

@@ -1,10 +1,10 @@
-// Heat in a liquid with a free surface: specific enthalpy H in its cells, carried along paths, conducted between cells of liquid alone,
-// given and taken by sides, heaters and the surface; ice stops the flow (staggered/ice.hpp). The ledger is of the whole: the liquid's mass
-// is what the volume's ledger says, its heat that mass times the mean of H over its cells. Paths do not keep that mean, so it is set right
-// after them, where H has changed. Liquid that evaporates leaves with its own enthalpy and the heat of evaporation, which the cells at the
-// surface lose:
+// Heat in a liquid with a free surface. The specific enthalpy H of cells is advected (semi-Lagrangian), conducted between liquid cells
+// only, and exchanged with sides, heaters and the surface; ice stops the flow (staggered/ice.hpp). The balance is global: the mass follows
+// the volume balance, the heat is that mass times the mean of H over the cells. Semi-Lagrangian advection does not conserve that mean, so
+// it is corrected afterwards in the cells where H has changed. Evaporating liquid removes its own enthalpy and the heat of evaporation,
+// which is taken from the surface cells:
 //     dm/dt = A e (p_sat(T) − p_v),   M' = M − dm,   M' H̄' = M H̄ − dm (H_s + L).
-// Into a gas that is closed in (matter/closed_gas.hpp), whose pressure is p_v, it goes at constant volume.
+// In an enclosed gas (matter/closed_gas.hpp), whose pressure is p_v, evaporation is at constant volume.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/solver.hpp"
@@ -27,23 +27,23 @@ public:
     static bool named(const scene::Scene& scene) { return scene.has("substance"); }
     static std::vector<scene::Key> keys();
 
-    /// Refuses what it cannot be told together with. The surface and the cells of liquid are known, and its volume.
+    /// Rejects unsupported combinations. The surface, the liquid cells and their volume must be known.
     LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame, real volume);
 
-    /// DH/Dt = 0 in the flow that moves the surface, before that has moved.
+    /// DH/Dt = 0 in the flow that moves the surface; call it before the surface moves.
     void carry(const MacState<D>& s, const LevelSet<D>& surface, real dt, Trace trace);
-    /// How much liquid evaporates in dt [m^D]: the surface is to be lowered by it. Negative where vapour condenses.
+    /// Volume that evaporates in dt [m^D]: the surface is to be lowered by it. Negative for condensation.
     real evaporates(const MacState<D>& s, real area, real dt);
-    /// What has in fact left the liquid, whose volume was `volume` before.
+    /// Records the volume that has actually left the liquid, whose volume was `volume` before.
     void leaves(const MacState<D>& s, real lost, real volume);
-    /// The hand heats too.
+    /// Adds interactive heating.
     void follow(std::shared_ptr<Hand> hand) { supply_.follow(std::move(hand), melting_, enthalpy_); }
-    /// ρ dH/dt = ∇·(k ∇T) + q in the liquid of s.cells, whose volume is `volume` and whose surface has this area.
+    /// ρ dH/dt = ∇·(k ∇T) + q in the liquid of s.cells, with this volume and surface area.
     void conduct(const MacState<D>& s, real volume, real area, real dt);
-    /// u* becomes β u*, s.mobility is β. Whether any face is held back.
+    /// Multiplies u* by β and sets s.mobility to β. Returns whether any face has drag.
     bool slow(MacState<D>& s, real dt);
 
-    /// Up to the next switch of a heater or keyframe, and what explicit exchange through the surface allows [s].
+    /// Time to the next switching of a heater or keyframe, and the limit of explicit exchange through the surface [s].
     real max_dt(const MacState<D>& s, real area) const;
     FieldView temperature() const { return {"temperature", "K", Where::cell, "", {temperature_.values()}}; }
     FieldView liquid() const { return {"liquid", "", Where::cell, "", {liquid_.values()}}; }
@@ -70,12 +70,12 @@ private:
     Grid<real, D> enthalpy_, temperature_, liquid_, moved_, source_;
     Grid<std::uint8_t, D> known_;
     std::vector<std::size_t> surface_cells_;             // of liquid, beside air
-    std::int64_t cells_ = 0;                             // of liquid
-    real mean_ = 0;                                      // H̄ of the ledger [J/kg]
-    real pending_ = 0;                                   // heat of evaporation that the surface has still to give [J]
+    std::int64_t cells_ = 0;                             // number of liquid cells
+    real mean_ = 0;                                      // H̄ of the heat balance [J/kg]
+    real pending_ = 0;                                   // heat of evaporation not yet taken from the surface [J]
     real added_ = 0, evaporated_ = 0, vapour_heat_ = 0;  // since the start [J], [m^D], [J]
     real coldest_ = 0, hottest_ = 0;                     // of the liquid's cells [K]
-    std::optional<matter::ClosedGas> gas_;               // none where the scene names none
+    std::optional<matter::ClosedGas> gas_;               // nullopt where the scene names none
     Ice<D> ice_;
     bool any_ice_ = false;
 };

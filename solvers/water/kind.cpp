@@ -1,4 +1,4 @@
-// What a scene may say to the solver "mac_water".
+// The schema of the solver "mac_water".
 #include "staggered/kind.hpp"
 #include "core/traffic.hpp"
 #include "matter/heat.hpp"
@@ -58,7 +58,7 @@ Key scheme_keys() {
                      PoissonChoice::key()}};
 }
 
-/// What of a scene is not cut into slabs yet.
+/// Rejects keys of a scene that are not supported in parallel.
 void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts or boils");

@@ -12,8 +12,8 @@ AndersonMixing<D>::AndersonMixing(const Index<D>& cells) : last_p_(cells), last_
     for (Change& change : changes_) change = {Grid<real, D>(cells), Grid<real, D>(cells)};
 }
 
-/// Of the changes, with which they cancel most of the residual: normal equations by Cholesky's method; what is nearly a combination of
-/// newer changes gets none.
+/// Coefficients of the changes that minimize the residual: normal equations by Cholesky's method. A change that is nearly a combination of
+/// newer ones gets the coefficient 0.
 template <int D>
 auto AndersonMixing<D>::weights(const Grid<real, D>& residual, const Grid<Cell, D>& cells) const -> Weights {
     constexpr real dependent = 1e-10;

@@ -1,5 +1,5 @@
-// Fixed points p = F(p) of a nearly linear F: the last few steps and what they changed of the residual F(p) − p give the combination with
-// the least residual (Anderson 1965; Walker & Ni 2011, type II).
+// Fixed points p = F(p) of a nearly linear F: the last few steps and their changes of the residual F(p) − p give the combination with the
+// smallest residual (Anderson 1965; Walker & Ni 2011, type II).
 #pragma once
 #include "poisson/poisson.hpp"
 
@@ -10,11 +10,11 @@ namespace weir::water {
 template <int D>
 class AndersonMixing {
 public:
-    static constexpr int depth = 5;  // changes that are remembered
+    static constexpr int depth = 5;  // number of stored changes
     AndersonMixing() = default;
     explicit AndersonMixing(const Index<D>& cells);
     void restart() { count_ = 0, any_ = false; }
-    /// p → the next one, by the residual F(p) − p there; counted in liquid cells only.
+    /// Replaces p by the next iterate, given the residual F(p) − p; counted in liquid cells only.
     void next(Grid<real, D>& p, const Grid<real, D>& residual, const Grid<poisson::Cell, D>& cells);
     std::size_t bytes() const;
 

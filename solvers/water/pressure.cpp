@@ -8,7 +8,7 @@ namespace weir::water {
 
 using poisson::Cell;
 
-/// A weight without the open fraction that it holds.
+/// A weight without its factor, the open fraction.
 static real per_open(real weight, real open) { return open > 0 ? weight / open : 0; }
 
 template <int D>
@@ -49,7 +49,7 @@ void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std:
     find();
 }
 
-/// Over ranks, what is liquid beside the cuts.
+/// In parallel, exchanges the flags of liquid cells at the subdomain boundaries.
 template <int D>
 void SurfacePressure<D>::bring_liquid() {
     if (!over_ranks()) return;
@@ -57,7 +57,7 @@ void SurfacePressure<D>::bring_liquid() {
     slabs().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));
 }
 
-/// What each cell is, and where the liquid of each line begins and ends: everything below looks at that part of the line only.
+/// Sets the cell flags and the extent of liquid on each line; all loops below are limited to that extent.
 template <int D>
 void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed) {
     const real thin = -thinnest * frame_.h_min();
@@ -84,7 +84,7 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
                                            [](const Extent& extent) { return extent.begin < extent.end; })) > 0;
 }
 
-/// Face weights: the open fraction between liquid cells, over θ where the surface cuts the line between the centres.
+/// Face weights: the open fraction between liquid cells, times 1/θ where the surface cuts the line between the centres.
 template <int D>
 void SurfacePressure<D>::set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a) {
     real* weight = A_.weight[static_cast<std::size_t>(a)].data();
@@ -102,14 +102,14 @@ void SurfacePressure<D>::set_weights(const LevelSet<D>& surface, const MacState<
         [&](const Index<D>& I, std::size_t face) { weight[face] = side_weight(surface, state, a, I); });
 }
 
-/// 1/θ between a liquid cell and one that is not; 0 if that one is solid.
+/// 1/θ between a liquid cell and a cell without liquid; 0 if that one is solid.
 template <int D>
 real SurfacePressure<D>::cut_weight(const LevelSet<D>& surface, std::size_t lower, std::size_t upper) const {
     if (A_.cells[lower] != Cell::fluid) std::swap(lower, upper);
     return A_.cells[upper] == Cell::solid ? 0 : std::min(1 - surface.phi[upper] / surface.phi[lower], largest_cut_);
 }
 
-/// On a side: closed, or p = 0 on the side itself, half a cell away. On the face that joins the ends of a periodic axis: as inside.
+/// On a side: closed, or p = 0 on the side itself, half a cell away. On a periodic boundary: as inside.
 template <int D>
 real SurfacePressure<D>::side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const {
     const int end = I[a] == 0 ? 0 : 1;
@@ -121,7 +121,7 @@ real SurfacePressure<D>::side_weight(const LevelSet<D>& surface, const MacState<
     return open * (above != below ? cut_weight(surface, lower, upper) : above ? 1 : 0);
 }
 
-/// σ κ where the surface cuts the line between the two cells.
+/// σ κ where the surface cuts the line between two cells.
 template <int D>
 real SurfacePressure<D>::surface_pressure(const LevelSet<D>& surface, std::size_t liquid, std::size_t air, real sigma,
                                           const Grid<real, D>& curvature) const {
@@ -129,7 +129,7 @@ real SurfacePressure<D>::surface_pressure(const LevelSet<D>& surface, std::size_
     return sigma * ((1 - theta) * curvature[liquid] + theta * curvature[air]);
 }
 
-/// What p = σ κ on the surface adds to the right-hand side of a liquid cell.
+/// The contribution of p = σ κ on the surface to the right-hand side of a liquid cell.
 template <int D>
 real SurfacePressure<D>::surface_tension(const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature, const Index<D>& I) const {
     real sum = 0;
@@ -174,7 +174,7 @@ void SurfacePressure<D>::hold_back(const MacState<D>& state) {
     }
 }
 
-/// Over ranks: by all of them together where the method can, else by each of them.
+/// In parallel: distributed where the method supports it, otherwise replicated on each rank.
 template <int D>
 const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
     if (!over_ranks()) return solver_->solve(state.p, b_);
@@ -192,7 +192,7 @@ const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
 template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
-    if (!has_liquid_) {  // every drop has left or is thinner than a cell: nothing is under pressure
+    if (!has_liquid_) {  // every drop has left or is thinner than a cell: zero pressure
         if (bodies) bodies->solve(state, *solids, dt, nullptr, tolerance_, nullptr);
         return nothing_to_do_;
     }
@@ -203,7 +203,7 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         const AllPlanes all;
         solver_->setup(A_);
     }
-    const poisson::Report& report =  // the last pressure is the first guess
+    const poisson::Report& report =  // the last pressure is the initial guess
         bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
     subtract(state, surface, dt, sigma, curvature, state.u.face);
     return report;
@@ -226,8 +226,8 @@ void SurfacePressure<D>::subtract(const MacState<D>& state, const LevelSet<D>& s
     if (curvature) subtract_surface_gradient(state, surface, dt, sigma, *curvature, u);
 }
 
-/// u −= (dt/ρ) ∇p on every face of liquid that is not closed. p is zero outside the liquid, so where the surface cuts the line between two
-/// centres the weight makes the difference of p the gradient.
+/// u −= (dt/ρ) ∇p on every open face of liquid. p is zero outside the liquid; where the surface cuts the line between two centres the
+/// weight 1/θ makes the difference of p the gradient.
 template <int D>
 void SurfacePressure<D>::subtract_gradient(const MacState<D>& state, real dt, std::array<Grid<real, D>, D>& of) const {
     for (int a = 0; a < D; ++a) {
@@ -258,7 +258,7 @@ void SurfacePressure<D>::subtract_gradient(const MacState<D>& state, real dt, st
     }
 }
 
-/// What p = σ κ on the surface adds to that.
+/// The contribution of p = σ κ on the surface.
 template <int D>
 void SurfacePressure<D>::subtract_surface_gradient(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>& curvature, std::array<Grid<real, D>, D>& u) const {

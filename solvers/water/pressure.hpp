@@ -1,7 +1,7 @@
 // Pressure with a free surface, second order (Gibou, Fedkiw, Cheng & Kang 2002): the surface cuts the line from a liquid cell to an air
-// cell at θ = φ_l / (φ_l − φ_a) of its length, and there p = σ κ. The face weight becomes 1/θ, the gradient (σ κ − p_l) / (θ h).
-// Solids enter by open face fractions (Batty, Bertails & Bridson 2007). A cell is liquid when φ < −thinnest h, so that θ ≥ thinnest / (1 +
-// thinnest) without any clamp: a plane surface, at any height and tilt, has exactly the hydrostatic p.
+// cell at the fraction θ = φ_l / (φ_l − φ_a), with p = σ κ there. The face weight becomes 1/θ, the gradient (σ κ − p_l) / (θ h). Solids
+// enter by open face fractions (Batty, Bertails & Bridson 2007). A cell is liquid when φ < −thinnest h, so θ ≥ thinnest / (1 + thinnest)
+// without clamping. A plane surface, at any height and slope, has exactly the hydrostatic p.
 #pragma once
 #include "poisson/poisson.hpp"
 #include "staggered/bodies_in_flow.hpp"
@@ -15,7 +15,7 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Liquid thinner than this part of a cell is not solved for: it bounds 1/θ by 1 + 1/thinnest, hence the matrix's condition.
+/// Cells with a thinner layer of liquid, relative to h, have no unknown: this bounds 1/θ by 1 + 1/thinnest, and so the condition number.
 inline constexpr real thinnest = 0.02;
 
 template <int D>
@@ -24,26 +24,27 @@ public:
     SurfacePressure() = default;
     SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice);
 
-    /// Which cells are liquid, and the matrix, from φ and the solids. Also fills state.cells. Over ranks each finds its own planes of it
-    /// where it holds no more, else all of the whole φ.
+    /// Finds the liquid cells and the matrix from φ and the solids; also sets state.cells. In parallel each rank does its own planes with
+    /// distributed storage, otherwise all.
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
-    /// Faces follow the pressure as far as state.mobility says; state.u must be that part of itself already.
+    /// Applies the drag factor state.mobility to the faces' response to pressure; state.u must already contain it.
     void hold_back(const MacState<D>& state);
-    /// Makes the liquid free of divergence: solves for state.p, then u −= (dt/ρ) ∇p. `curvature` [1/m] at cells, or nullptr. `bodies`, or
-    /// nullptr, get their velocities by the same pressure.
+    /// Makes the liquid divergence-free: solves for state.p, then u −= (dt/ρ) ∇p. `curvature` [1/m] at cells, or nullptr. The same solve
+    /// computes the velocities of `bodies`, if given.
     const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature,
                                    BodiesInFlow<D>* bodies = nullptr, SolidPlacement<D>* solids = nullptr);
-    /// The same once more in the same step, with state.p as the first guess: of an operator that has been set up.
+    /// The same again in the same step, with state.p as the initial guess and the existing operator.
     const poisson::Report& project_again(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                          const Grid<real, D>* curvature);
     /// u −= (dt/ρ) ∇p with p = state.p, σ κ on the surface.
     void subtract(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature,
                   std::array<Grid<real, D>, D>& u) const;
-    /// Largest |∇·u| over liquid cells [1/s], open fractions counted.
+    /// Largest |∇·u| over liquid cells [1/s], with open fractions.
     real max_divergence(const MacState<D>& state) const;
-    /// The part of a line of faces along a, which begins at I and lies on no side across it, that has liquid on one side or the other.
+    /// The part of a line of faces along a, starting at I, on which at least one adjacent cell is liquid. The line must not lie on a side
+    /// across it.
     Extent faces_of_liquid(int a, const Index<D>& I) const;
-    /// As for_each_face_run, but of each run only that part.
+    /// As for_each_face_run, limited to that part of each run.
     template <class F, class G>
     void for_faces_of_liquid(int a, F&& inner, G&& outer) const;
     std::size_t bytes() const;
@@ -64,15 +65,15 @@ private:
                                    const Grid<real, D>& curvature, std::array<Grid<real, D>, D>& u) const;
 
     Frame<D> frame_;
-    poisson::Operator<D> A_;  // its weights hold on faces of liquid cells, and are left over from earlier steps elsewhere
+    poisson::Operator<D> A_;  // its weights are valid on faces of liquid cells, stale elsewhere
     Grid<real, D> b_;         // likewise
-    Grid<Extent, D> liquid_;  // of every line of cells along x
+    Grid<Extent, D> liquid_;  // per line of cells along x
     bool has_liquid_ = false;
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;
     real tolerance_ = 0;
-    real h2_ = 0;           // h of axis 0, squared: what the matrix is scaled by
-    real largest_cut_ = 0;  // of 1/θ, along the longest edge of a cell
+    real h2_ = 0;           // h of axis 0, squared: the scale of the matrix
+    real largest_cut_ = 0;  // largest 1/θ, along the longest edge of a cell
 };
 
 template <int D>

@@ -1,12 +1,12 @@
-// What several ranks that run one scene of liquid have of one another. Each owns the planes of cells between two cuts and the markers in
-// them, and knows the markers of one plane more beyond either cut.
+// Communication of a scene with liquid distributed over several ranks. Each rank owns the planes of cells of its slab and the markers in
+// them, and has ghost markers of one plane on each side.
 #include "core/error.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
 
-/// The velocity as far beyond the cuts as anything moves in the step, and reads there: a marker or a cell at the end of its path, and the
-/// markers of one plane beyond.
+/// Halo exchange of the velocity: as deep as the motion of the step plus the stencil at the end of a trajectory, and one plane for ghost
+/// markers.
 template <int D>
 void Water<D>::bring_faces(real dt) {
     whole_ = held_.cut().empty(), markers_whole_ = false;
@@ -21,7 +21,7 @@ void Water<D>::bring_faces(real dt) {
     know_solids();
 }
 
-/// Solids as far as liquid moves, where this rank holds no more than its own planes.
+/// Extends solids into ghost planes as far as liquid moves, with distributed storage.
 template <int D>
 void Water<D>::know_solids() {
     if (!held_.alone() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
@@ -31,7 +31,7 @@ void Water<D>::know_solids() {
     });
 }
 
-/// Markers beyond open sides go, and over ranks all go to those that hold them now. How many there were, and how many have gone.
+/// Removes markers beyond open sides; in parallel also migrates markers. Returns how many there were, and how many have left.
 template <int D>
 std::array<std::int64_t, 2> Water<D>::let_depart() {
     if (!over_ranks()) {
@@ -45,7 +45,7 @@ std::array<std::int64_t, 2> Water<D>::let_depart() {
     return {sum_of_ranks(own), sum_of_ranks(left)};
 }
 
-/// What is looked at in whole after each step of one process.
+/// Checks that one process would make on whole fields after each step.
 template <int D>
 void Water<D>::check_own() const {
     const auto is_finite = [](const Grid<real, D>& q) {
@@ -79,20 +79,20 @@ void Water<D>::check_own() const {
     throw NumericalFailure(name, name + " is no longer finite");
 }
 
-/// Brings the planes of other ranks to whoever looks at the state as a whole; all ranks look at the same time.
+/// Gathers the planes of other ranks for reading whole fields; collective.
 template <int D>
 void Water<D>::make_whole() const {
     if (whole_) return;
     if (held_.alone()) return bring_beside();
     const OwnPlanes mine(held_.cut());
-    auto& own = const_cast<Water&>(*this);  // what is written is what was not here: the state stays the same
+    auto& own = const_cast<Water&>(*this);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(own.state_.u[a]);
     gather(own.state_.p);
     own.surface_.make_whole();
     whole_ = true;
 }
 
-/// Where each holds its own planes alone, what it looks at beside them. The level set is known there since it is a distance.
+/// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
 template <int D>
 void Water<D>::bring_beside() const {
     const OwnPlanes mine = held_.own();

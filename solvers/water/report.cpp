@@ -1,4 +1,4 @@
-// What the water shows of itself: fields, integrals, checkpoints.
+// Output of the liquid: fields, integrals, checkpoints.
 #include "geometry/hand.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
@@ -68,7 +68,7 @@ template <int D>
 void Water<D>::save(Checkpoint& to) const {
     make_whole();
     const OwnPlanes mine = held_.own();
-    if (!held_.alone()) {  // of everybody's, as all of the state
+    if (!held_.alone()) {  // global values, as in the whole state
         const_cast<LevelSet<D>&>(surface_).make_layers_whole();
         const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
         const_cast<LiquidVolume<D>&>(volume_).make_whole();
@@ -94,7 +94,7 @@ void Water<D>::save(Checkpoint& to) const {
     if (heat_) heat_->save(to);
 }
 
-/// Over ranks each reads as many as any other, and deals them to those that hold them.
+/// In parallel each rank reads an equal part and sends the markers to the ranks that store them.
 template <int D>
 void Water<D>::restore_markers(const Checkpoint& from) {
     int at = 0;
@@ -119,16 +119,16 @@ template <int D>
 void Water<D>::restore(const Checkpoint& from) {
     const OwnPlanes mine = held_.looking();
     state_.time = from.get_value<real>("time");
-    if (bodies_ || solids_.moving() || state_.time == 0) state_.restore(from);  // where solids are placed anew
+    if (bodies_ || solids_.moving() || state_.time == 0) state_.restore(from);  // where solids are placed again
     if (bodies_) bodies_->restore(from, solids_);
     place_solids(state_.time);
-    state_.restore(from);  // what is liquid, after the solids have said what is not
+    state_.restore(from);  // liquid flags after the solids' flags
     surface_.restore(from);
     leapfrog_.restore(from);
     if (volume_.is_saved(from))
         volume_.restore(from);
     else
-        volume_.start(surface_, state_);  // a file from before there was one
+        volume_.start(surface_, state_);  // files of older versions have no such block
     restore_markers(from);
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");

@@ -7,8 +7,8 @@
 
 namespace weir::water {
 
-/// One step of the marker-and-cell method with a free surface. Enters and leaves with a velocity that is known throughout the band of
-/// the level set and free of divergence in the liquid, to the tolerance of the pressure.
+/// One step of the marker-and-cell method with a free surface. Before and after it the velocity is known throughout the band of the level
+/// set, and divergence-free in the liquid to the tolerance of the pressure.
 template <int D>
 StepReport Water<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
@@ -18,10 +18,10 @@ StepReport Water<D>::step(real dt) {
     move_solids(state_.time + dt);
     move_surface(dt);                                   // Dx/Dt = u for markers, Dφ/Dt = 0
     pour_and_drain(dt);                                 // emitters, open sides
-    redistribute_markers();                             // no holes, no heaps
-    correct_surface(dt);                                // φ joins escaped markers, and is a distance again
+    redistribute_markers();                             // keeps the number of markers per cell in bounds
+    correct_surface(dt);                                // particle level-set correction, redistancing
     conduct(dt);                                        // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
-    momentum_to_faces(dt);                              // u* = what the markers carry, or D u/Dt = 0 on the grid
+    momentum_to_faces(dt);                              // u* from the markers, or D u/Dt = 0 on the grid
     forces(kick);                                       // u* += dt f, (I − dt ν∇²) u* = ...
     const poisson::Report poisson = project(dt, kick);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
@@ -43,7 +43,7 @@ StepReport Water<D>::step(real dt) {
             .viscous_turns = friction_ ? friction_->turns : 0};
 }
 
-/// The velocity becomes that of the middle of this step. Answers how long forces act in it.
+/// Advances the velocity to the middle of this step. Returns the duration of the forces.
 template <int D>
 real Water<D>::to_middle(real dt) {
     const auto works = [&](const Emitter<D>& emitter) { return emitter.works(state_.time, state_.time + dt); };
@@ -53,8 +53,7 @@ real Water<D>::to_middle(real dt) {
     return leapfrog_.kick(dt, options_.transfer == Transfer::grid);
 }
 
-/// The velocity's rate of change as the scene begins: what a step of dt without motion makes of it. The account of interactive
-/// forcing stays as it was.
+/// Initial rate of change of the velocity: the result of a step of dt without motion. The record of interactive forcing is restored.
 template <int D>
 void Water<D>::find_rate(real dt) {
     const Hand account = hand_ ? *hand_ : Hand();
@@ -99,7 +98,7 @@ void Water<D>::place_solids(real t) {
     if (t > 0) volume_.see_solids(surface_, state_);
 }
 
-/// Where solids have been placed anew.
+/// Called after solids were placed.
 template <int D>
 void Water<D>::mark_closed() {
     for (const CellBox<D>& box : solids_.changed())
@@ -134,8 +133,8 @@ void Water<D>::correct_surface(real dt) {
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 
-/// The surface falls by what evaporates, the same everywhere. What has left is what the level set has lost by it; markers that are outside
-/// now go with it.
+/// Lowers the surface by the evaporated volume, uniformly. The volume recorded is the change of the level set; markers now outside are
+/// removed.
 template <int D>
 void Water<D>::evaporate(real dt) {
     if (!heat_) return;
@@ -160,7 +159,7 @@ void Water<D>::conduct(real dt) {
     heat_->conduct(state_, volume_target_, surface_.area(), dt);
 }
 
-/// Where ice resists, the velocity follows the pressure less than elsewhere.
+/// Drag of ice reduces the response of the velocity to pressure.
 template <int D>
 void Water<D>::slow(real dt) {
     if (!heat_) return;
@@ -181,9 +180,9 @@ void Water<D>::momentum_to_faces(real dt) {
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), 2);  // liquid cells without a marker, faces at the edge
     if (keeps_volume_) still_air<D>(state_.u, known_);
     if (options_.transfer == Transfer::flip) {
-        // Beside a body the liquid's gain is counted from what the liquid brought: from what the body brought, all that stops a body that
-        // falls on water would be given to the markers there. extend_velocity() has the rest; it looks also at faces that no marker is
-        // near, so that all of before_ must be of this step: what stood there of earlier ones no checkpoint has.
+        // With bodies, FLIP's difference is taken relative to the liquid's own velocity. Relative to the body's, the impulse that stops a
+        // falling body would be given to the markers there. extend_velocity() completes before_. It also reads faces without a marker
+        // nearby, so before_ must be set everywhere in this step: checkpoints do not contain older values.
         for (int a = 0; bodies_ && a < D; ++a) before_[a] = state_.u[a];
         in_solids_.constrain(state_.u, known_, frame_);
         sync_periodic(state_.u, state_.sides);
@@ -194,7 +193,8 @@ void Water<D>::momentum_to_faces(real dt) {
     leapfrog_.keep(state_.u, known_);
 }
 
-/// What friction feels of the forces it takes from the last pressure, so that water at rest feels none; project() sees to the rest.
+/// Friction uses the last pressure in addition to the forces, so that liquid at rest has no friction; project() iterates to the new
+/// pressure.
 template <int D>
 void Water<D>::forces(real dt) {
     if (viscosity_) remember_velocity();
@@ -231,7 +231,7 @@ void Water<D>::extend_velocity(real dt) {
     mark_liquid_faces();
     impose_emitters(dt, &Emitter<D>::Face::moves);
     extrapolate_(state_.u, known_, surface_, in_solids_.faces(), surface_.layers() - 1);
-    // FLIP's gain beside a body is counted from what the liquid brought as the body, at its speed of now, lets it pass.
+    // With bodies, FLIP's difference uses the liquid's velocity before forces, constrained by the body's present velocity.
     if (bodies_ && options_.transfer == Transfer::flip) in_solids_.constrain(before_, known_, frame_);
     in_solids_.constrain(state_.u, known_, frame_);
     sync_periodic(state_.u, state_.sides);
@@ -274,7 +274,7 @@ void Water<D>::advect_faces(real dt) {
         });
 }
 
-/// Faces whose velocity the pressure decided, as far as solids leave them open, and those that walls and inflows prescribe.
+/// Marks the faces updated by the pressure, as far as solids leave them open, and those prescribed by walls and inflows.
 template <int D>
 void Water<D>::mark_liquid_faces() {
     using poisson::Cell;
@@ -297,7 +297,7 @@ void Water<D>::mark_liquid_faces() {
     in_solids_.forget(known_);
 }
 
-/// The walls' and inflows' own faces, and those that solids close.
+/// Marks the faces of walls and inflows, and those closed by solids.
 template <int D>
 void Water<D>::set_fixed_faces() {
     sync_periodic(state_.u, state_.sides);
@@ -315,8 +315,8 @@ void Water<D>::set_fixed_faces() {
     }
 }
 
-/// What the markers hold of liquid and the level set has lost, or the reverse, goes back to it: φ moves by the missing volume over the
-/// surface's area, at most 0.02 h a step, less than motion itself moves it by. Markers in the air count by their own volume.
+/// Volume control: the difference between the liquid of the markers and that of the level set moves φ by the missing volume over the
+/// surface's area, at most 0.02 h per step, which is less than the motion. Markers in the air count by their own volume.
 template <int D>
 void Water<D>::control_volume() {
     if (!options_.volume_control) return;
@@ -326,7 +326,7 @@ void Water<D>::control_volume() {
     volume_shift_ += std::abs(surface_.regain(missing));
 }
 
-/// In the cells beside the surface, between which the pressure jumps.
+/// In the cells beside the surface, where the pressure jumps.
 template <int D>
 void Water<D>::curvature() {
     if (options_.sigma == 0) return;
@@ -340,7 +340,7 @@ void Water<D>::curvature() {
     refresh(curvature_, frame_.periodic(D - 1));
 }
 
-/// Of the faces that the pressure decided, and of the sides that prescribe theirs.
+/// Over the faces updated by the pressure, and those prescribed by sides.
 template <int D>
 real Water<D>::max_speed_rate() const {
     real rate = 0;
@@ -384,16 +384,15 @@ real Water<D>::max_speed_rate() const {
     return rate;
 }
 
-/// CFL with the speed that gravity adds within the step, the gravity wave of two cells (ω dt ≤ 1, where explicit coupling of surface and
-/// pressure is stable to 2), half of what has passed since a thick liquid began to flow,
-/// which it does within h²/ν and more, and the capillary wave of two cells (Brackbill, Kothe & Zemach 1992: dt ≤ √(ρ h³ / (4π σ)) for one
-/// fluid).
+/// The smallest of these limits. CFL with the speed gained from gravity within the step. The gravity wave of two cells (ω dt ≤ 1; explicit
+/// coupling of surface and pressure is stable up to 2). For thick liquids max(t/2, h²/ν), which resolves the start of the flow. The
+/// capillary wave of two cells (Brackbill, Kothe & Zemach 1992: dt ≤ √(ρ h³ / (4π σ)) for one fluid).
 template <int D>
 real Water<D>::advised_dt() const {
     const real h = frame_.h_min(), g = norm(gravity_);
     real dt = infinity;
     const real rate =
-        std::max({rate_, solids_.max_rate(state_), bodies_ ? bodies_->bodies().max_rate(h) : 0});  // water at rest sees one coming
+        std::max({rate_, solids_.max_rate(state_), bodies_ ? bodies_->bodies().max_rate(h) : 0});  // a body may approach water at rest
     if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
     if (g > 0) dt = std::min(dt, std::sqrt(h / (pi * g)));
     if (options_.sigma > 0) dt = std::min(dt, std::sqrt(state_.rho * h * h * h / (4 * pi * options_.sigma)));
@@ -407,8 +406,8 @@ real Water<D>::advised_dt() const {
     return std::min(dt, effects_.max_dt(state_));
 }
 
-/// As advised_dt(), at the edge: two cells a step, the width of the hat through which markers and faces see each other, and ω dt = 2 for
-/// the shortest waves, whose surface moves with the velocity of before (gravity: ω² = g k, tension: ω² = σ k³/ρ, k = π/h).
+/// As advised_dt(), at the stability limit. Motion: two cells per step, the width of the hat function between markers and faces. Shortest
+/// waves: ω dt = 2, since the surface moves with the previous velocity (gravity: ω² = g k, tension: ω² = σ k³/ρ, k = π/h).
 template <int D>
 StepLimit Water<D>::stable_dt() const {
     constexpr real cells = 2;

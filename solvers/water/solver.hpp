@@ -1,6 +1,6 @@
-// The solver "mac_water": liquid with a free surface on a MAC grid, with markers, a level set of the markers, and second-order surface
-// pressure; air is empty (p = σ κ on the surface). Harlow & Welch 1965; Foster & Fedkiw 2001; Enright et al. 2002; Zhu & Bridson 2005;
-// Batty et al. 2007; Bridson 2015.
+// The solver "mac_water": liquid with a free surface on a MAC grid, with markers, a level set corrected by the markers, and second-order
+// surface pressure; air is empty (p = σ κ on the surface). Harlow & Welch 1965; Foster & Fedkiw 2001; Enright et al. 2002; Zhu & Bridson
+// 2005; Batty et al. 2007; Bridson 2015.
 #pragma once
 #include "core/effects.hpp"
 #include "core/held_planes.hpp"
@@ -34,17 +34,17 @@ namespace weir::water {
 
 using namespace surface;  // the words of the grid and of its free surface are the solver's own
 
-/// Nanoseconds that a step takes of each plane of cells: as the scene begins, or of a state; of one that each rank has its own part of all
-/// ranks ask together.
+/// Estimated time of a step per plane of cells [ns], for the start of a scene or for a state. Collective for a state in distributed
+/// storage.
 std::vector<std::int64_t> work_of_planes(const scene::Scene& scene, const Checkpoint* state = nullptr);
 
 /// The registered solver "mac_water".
 scene::SolverKind kind();
 
-/// What a rank sends in a step of a scene that is cut so.
+/// Estimate of what a rank sends in a step of a scene with this partition.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
 
-/// How momentum travels: on the grid by semi-Lagrangian advection, or on the markers.
+/// Advection of momentum: on the grid (semi-Lagrangian), or on the markers.
 enum class Transfer { grid, pic, flip, apic };
 
 struct WaterOptions {
@@ -61,14 +61,14 @@ struct WaterOptions {
     explicit WaterOptions(const scene::Scene& scene);
 };
 
-/// What the solves for friction and for pressure of one step have in common (friction.cpp).
+/// Shared data of the friction and pressure solves of one step (friction.cpp).
 template <int D>
 struct StepOfFriction {
-    MacVelocity<D> before, forces;  // u as the step begins; dt f
+    MacVelocity<D> before, forces;  // u at the start of the step; dt f
     std::array<Grid<real, D>, D> felt;
-    Grid<real, D> p, residual;  // the pressure that felt is of; F(p) − p
+    Grid<real, D> p, residual;  // the pressure used in felt; F(p) − p
     AndersonMixing<D> mixing;
-    int turns = 0;  // after the first
+    int turns = 0;  // iterations after the first
     explicit StepOfFriction(const MacState<D>& state);
     std::size_t bytes() const;
 };
@@ -94,7 +94,7 @@ public:
     void restore(const Checkpoint& from) override;
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
-    /// Over ranks, of what each has computed.
+    /// In parallel, each rank checks its own planes.
     bool checks_itself() const override { return !held_.cut().empty(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
@@ -148,7 +148,7 @@ private:
     void extend_velocity(real dt);
     void momentum_to_markers(real dt);
 
-    // Over ranks (ranks.cpp)
+    // In parallel (ranks.cpp)
     void bring_faces(real dt);
     std::array<std::int64_t, 2> let_depart();
     void check_own() const;
@@ -176,42 +176,42 @@ private:
     HeldPlanes held_;
     MacState<D> state_;
     Frame<D> frame_;
-    std::unique_ptr<BodiesInFlow<D>> bodies_;  // none where the scene has none
+    std::unique_ptr<BodiesInFlow<D>> bodies_;  // nullptr where the scene has none
     SolidPlacement<D> solids_;
     Effects<MacState<D>> effects_;
     Vec<D> gravity_{};
     std::vector<Emitter<D>> emitters_;
     Grid<std::uint8_t, D> closed_, near_solid_;
-    Grid<std::uint8_t, D> not_solved_for_;  // closed, or an emitter's; allocated only if the scene has emitters
+    Grid<std::uint8_t, D> not_solved_for_;  // closed cells and those of emitters; allocated only if the scene has emitters
     FacesInSolids<D> in_solids_;
 
     Markers<D> markers_;
     LevelSet<D> surface_;
-    LiquidVolume<D> volume_;  // what the surface is to enclose
+    LiquidVolume<D> volume_;  // the volume that the surface must enclose
     bool keeps_volume_ =
-        true;  // not beside solids that move, with volume_control, nor with tension: a corrected surface keeps bodies and drops from rest
+        true;  // false with free bodies, volume_control or surface tension: the correction would disturb bodies and drops at rest
     SurfacePressure<D> pressure_;
     Extrapolation<D> extrapolate_;
     FaceSums<D> sums_;
     FaceMarks<D> known_;
     Leapfrog<D> leapfrog_;
-    MacVelocity<D> before_;  // faces as the markers left them, or as they were before advection
+    MacVelocity<D> before_;  // faces as transferred from the markers, or before advection
     Grid<real, D> curvature_;
     std::unique_ptr<SurfaceViscosity<D>> viscosity_;
-    std::unique_ptr<StepOfFriction<D>> friction_;  // none without viscosity
-    std::unique_ptr<LiquidHeat<D>> heat_;          // none where the scene names no substance
-    real volume_target_ = 0;                       // what the ledger says: start + poured in − drained [m^D]
+    std::unique_ptr<StepOfFriction<D>> friction_;  // nullptr without viscosity
+    std::unique_ptr<LiquidHeat<D>> heat_;          // nullptr where the scene names no substance
+    real volume_target_ = 0;                       // the volume balance: start + poured in − drained [m^D]
     std::int64_t steps_ = 0;
     real rate_ = 0;                            // max |u|/h over known faces [1/s]
-    int up_ = 1;                               // the axis that gravity is most along
-    std::int64_t escaped_ = 0, reseeded_ = 0;  // over ranks: by this one
-    real volume_shift_ = 0;                    // how far volume control moved the surface, all steps together [m]
-    std::shared_ptr<Hand> hand_;               // none where the scene names none
+    int up_ = 1;                               // the axis closest to gravity
+    std::int64_t escaped_ = 0, reseeded_ = 0;  // in parallel: on this rank
+    real volume_shift_ = 0;                    // total displacement by volume control [m]
+    std::shared_ptr<Hand> hand_;               // nullptr where the scene has none
     Passes passes_;
-    int reach_ = 0;  // planes beyond the cuts that motion reads in this step
+    int reach_ = 0;  // ghost planes that motion reads in this step
     mutable bool whole_ = true,
-                 markers_whole_ = true;  // all planes stand here, or those that this rank looks at; all markers in all_markers_
-    mutable Markers<D> all_markers_;     // over ranks, when somebody looks
+                 markers_whole_ = true;  // other ranks' or ghost planes are up to date; so is all_markers_
+    mutable Markers<D> all_markers_;     // in parallel: gathered on request
 };
 
 }  // namespace weir::water

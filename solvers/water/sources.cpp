@@ -1,11 +1,11 @@
-// What enters and leaves: emitters, open sides; and the repair of the markers' distribution.
+// Sources and sinks of liquid: emitters, open sides; and redistribution of markers.
 #include "water/solver.hpp"
 
 namespace weir::water {
 
 namespace {
 
-/// f(I) for I in [lo, hi), one after the other: what is added to a list keeps one order.
+/// f(I) for I in [lo, hi), serially: lists are filled in a fixed order.
 template <int D, class F>
 void for_each_serial(const Index<D>& lo, const Index<D>& hi, F&& f) {
     Index<D> I = lo;
@@ -20,7 +20,7 @@ void for_each_serial(const Index<D>& lo, const Index<D>& hi, F&& f) {
     }
 }
 
-/// Which of a cell's half cells a point lies in.
+/// The half cell that contains a point.
 template <int D>
 int half_of(const Vec<D>& x, const Vec<D>& centre) {
     int half = 0;
@@ -30,7 +30,7 @@ int half_of(const Vec<D>& x, const Vec<D>& centre) {
 
 }  // namespace
 
-/// Adds markers to half cells of I that have none, up to `wanted` in the cell, with the velocity of the liquid there.
+/// Adds markers to empty half cells of I, up to `wanted` markers in the cell, with the liquid's velocity.
 template <int D>
 bool Water<D>::fill_cell(const Index<D>& I, int wanted) {
     const std::size_t cell = surface_.phi.linear(I);
@@ -56,23 +56,22 @@ bool Water<D>::is_free(const Vec<D>& x) const {
     return !solids_.any() || solids_.solids().distance(x) > 0;
 }
 
-/// A jittered lattice of half cells moves with the emitter's velocity; its points become markers as they enter the emitter, all of them
-/// that stand in the air when it starts. So what is poured is area × speed × time, neither more where markers crowd nor less where they are
-/// slow. Markers have already moved: the lattice is where it is at the end of the step, and in the first one those count that have come out
-/// again.
+/// A jittered lattice of half cells moves with the emitter's velocity. Its points become markers as they enter the emitter; when it starts,
+/// all points in air inside it do. So the poured volume is area × speed × time, independent of the markers' density and speed. Markers have
+/// already moved: the lattice is that at the end of the step, and in the first step points that have left the emitter again count too.
 template <int D>
 std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
     std::int64_t poured = 0;
     const real from = std::max(state_.time, emitter.start), to = std::min(state_.time + dt, emitter.end);
     const real running = to - emitter.start;
-    const bool starts = state_.time <= emitter.start;  // this step is the first in which it works
-    // A point stands up to a half cell above the half cell that it is counted by: below the lowest one at a wall there is one more.
+    const bool starts = state_.time <= emitter.start;  // this step is the first in which it is open
+    // A point lies up to a half cell above its half cell, so the loop starts one cell below the lowest one at a wall.
     for_each_serial(emitter.lo - Index<D>::constant(1), emitter.hi, [&](const Index<D>& I) {
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             Vec<D> x;
             std::array<std::int64_t, D> k;
             std::uint64_t key = 0;
-            for (int d = 0; d < D; ++d) {  // the lattice point whose undisturbed place is nearest to this half cell
+            for (int d = 0; d < D; ++d) {  // the lattice point whose unjittered position is closest to this half cell
                 const real travelled = emitter.velocity[d] * running / (0.5 * frame_.h[d]);
                 k[static_cast<std::size_t>(d)] = 2 * I[d] + (sub >> d & 1) - static_cast<std::int64_t>(std::floor(travelled));
                 key = key * 0x100000001B3u + static_cast<std::uint64_t>(k[static_cast<std::size_t>(d)]);
@@ -100,8 +99,8 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
     return poured;
 }
 
-/// Markers beyond open sides go, and take their share of the ledger's volume with them: it is redistribute_markers() that says how many
-/// there are, so no marker stands for one volume for ever. Emitters pour a lattice of half cells.
+/// Removes markers beyond open sides; the volume balance decreases by their share, because reseeding changes the number of markers and no
+/// marker has a fixed volume. Open emitters add markers.
 template <int D>
 void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
@@ -116,8 +115,8 @@ void Water<D>::pour_and_drain(real dt) {
     if (hand_) pour_and_drain_by_hand();
 }
 
-/// Poured liquid fills the half cells of the brush in which there is no marker, one each, so that it comes as fast as there is room; a
-/// drain takes the markers that it covers. The level set follows, and the ledger.
+/// Interactive pouring adds a marker to each empty half cell of the brush, so the rate is limited by free space. Draining removes the
+/// markers under the brush. Level set and volume balance are updated.
 template <int D>
 void Water<D>::pour_and_drain_by_hand() {
     const auto brush = hand_->at<D>(state_.time);
@@ -164,7 +163,7 @@ void Water<D>::pour_and_drain_by_hand() {
     if (markers_.count() != all || !pours) markers_.sort(frame_);
 }
 
-/// Faces of an emitter's cells have its velocity: that of the liquid inside, or what the pressure sees of it (emitters.hpp).
+/// Sets the faces of an emitter's cells: to the velocity of the liquid inside, or to the flux seen by the pressure (emitters.hpp).
 template <int D>
 void Water<D>::impose_emitters(real dt, real Emitter<D>::Face::*speed) {
     for (const auto& emitter : emitters_) {
@@ -182,7 +181,7 @@ void Water<D>::impose_emitters(real dt, real Emitter<D>::Face::*speed) {
     }
 }
 
-/// So have the markers inside. FLIP gives them differences alone: what has been prescribed again and again would add up.
+/// Sets the velocity of markers inside. With FLIP markers get only differences, and the prescribed change would accumulate.
 template <int D>
 void Water<D>::carry_emitters_velocity(real dt) {
     for (const auto& emitter : emitters_) {
@@ -196,7 +195,7 @@ void Water<D>::carry_emitters_velocity(real dt) {
     }
 }
 
-/// Cells without an unknown pressure: inside solids, and those of emitters that work in this step.
+/// Cells without a pressure unknown: inside solids, and those of open emitters.
 template <int D>
 const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real dt) {
     if (emitters_.empty()) return closed_;
@@ -211,8 +210,8 @@ const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real dt) {
     return not_solved_for_;
 }
 
-/// Every few steps, deep in the liquid: cells with fewer than half of the markers get new ones in their empty half cells, cells with more
-/// than three times as many lose the last ones. Neither changes the ledger: the level set says how much liquid there is.
+/// Reseeding, every few steps: cells deep in the liquid with fewer than half of the markers get new ones in their empty half cells; cells
+/// with more than three times as many lose the last ones. The volume balance does not change: the level set defines the volume.
 template <int D>
 void Water<D>::redistribute_markers() {
     constexpr int every = 4, few = Markers<D>::per_cell / 2, many = 3 * Markers<D>::per_cell;
@@ -229,7 +228,7 @@ void Water<D>::redistribute_markers() {
         }
         const int count = markers_.in_cell(cell);
         heaps |= count > many;
-        const bool bare = count == 0 && surface_.phi[cell] < -0.3 * frame_.h_min();  // liquid that has lost its markers
+        const bool bare = count == 0 && surface_.phi[cell] < -0.3 * frame_.h_min();  // liquid without markers
         if (count >= few || (surface_.phi[cell] > deep && !bare) || (!closed_.empty() && closed_[cell])) continue;
         const Index<D> I = frame_.index_of(cell);
         const std::size_t before = markers_.count();

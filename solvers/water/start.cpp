@@ -1,4 +1,4 @@
-// What a scene of liquid is at t = 0: the level set of its shapes, its markers, its velocity.
+// Initial state of a scene with liquid: the level set of its shapes, its markers, its velocity.
 #include "core/cut_by_work.hpp"
 #include "geometry/hand.hpp"
 #include "scene/names.hpp"
@@ -76,7 +76,7 @@ Water<D>::Water(const scene::Scene& scene)
     whole_ = !held_.alone();
 }
 
-/// Friction takes the pressure of before: of liquid at rest under its weight, zero in its highest cell.
+/// The initial pressure for friction: hydrostatic, zero in the highest liquid cell.
 template <int D>
 void Water<D>::stick_to_bodies(const scene::Scene& scene) {
     refuse_friction_of_before(*scene.effect("viscosity"), scene);
@@ -91,7 +91,7 @@ void Water<D>::stick_to_bodies(const scene::Scene& scene) {
     viscosity_->hold_bodies(state_);
 }
 
-/// Emitters, and sides through which liquid flows in: those are emitters of one layer of cells.
+/// Emitters, including inflow sides, which are emitters of one layer of cells.
 template <int D>
 void Water<D>::read_emitters(const scene::Scene& scene) {
     if (scene.has("emitters"))
@@ -124,7 +124,7 @@ void Water<D>::read_emitters(const scene::Scene& scene) {
     if (!emitters_.empty()) not_solved_for_ = Grid<std::uint8_t, D>(frame_.cells);
 }
 
-/// An emitter that solids cover wholly gives nothing.
+/// Rejects emitters wholly covered by solids.
 template <int D>
 void Water<D>::refuse_buried_emitters(const scene::Scene& scene) const {
     const std::size_t named = scene.has("emitters") ? scene.root().tables("emitters").size() : 0;
@@ -148,7 +148,7 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
         start_level_set<D>(*geometry::unite<D>(shapes), solids_.solids(), frame_, surface_);
     }
     volume_target_ = surface_.volume();
-    // Beside a free body the surface is only as good as its continuation, and what moves it there is felt by the body.
+    // beside a free body the surface depends on extrapolation, and corrections of it would act on the body
     keeps_volume_ = !bodies_ && options_.sigma == 0 && !options_.volume_control;
     volume_.start(surface_, state_);
     if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
@@ -158,7 +158,7 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
 template <int D>
 void Water<D>::seed_markers() {
     const std::size_t cells = product(frame_.cells);
-    refresh_faces(state_.u, frame_, 3);  // markers of a plane beyond the cuts look around themselves
+    refresh_faces(state_.u, frame_, 3);  // ghost markers of one plane read the faces around them
     if (!over_ranks()) markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);

@@ -1,4 +1,4 @@
-// What a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of what stands in surface/, pass by pass.
+// Estimate of what a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of surface/, pass by pass.
 #include "poisson/traffic.hpp"
 #include "geometry/wet_part.hpp"
 #include "staggered/own_planes.hpp"
@@ -11,7 +11,7 @@ namespace weir::water {
 
 namespace {
 
-/// What the formula does not know the messages of.
+/// Keys whose messages the estimate does not include.
 std::vector<std::string> not_counted(const scene::Scene& scene) {
     std::vector<std::string> keys;
     const auto lists = [&](const char* key) { return scene.has(key) && !scene.root().tables(key).empty(); };
@@ -49,17 +49,17 @@ public:
     StepTraffic sent() {
         move();
         find_surface();
-        sync();  // what the markers brought, beside walls
+        sync();  // velocity from the markers, at walls
         surface_.continue_velocity(tally_, 2);
         sync();
-        sync();  // what forces leave
+        sync();  // after the forces
         if (viscous()) rub();
         project();
         surface_.continue_velocity(tally_, surface_.layers - 1);
         sync();
-        for (int a = 0; a < D; ++a) largest(faces_[static_cast<std::size_t>(a)].count);  // the fastest flow
+        for (int a = 0; a < D; ++a) largest(faces_[static_cast<std::size_t>(a)].count);  // the maximum speed
         if (transfer_ != "grid") tally_.refresh(faces_, 1);                              // the velocity, or FLIP's difference
-        tally_.everywhere(sizeof(int), 1, sizeof(int));                                  // whether all is finite
+        tally_.everywhere(sizeof(int), 1, sizeof(int));                                  // finite check
         tally_run(tally_);
         tally_.sent().besides = not_counted(scene_);
         return tally_.sent();
@@ -76,7 +76,7 @@ private:
         tally_.refresh({cells_}, reach_, 2);  // the level set, before and after it moves
         migrate();
     }
-    /// How many markers go, and those that neighbours know beyond the cuts: of the planes beside them.
+    /// Migrating markers, and ghost markers of the planes at the subdomain boundaries.
     void migrate() {
         const int ranks = tally_.cut().ranks(), rank = tally_.rank();
         const std::size_t row = sizeof(int) * static_cast<std::size_t>(ranks);
@@ -94,7 +94,7 @@ private:
         if (rank + 1 < ranks || ring_) tally_.parcel(bytes_in(last));
         if (open) tally_.everywhere(sizeof(std::int64_t), 2, sizeof(std::int64_t) * static_cast<std::size_t>(ranks));
     }
-    /// The distance; then what is liquid, and how it is joined.
+    /// Redistancing; then the liquid flags and the matrix.
     void find_surface() {
         surface_.liquid_parts(tally_);
         surface_.distance(tally_);
@@ -103,11 +103,11 @@ private:
         Index<D> lines = n_;
         lines[0] = 1;
         const auto ranks = static_cast<std::size_t>(tally_.cut().ranks());
-        tally_.everywhere(sizeof(std::int64_t), 1, sizeof(std::int64_t) * ranks);  // is there liquid?
+        tally_.everywhere(sizeof(std::int64_t), 1, sizeof(std::int64_t) * ranks);  // whether there is liquid
         tally_.refresh({plane_of<D>(n_, sizeof(poisson::Cell)), plane_of<D>(lines, sizeof(Extent))}, 2);
         sync();  // weights above the last cells
     }
-    /// Velocity and the wet parts of cells beside the cuts; then in each iteration a direction, and two sums of products.
+    /// Velocity and liquid fractions at the subdomain boundaries; then per iteration a direction and two inner products.
     void rub() {
         tally_.refresh(faces_, 1);
         tally_.refresh({cells_}, 2);
@@ -118,8 +118,8 @@ private:
     }
     /// Marks and values, two layers.
     void continue_felt() { tally_.refresh(faces_, 1, 4); }
-    /// Friction and pressure by turns, some four messages in a thousand too few where there are any: what is compared, how pressures are
-    /// mixed, the velocity on both sides of cuts.
+    /// Coupling iterations of friction and pressure. The estimate is low by some four messages in a thousand where there are any: norms,
+    /// mixing of pressures, and the velocity at subdomain boundaries.
     void balance_friction() {
         const int turns = shape_.viscous_turns;
         for (int turn = 0; turn <= turns; ++turn) {
@@ -134,7 +134,7 @@ private:
             solve(1);
         }
     }
-    /// Wet rows of this rank, one run each, as the scene begins; and those of the plane below it.
+    /// Rows of this rank that contain liquid at the start, one run each; and those of the plane below.
     poisson::Runs runs() const {
         const int first = tally_.cut().begin(tally_.rank()), end = tally_.cut().end(tally_.rank(), n_[D - 1]);
         const int rows = D == 2 ? 1 : n_[1];
@@ -145,7 +145,7 @@ private:
         return runs;
     }
     void solve(int iterations) {
-        if (!windowed_) return tally_.gather(cells_, 2);  // right-hand side and guess: each solves for itself
+        if (!windowed_) return tally_.gather(cells_, 2);  // right-hand side and guess: replicated solve
         poisson::tally_multigrid<D>(n_, periodic_, weight_, false, iterations, tally_);
         tally_.refresh({cells_}, 1);
     }
@@ -154,7 +154,7 @@ private:
         solve(shape_.iterations - shape_.viscous_turns);
         if (viscous()) balance_friction();
         sync();
-        largest(n_[D - 1]);  // of what diverges
+        largest(n_[D - 1]);  // maximum divergence
     }
 
     const scene::Scene& scene_;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int slab_planes = 4;  // at least 2, so that slabs two apart share no face
 
-/// Position of sample (lo or hi of every axis) relative to the marker, per axis, in metres: what APIC's affine part multiplies.
+/// Position of a sample (lo or hi of every axis) relative to the marker, per axis, in metres: the argument of APIC's affine part.
 template <int D>
 Vec<D> lower_arm(const Frame<D>& frame, const Stencil<D>& stencil, int a) {
     Vec<D> arm;
@@ -17,7 +17,7 @@ Vec<D> lower_arm(const Frame<D>& frame, const Stencil<D>& stencil, int a) {
     return arm;
 }
 
-/// One marker with the gradient that APIC gives it.
+/// One marker with its APIC gradient.
 template <int D>
 void scatter_affine(const Markers<D>& m, std::size_t p, const Frame<D>& frame, FaceSums<D>& sums) {
     const Stencil<D> stencil(frame, m.position(p));
@@ -43,13 +43,13 @@ void scatter_affine(const Markers<D>& m, std::size_t p, const Frame<D>& frame, F
     }
 }
 
-/// What the markers of one cell give to the faces around it, row by row along x. (Σ w v, Σ w) of a face lie side by side as in FaceSum, so
-/// one vector holds the faces of a row: two of them along x, three nodes across it. A marker adds to a row what its hat along x gives to
-/// each face, times its weight of the row; the rows stay in registers until all markers of the cell have been seen.
+/// Scatters the markers of one cell to the faces around it, row by row along x. (Σ w v, Σ w) of a face are adjacent as in FaceSum, so one
+/// vector holds the faces of a row: two of them along x, three nodes across it. A marker adds its hat function along x times its weight of
+/// the row. The rows stay in registers until all markers of the cell are processed.
 template <int D>
 class CellSums {
 public:
-    static constexpr int most = 4 * marker_lanes;  // markers at once
+    static constexpr int most = 4 * marker_lanes;  // markers per batch
 
     WEIR_LANES CellSums(const Markers<D>& m, const Frame<D>& frame, const Index<D>& I, std::size_t p, int count) {
         for (int first = 0; first < count; first += marker_lanes) {
@@ -67,7 +67,7 @@ public:
     }
 
 private:
-    // Rows of faces along x, y, z: (3, 2, 3) along y times (3, 3, 2) along z.
+    // rows of faces along x, y, z: (3, 2, 3) along y times (3, 3, 2) along z
     static constexpr std::size_t x_rows = D == 2 ? 3 : 9, y_rows = D == 2 ? 2 : 6, z_rows = D == 2 ? 1 : 6;
     using Quad = double __attribute__((vector_size(32)));
     using Pair = double __attribute__((vector_size(16)));
@@ -90,11 +90,11 @@ private:
                 }
             }
     }
-    /// All markers whose weights are known; v: their velocities.
+    /// Adds all markers whose weights are computed; v: their velocities.
     WEIR_LANES void add_all(const std::array<const real*, D>& v, int count) {
         Quad x[x_rows]{};
         Lanes y[y_rows]{}, z[z_rows]{};
-        const auto one = [](real speed) {  // what goes with each weight along x: momentum, weight, momentum, ...
+        const auto one = [](real speed) {  // factors of the weights along x: momentum, weight, momentum, ...
             return __builtin_shufflevector(Lanes{} + speed, Lanes{} + 1, 0, 9, 2, 11, 4, 13, 6, 15);
         };
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
@@ -166,7 +166,7 @@ private:
     Lanes y_[y_rows], z_[z_rows];
 };
 
-/// The markers of one cell to all faces around it.
+/// Scatters the markers of one cell to all faces around it.
 template <int D>
 void scatter_cell(const Markers<D>& m, const Index<D>& I, std::size_t begin, std::size_t end, const Frame<D>& frame, FaceSums<D>& sums) {
     for (std::size_t p = begin; p < end; p += CellSums<D>::most) {
@@ -175,7 +175,7 @@ void scatter_cell(const Markers<D>& m, const Index<D>& I, std::size_t begin, std
     }
 }
 
-/// A periodic axis has its first face twice: both copies get the sum.
+/// A periodic axis stores its first face twice: both copies get the sum.
 template <int D>
 void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
     const AllPlanes all;
@@ -184,7 +184,7 @@ void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
         auto& sum = sums.sum[static_cast<std::size_t>(a)];
         Index<D> lo{}, hi = sum.extent();
         hi[a] = 1;
-        if (a == D - 1 && !(sum.store().holds(0) && sum.store().holds(frame.cells[a]))) continue;  // nobody here reads them
+        if (a == D - 1 && !(sum.store().holds(0) && sum.store().holds(frame.cells[a]))) continue;  // this rank does not read them
         for_each_held(sum, lo, hi, [&](Index<D> I) {
             Index<D> last = I;
             last[a] = frame.cells[a];
@@ -195,7 +195,7 @@ void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
     }
 }
 
-/// f(place, count) on that part of each line of faces which is within reach of markers, g(place, count) on the rest.
+/// f(index, count) on the part of each line of faces within reach of markers, g(index, count) on the rest.
 template <int D, class F, class G>
 void for_faces_near(const Markers<D>& markers, const Frame<D>& frame, const Index<D>& extent, F&& f, G&& g) {
     const auto row = [&](const Index<D>& I) {
@@ -229,7 +229,7 @@ template <int D>
 void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums<D>& sums, MacVelocity<D>& u,
                       std::type_identity_t<std::array<Grid<std::uint8_t, D>, D>>& known) {
     const auto nothing = [](std::size_t, std::size_t) {};
-    // Over ranks: those beyond the cuts give to faces there too, whose sums are not whole and not asked for.
+    // in parallel: ghost markers also add to ghost faces, whose sums are incomplete and unused
     for (auto& sum : sums.sum) {
         const AllPlanes all;
         for_faces_near(
@@ -246,7 +246,7 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
             for (std::size_t p = begin; p < end; ++p) scatter_affine(markers, p, frame, sums);
         });
     };
-    const int paired = slabs - slabs % 2;  // an odd last slab touches the first one around a periodic axis: it goes alone
+    const int paired = slabs - slabs % 2;  // an odd last slab borders the first one around a periodic axis: it runs separately
     for (int colour = 0; colour < 2; ++colour) parallel_for(0, paired / 2, [&](int i) { scatter_slab(2 * i + colour); });
     if (paired < slabs) scatter_slab(slabs - 1);
     join_periodic(frame, sums);
@@ -261,7 +261,7 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
                 real* mean = u[a].data() + at;
 #pragma omp simd
                 for (std::size_t i = 0; i < count; ++i) {
-                    const bool any = from[i].weight > 1e-12;  // less is round-off of a marker that sits on the edge of the hat
+                    const bool any = from[i].weight > 1e-12;  // less is round-off of a marker at the edge of the hat function
                     mark[i] = any;
                     mean[i] = any ? from[i].momentum / from[i].weight : mean[i];
                 }

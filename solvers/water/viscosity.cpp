@@ -43,7 +43,7 @@ real SurfaceViscosity<D>::shear(const Faces& u, int a, int b, const Index<D>& I,
     return sum;
 }
 
-/// Whether no side of the domain is within reach of the stress at a face (nor the copy of the first face that ends a periodic axis).
+/// Returns whether the stress stencil of a face lies inside the domain, and does not include the copy of the first face on a periodic axis.
 template <int D>
 bool SurfaceViscosity<D>::is_inner(int a, const Index<D>& I) const {
     bool inner = true;
@@ -52,7 +52,7 @@ bool SurfaceViscosity<D>::is_inner(int a, const Index<D>& I) const {
 }
 
 namespace {
-/// From an entry of a grid to the next along axis d.
+/// Stride of a grid along axis d.
 template <int D>
 std::ptrdiff_t stride(const Grid<real, D>& grid, int d) {
     std::ptrdiff_t step = 1;
@@ -65,7 +65,7 @@ const real* entry(const Grid<real, D>& grid, const Index<D>& I) {
 }
 }  // namespace
 
-/// stress_divergence where is_inner: the same sums by plain strides.
+/// stress_divergence where is_inner: the same sums with constant strides.
 template <int D>
 real SurfaceViscosity<D>::inner_stress_divergence(const Faces& u, int a, const Index<D>& I) const {
     const auto& grid = u[static_cast<std::size_t>(a)];
@@ -105,7 +105,7 @@ real SurfaceViscosity<D>::stress_divergence(const Faces& u, int a, const Index<D
     return sum;
 }
 
-/// The diagonal of K.
+/// Computes the diagonal of K.
 template <int D>
 real SurfaceViscosity<D>::diagonal(int a, const Index<D>& I) const {
     real sum = 2 * frame_.inv_h[a] * frame_.inv_h[a] * (cell_(frame_.near(I, a, -1)) + cell_(frame_.near(I, a, 0)));
@@ -120,7 +120,7 @@ real SurfaceViscosity<D>::diagonal(int a, const Index<D>& I) const {
     return sum;
 }
 
-/// Room for all faces of this rank's planes, so that no step asks for more.
+/// Reserves memory for all faces of this rank's planes, so that no step allocates.
 template <int D>
 void SurfaceViscosity<D>::reserve_unknowns() {
     const int planes = frame_.cells[D - 1] + 1, own = detail::own_share.upper(planes) - detail::own_share.lower(0);
@@ -135,7 +135,7 @@ void SurfaceViscosity<D>::reserve_unknowns() {
     first_block_.resize(static_cast<std::size_t>(planes) + 1);
 }
 
-/// Air costs nothing: its faces have neither mass nor stress. Leaves the diagonal of K in diagonal_.
+/// Finds the unknowns. Faces in air have neither mass nor stress. Stores the diagonal of K in diagonal_.
 template <int D>
 void SurfaceViscosity<D>::list_unknowns() {
     for (int a = 0; a < D; ++a) {
@@ -164,7 +164,7 @@ void SurfaceViscosity<D>::list_unknowns() {
     block_sum_.resize(blocks_.size());
 }
 
-/// Block by block, those of a plane, and the planes' in order: whatever the threads, and whoever owns the planes.
+/// Sums blocks of a plane, then planes, in order: independent of the threads and of the partition.
 template <int D>
 real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
     parallel_for(0, static_cast<int>(blocks_.size()), [&](int i) {
@@ -189,8 +189,8 @@ void SurfaceViscosity<D>::set_diagonal(real s) {
     });
 }
 
-/// Conjugate gradients with the diagonal as preconditioner, on from x_ with its residual r_ until that is `reduction` times as large
-/// (squared).
+/// Conjugate gradients with Jacobi preconditioning, continued from x_ with residual r_ until its square is reduced by the factor
+/// `reduction`.
 template <int D>
 void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu, real reduction) {
     const real s = theta_ * dt_nu;
@@ -255,7 +255,7 @@ void SurfaceViscosity<D>::strain_inside(const MacState<D>& state, const Faces& u
     });
 }
 
-/// No mode of the grid, of dt ν λ ≤ 8 dt ν Σ 1/h², may change its sign.
+/// θ for which no mode of the grid, dt ν λ ≤ 8 dt ν Σ 1/h², changes its sign.
 template <int D>
 void SurfaceViscosity<D>::set_theta(real dt_nu) {
     real fastest = 0;

@@ -2,12 +2,12 @@
 // The weak form makes the free surface natural (Batty & Bridson 2008): minimise
 //     ½ Σ_faces m (u − u*)² + θ dt ν [ Σ_cells w Σ_a (∂_a u_a)² + Σ_edges w ½ (∂_b u_a + ∂_a u_b)² ]
 // with liquid fractions m of faces, w of cells and edges. (M + θ dt K) δ = −dt K u*, u = u* + δ; θ = ½ Crank–Nicolson, θ = 1 implicit.
-// Friction acts on the velocity of before and on what else the step adds to it, dt a = dt (f − ∇p/ρ): (M + θ dt K) Δ = dt (M a − ν K u),
-// so that a thick liquid creeps as its weight, its pressure and its friction balance. θ = 1 damps at any step; Crank–Nicolson's θ is the
-// least at which no mode of the grid swings from step to step: (1 − θ) dt ν λ ≤ 1, ½ at short steps.
-// Free-slip walls and solids exert no shear; no-slip ones hold the velocity half a cell (walls) or a face away (solids). Bodies that the
-// liquid sticks to are rows of the solve (body_rows.hpp), θ = 1: a body at a steady speed is then rubbed at the speed that it has.
-// Over ranks each solves for the faces of its own planes, and reads those of one plane beyond its cuts.
+// Friction uses the previous velocity plus the other changes of the step, dt a = dt (f − ∇p/ρ): (M + θ dt K) Δ = dt (M a − ν K u). So a
+// thick liquid creeps in balance of weight, pressure and friction. θ = 1 damps for any step; Crank–Nicolson's θ is the smallest at which no
+// mode of the grid oscillates: (1 − θ) dt ν λ ≤ 1, ½ for short steps.
+// Free-slip walls and solids exert no shear; no-slip ones prescribe the velocity half a cell (walls) or a face away (solids). No-slip
+// bodies are rows of the solve (body_rows.hpp), θ = 1: friction on a body in steady motion then uses its exact speed.
+// In parallel each rank solves for the faces of its own planes and reads one ghost plane on each side.
 #pragma once
 #include "core/parallel.hpp"
 #include "staggered/state.hpp"
@@ -27,22 +27,22 @@ class SurfaceViscosity {
 public:
     static constexpr int edges = D * (D - 1) / 2;
     SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick);
-    /// The liquid sticks to the bodies of state.grip.
+    /// Adds the no-slip bodies of state.grip.
     void hold_bodies(const MacState<D>& state);
-    /// Of the residual, over the right-hand side; else 1e-9.
+    /// Sets the tolerance of the residual relative to the right-hand side; default 1e-9.
     void aim(real tolerance) { target_ = tolerance * tolerance; }
     using Faces = std::array<Grid<real, D>, D>;
-    /// u → u + Δ − dt a over dt. `forces`: dt f, or none; a is what the last pressure, state.p, makes of it (van Kan 1986), as deep in the
-    /// liquid as it is known. `at_surface`: the same on faces that the surface cuts; else it is continued from inside. Throws
+    /// Advances u by Δ − dt a over dt. `forces`: dt f, or nullptr. a is computed from the last pressure, state.p (van Kan 1986), as deep in
+    /// the liquid as it is known. `at_surface`: a on faces cut by the surface; otherwise it is extrapolated from inside. Throws
     /// NumericalFailure("velocity", ...) when conjugate gradients miss the tolerance.
     void apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt,
                const MacVelocity<D>* forces = nullptr, const Faces* at_surface = nullptr);
-    /// The same step once more, with another dt a, whose values count on faces of liquid cells: `u` = u + Δ.
+    /// Repeats the step with another dt a, whose values are used on faces of liquid cells: `u` = u + Δ.
     void apply_again(const MacState<D>& state, const Faces& felt, real dt, Faces& u);
-    /// From faces of liquid cells to the others that friction reaches.
+    /// Extrapolates dt a from faces of liquid cells to the others that friction reads.
     void continue_felt(const MacState<D>& state, Faces& felt);
-    /// A bound of what friction does to the difference between `felt` and the dt a that it was solved with; over the size of u, to which
-    /// `least` times that of the forces is added.
+    /// Bound of the splitting error: the effect of friction on the difference between `felt` and the dt a of the last solve. It is relative
+    /// to the norm of u plus `least` times that of the forces.
     real unseen(const MacState<D>& state, const Faces& felt, real dt, const Faces& forces, real least);
     /// dt a of the last solve.
     const Faces& felt() const { return felt_; }
@@ -54,7 +54,7 @@ public:
 private:
     void set_weights(const MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     real edge_weight(int a, int b, const Index<D>& I, const Grid<std::uint8_t, D>& closed) const;
-    /// (K u)_a at a face [1/s² × fraction]; `fixed` 1: prescribed values of walls count, 0: they are zero (for corrections).
+    /// (K u)_a at a face [1/s² × fraction]; `fixed` 1: with the prescribed values of walls, 0: with zeros (for corrections).
     real stress_divergence(const Faces& u, int a, const Index<D>& I, real fixed) const;
     bool is_inner(int a, const Index<D>& I) const;
     real inner_stress_divergence(const Faces& u, int a, const Index<D>& I) const;
@@ -77,7 +77,7 @@ private:
     template <class F>
     void for_each_unknown(F&& f) const;
 
-    /// Unknown faces along an axis in one plane, entries [begin, end) of unknown_: what threads share, and sums are taken of.
+    /// Unknown faces along an axis in one plane, entries [begin, end) of unknown_: the unit of threads and of sums.
     struct Block {
         int axis;
         std::size_t begin, end;
@@ -89,19 +89,19 @@ private:
     real least_theta_, theta_;
     bool solids_stick_;
     int iterations_ = 0;
-    real target_ = 1e-18;                           // of the residual squared, over the right-hand side's
-    std::unique_ptr<BodyRows<D>> bodies_;           // none where the liquid sticks to none
+    real target_ = 1e-18;                           // squared residual over that of the right-hand side
+    std::unique_ptr<BodyRows<D>> bodies_;           // nullptr without no-slip bodies
     Grid<real, D> cell_;                            // liquid fraction of cells
-    std::array<Grid<real, D>, edges> edge_;         // ... of the boxes about edges, 0 where no shear acts
+    std::array<Grid<real, D>, edges> edge_;         // ... of the boxes around edges, 0 where no shear acts
     Faces mass_, x_, r_, p_, ap_, diagonal_;        // mass_ < 0: not an unknown
     Faces felt_;                                    // dt a
-    std::array<std::vector<Index<D>>, D> unknown_;  // faces that liquid or its stress reaches, in the order of the grid
-    std::vector<Block> blocks_;                     // plane after plane, in each axis after axis
-    std::vector<std::size_t> first_block_;          // of each plane of faces, and where those of the last one end
+    std::array<std::vector<Index<D>>, D> unknown_;  // faces reached by liquid or its stress, in the order of the grid
+    std::vector<Block> blocks_;                     // plane by plane, within each axis by axis
+    std::vector<std::size_t> first_block_;          // of each plane of faces, and the end of the last
     mutable std::vector<real> block_sum_;
 };
 
-/// f(a, I) may write what belongs to the face I of axis a only.
+/// f(a, I) must write only data of the face I of axis a.
 template <int D>
 template <class F>
 void SurfaceViscosity<D>::for_each_unknown(F&& f) const {

@@ -1,4 +1,4 @@
-// What friction feels of the rest of a step, dt a: from the last pressure, or from that of the same step (viscosity.hpp).
+// The explicit change of the velocity that friction uses, dt a: from the last pressure, or from that of the same step (viscosity.hpp).
 #include "water/viscosity.hpp"
 
 #include <cmath>
@@ -8,10 +8,10 @@ namespace weir::water {
 
 using poisson::Cell;
 
-/// Part of the residual that a further solve of the same step leaves.
+/// Reduction of the residual in a repeated solve of the same step.
 static constexpr real further = 1e-3;
 
-/// To the next face of axis a along d; false at a side.
+/// Moves to the next face of axis a along d; false at a side.
 template <int D>
 bool SurfaceViscosity<D>::step(int a, Index<D>& I, int d, int by) const {
     I[d] += by;
@@ -19,7 +19,7 @@ bool SurfaceViscosity<D>::step(int a, Index<D>& I, int d, int by) const {
     return I[d] >= 0 && I[d] < mass_[static_cast<std::size_t>(a)].extent()[d];
 }
 
-/// Where p_ is 1, `felt` is known; the others get the mean of the known ones beside them, two layers deep.
+/// `felt` is known where p_ is 1; the other faces get the mean of their known neighbours, two layers deep.
 template <int D>
 void SurfaceViscosity<D>::continue_to_surface(Faces& felt) {
     constexpr real none = std::numeric_limits<real>::quiet_NaN();
@@ -42,7 +42,7 @@ void SurfaceViscosity<D>::continue_to_surface(Faces& felt) {
     }
 }
 
-/// Known is what the last pressure says between cells that were liquid then and are now; beside bodies, deep in the liquid only.
+/// Known from the last pressure between cells that were liquid then and are now; beside bodies only deep in the liquid.
 template <int D>
 void SurfaceViscosity<D>::foresee(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
                                   const Faces* at_surface) {

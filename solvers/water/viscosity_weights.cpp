@@ -1,12 +1,12 @@
-// What of cells, faces and edges is liquid, for its viscosity, and where it sticks.
+// Liquid fractions of cells, faces and edges for the viscosity, and no-slip boundaries.
 #include "water/viscosity.hpp"
 
 namespace weir::water {
 
 using geometry::SideKind;
 
-/// The liquid part of the box about an edge on the lower sides of cell I; 0 where no shear acts, beside what slips. Of its four cells those
-/// that bodies close are as wet as those beside them, and those beyond a side are half of what the edge has.
+/// The liquid fraction of the box around an edge on the lower sides of cell I; 0 beside free-slip boundaries, where no shear acts. Of its
+/// four cells, those closed by bodies count as wet as their neighbours, and those beyond a side as half of the edge's fraction.
 template <int D>
 real SurfaceViscosity<D>::edge_weight(int a, int b, const Index<D>& I, const Grid<std::uint8_t, D>& closed) const {
     real sum = 0;
@@ -44,7 +44,7 @@ void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D
     refresh(cell_, frame_.periodic(D - 1), 2);
     for (int a = 0; a < D; ++a)
         for (int b = a + 1; b < D; ++b) {
-            const WiderPlanes beside(1);  // the next rank's first edges are beside this one's last faces
+            const WiderPlanes beside(1);  // the next rank's first edges border on this rank's last faces
             auto& weight = edge_[static_cast<std::size_t>(a + b - 1)];
             for_each_cell(weight.extent(), [&](const Index<D>& I) { weight(I) = edge_weight(a, b, I, closed); });
         }
@@ -61,7 +61,7 @@ void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D
         for (const InsideFace<D>& f : state.grip->inside) mass_[static_cast<std::size_t>(f.axis)](f.face) = -1;
 }
 
-/// The walls of bodies beside unknown faces: as wet as the edge, or the cell, between the face and the one inside.
+/// The walls of bodies beside unknown faces: their liquid fraction is that of the edge, or cell, between the face and the one inside.
 template <int D>
 void SurfaceViscosity<D>::list_walls(const MacState<D>& state) {
     for (const WallLink<D>& link : state.grip->links) {

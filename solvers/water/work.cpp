@@ -1,4 +1,4 @@
-// What a step of liquid takes of each plane of cells, for cuts that give every rank as much to do.
+// Estimated work of a step per plane of cells, for load balancing.
 #include "core/cut_by_work.hpp"
 #include "geometry/wet_part.hpp"
 #include "water/solver.hpp"
@@ -9,10 +9,10 @@ namespace weir::water {
 
 namespace {
 
-/// Nanoseconds a step: of a cell whatever it holds, of one in liquid, and of one within `beside` cells of the surface more. Least squares
-/// over steps of one thread on 64^3 cells: boxes of liquid an eighth to three quarters of a tank deep along z, a quarter and half of it
-/// along x, columns and cubes; FLIP, gravity, 6 iterations. Nine tanks are met within 12%, but for thin walls of liquid across all rows
-/// (26% less than they take: the pressure is solved in blocks of cells of a row). Cuts need the ratios alone.
+/// Nanoseconds per step: for every cell, additionally for a liquid cell, and additionally within `beside` cells of the surface. Least
+/// squares over steps of one thread on 64^3 cells: boxes of liquid an eighth to three quarters of a tank deep along z, a quarter and half
+/// of it along x, columns and cubes; FLIP, gravity, 6 iterations. The estimate is within 12% for nine tanks, except thin walls of liquid
+/// across all rows (26% too low: the pressure is solved in blocks of cells of a row). Only the ratios matter for the partition.
 constexpr real of_cell = 17, of_liquid = 480, of_surface = 390;
 constexpr int beside = 3;
 
@@ -20,7 +20,7 @@ std::int64_t work(real cells, const geometry::PlaneOfLiquid& plane) {
     return std::llround(of_cell * cells + of_liquid * plane.wet + of_surface * plane.near);
 }
 
-/// The same of a level set: each rank looks at the part that it holds, or at its share of a whole one, and they put together what they saw.
+/// The same for a level set: each rank counts the part that it stores, or its share of a whole one, and the counts are summed.
 std::vector<geometry::PlaneOfLiquid> planes_of(const Checkpoint& state, std::size_t planes, std::size_t cells_of_plane, real near) {
     const auto held = state.held<real>("surface.phi");
     if (held.all != planes * cells_of_plane) return {};
