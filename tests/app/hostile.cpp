@@ -138,7 +138,7 @@ TEST("the poster of a film replaces the poster of an earlier film, and no other 
     for (const std::string name : {"holiday", "picture", "link"}) {
         const Answer answer = movie(name + ".mp4");
         EXPECT_EQ(answer.code, 2) << answer.text;
-        EXPECT_NE(answer.text.find(name + ".png: the poster of " + name + ".mp4 would replace this file"), std::string::npos)
+        EXPECT_NE(answer.text.find(name + ".png: the poster of " + name + ".mp4 would overwrite this file"), std::string::npos)
             << answer.text;
     }
     EXPECT_EQ(text_of("holiday.png"), "mine");

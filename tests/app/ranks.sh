@@ -819,7 +819,7 @@ ends)
     refused "planes of cells" "$flat" --set grid.cells=[16,2]
     refused "unknown key" "$flat" --set grid.cell=2
     ends 2 over 2 "$weir" list solvers
-    says "only weir run goes over ranks"
+    says "only weir run works in parallel (MPI)"
     # a failure is everybody's
     ends 3 over 3 "$weir" run "$flat" --quiet --out failed --set scheme.poisson.method=cg --set scheme.poisson.max_iterations=1
     says "last good state"
