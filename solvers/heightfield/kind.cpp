@@ -155,7 +155,7 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
 
 /// What of a scene is not cut into slabs.
 void over_ranks(const scene::Scene& scene) {
-    if (scene.dim() == 3 && !scene.root().tables("floats").empty()) scene::one_process_only(scene, "floats", "objects float");
+    if (scene.dim() == 3 && !scene.root().tables("floats").empty()) scene::one_process_only(scene, "floats", "floating objects are");
     scene::refuse_hand(scene);
 }
 

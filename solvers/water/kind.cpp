@@ -61,7 +61,7 @@ Key scheme_keys() {
 /// What of a scene is not cut into slabs yet.
 void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
-    if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts or boils");
+    if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting and boiling of a substance are");
     scene::refuse_hand(scene);
 }
 

@@ -375,8 +375,8 @@ TEST("what cannot run over so many ranks is refused by a plan as by the run, wit
         ask("41", {}, "40 planes of cells along y cannot be partitioned over 41 ranks");
         ask("41", {}, "at most 40");
         ask("3", {"--set", "solver=tallcell", "--set", "effects.hand={}"},
-            "effects.hand: interactive forcing is supported in one process only");
-        ask("3", {"--set", "effects.hand={}"}, "effects.hand: interactive forcing is supported in one process only");
+            "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process");
+        ask("3", {"--set", "effects.hand={}"}, "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process");
     }
     refused({"cost", "--ranks", "2"}, "--ranks estimates a scene in parallel (MPI): it requires --plan SCENE");
     refused({"run", file, "--ranks", "2"}, "--ranks estimates a run in parallel (MPI): it requires --explain; mpirun -n N starts one");

@@ -104,12 +104,12 @@ TEST("formulas: precedence, functions, and where they are wrong") {
         }
         return std::string("accepted");
     };
-    EXPECT_EQ(wrong("1 + y"), "4: the formula knows no \"y\"");
+    EXPECT_EQ(wrong("1 + y"), "4: unknown name \"y\" in the formula");
     EXPECT_EQ(wrong("2 x"), "2: \"x\" is not expected here");
     EXPECT_EQ(wrong("(1 + x"), "6: a closing bracket is missing");
     EXPECT_EQ(wrong("1 +"), "3: the formula ends where a value is expected");
-    EXPECT_EQ(wrong("sin x"), "0: the formula knows no \"sin\"");
-    EXPECT_EQ(wrong("max(1)"), "5: \"max\" wants another number of arguments");
+    EXPECT_EQ(wrong("sin x"), "0: unknown name \"sin\" in the formula");
+    EXPECT_EQ(wrong("max(1)"), "5: \"max\" requires another number of arguments");
     EXPECT_EQ(wrong("x = 2"), "2: \"=\" is not expected here") << "a formula changes nothing";
     EXPECT_EQ(wrong("x, 2"), "0: one value is expected");
     EXPECT_EQ(f("x <= 2 ? 1 : 0", 2), 1);
@@ -143,7 +143,7 @@ TEST("a formula that threads ask at once answers each of them") {
 TEST("a mistake in a scene's formula stands at its own column") {
     const std::string text = "terrain = { kind = \"formula\", height = \"0.1*x + q\" }\n";
     const std::string told = refusal([&] { (void)test::height_solver(test::height_scene(2, text)); });
-    EXPECT_TRUE(has(told, ":7:49: terrain.height: the formula knows no \"q\"")) << told;
+    EXPECT_TRUE(has(told, ":7:49: terrain.height: unknown name \"q\" in the formula")) << told;
 }
 
 TEST_IN_2D_AND_3D("boxes and planes fill columns to the last bit; what hangs above the bed is refused") {

@@ -69,7 +69,8 @@ TEST("a wall of the domain moves along itself") {
 TEST("probes have names of their own that can name files, and lie in the domain") {
     EXPECT_EQ(refused("probes = [{ name = \"a\", kind = \"front\" }, { name = \"a\", kind = \"front\" }]\n"),
               List{"two probes have the name \"a\"; each writes its own file"});
-    EXPECT_EQ(refused("probes = [{ name = \"../a\", kind = \"front\" }]\n"), List{"probes[0].name is \"../a\"; it names a file"});
+    EXPECT_EQ(refused("probes = [{ name = \"../a\", kind = \"front\" }]\n"),
+              List{"probes[0].name is \"../a\", which is not a valid file name"});
     EXPECT_EQ(refused("probes = [{ name = \"a\", kind = \"point\", field = \"pressure\", at = [0.5, 1.5] }]\n"),
               List{"probes[0].at lies outside the domain"});
 }
@@ -87,7 +88,7 @@ TEST("a grid fits into the machine and into the precision of its numbers") {
     EXPECT_EQ(cells("grid = { cells = [100000, 100000], size = [1, 1] }"),
               "grid.cells makes 1e+10 cells; at most 2147483647 can be numbered");
     EXPECT_EQ(cells("grid = { cells = [10, 10], size = [1, 1e-9], origin = [0, 1e6] }"),
-              "cells of 1e-10 m along y cannot be told apart at y = 1e+06 m in double precision");
+              "cells of 1e-10 m along y cannot be distinguished at y = 1e+06 m in double precision");
     EXPECT_EQ(cells("grid = { cells = [10, 10], size = [1, 1e-9] }"), "");
 }
 
