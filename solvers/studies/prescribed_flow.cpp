@@ -9,7 +9,7 @@ scene::Key PrescribedFlow<D>::key() {
     using scene::Type;
     const scene::Key period{.name = "period",
                             .type = Type::number,
-                            .doc = "After it every point is back.",
+                            .doc = "Period after which every point returns.",
                             .unit = "s",
                             .required = true,
                             .min = 0,

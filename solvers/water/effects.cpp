@@ -26,7 +26,7 @@ std::vector<scene::Variant> effect_schemas() {
                                              .steerable = true}},
                                            {"sigma"}},
                                           {"viscosity",
-                                           "Friction inside the liquid, with fluid.viscosity; none on the free surface.",
+                                           "Viscous friction of the liquid with fluid.viscosity; no stress on the free surface.",
                                            {{.name = "scheme",
                                              .type = Type::choice,
                                              .doc = "In time.",
