@@ -119,12 +119,12 @@ effects = { gravity = { g = [0.0, -9.81] } }
         return weir_says({"run", folder.path() / "scene.toml", how, "--out", folder.path() / "out"}).text;
     };
     const std::string remark =
-        "fluid.density is not named, so it is 1 kg/m^3, as of air, and body \"raft\" of 500 kg/m^3 sinks in it; of water";
+        "fluid.density is not given; the default is 1 kg/m^3, the density of air, and body \"raft\" of 500 kg/m^3 sinks in it; for water";
     for (const char* how : {"--explain", "--quiet"}) {
         EXPECT_NE(said("", how).find(remark), std::string::npos) << said("", how);
-        EXPECT_EQ(said("fluid = { density = 1.0 }\n", how).find("is not named"), std::string::npos) << how;
+        EXPECT_EQ(said("fluid = { density = 1.0 }\n", how).find("is not given"), std::string::npos) << how;
     }
-    EXPECT_EQ(weir_says({"run", water, "--explain"}).text.find("is not named"), std::string::npos);
+    EXPECT_EQ(weir_says({"run", water, "--explain"}).text.find("is not given"), std::string::npos);
 }
 
 TEST("an effect of strength zero is remarked: it may cost, and does nothing") {

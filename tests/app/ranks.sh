@@ -730,7 +730,7 @@ petsc) # shares its rows: within the tolerance what multigrid finds in one proce
     [ "$built" -eq 0 ] || fail "PETSc's method was refused in one process"
     if [ $# -gt 4 ]; then
         ends 2 over 2 "$weir" run "$flat" --quiet --out refused --set scheme.poisson.method=petsc_icc
-        says "the ranks were started by another MPI than the one that PETSc was built with"
+        says "the ranks were started by an MPI other than the one that PETSc was built with"
         [ ! -e refused ] || fail "a refused run has written"
         exit 0
     fi
@@ -811,7 +811,7 @@ ends)
     refused "there is liquid over air at x = 50 m" "$below" --set 'waves={model="basin"}' \
         --set 'liquid=[{shape="box",min=[0.0,-10.0,0.0],max=[80.0,0.0,88.0]},{shape="box",min=[48.0,2.0,70.0],max=[60.0,3.0,88.0]}]'
     refused "terrain.height has no value at x = 0.05, z = 3.05" "$shallow" --set 'terrain.height="sqrt(3-z)"'
-    refused "hangs above the bed at x = 2.95, z = 2.85" "$columns" --set initial={} --set 'liquid=[{shape="box",min=[2.0,0.5,2.8],max=[3.0,0.6,7.4]}]'
+    refused "this water is above air at x = 2.95, z = 2.85" "$columns" --set initial={} --set 'liquid=[{shape="box",min=[2.0,0.5,2.8],max=[3.0,0.6,7.4]}]'
     ends 0 over 3 "$weir" run "$shallow" --checkpoint-every 1000 --quiet --out rows --set time.end=0.1
     cp rows/checkpoint.weir broken/checkpoint.weir
     refuses_to_continue "the checkpoint does not match the scene" "$shallow" --set grid.cells=[37,1,48]

@@ -342,8 +342,10 @@ TEST("columns that are raised are counted as poured, and neither run dry nor wet
     simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][3] += 0.16; });
     EXPECT_NEAR(integral(simulation, "volume"), volume + 0.01, 1e-15);
     EXPECT_NEAR(integral(simulation, "volume_balance"), balance, 1e-15);
-    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][2] = -0.1; }); }), "do not run dry");
-    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][12] = 0.1; }); }), "wet no dry ground");
+    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][2] = -0.1; }); }),
+              "does not support drying");
+    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][12] = 0.1; }); }),
+              "does not support wetting");
     expect_in(refusal([&] { simulation.edit("velocity", [](FieldEdit& u) { u.data[0][2] = 1; }); }), "must lie in [0, 0]");
     simulation.edit("velocity", [](FieldEdit& u) { u.data[1][1] = -0.1; });
     simulation.run_until(0.1);
