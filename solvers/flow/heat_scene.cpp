@@ -86,7 +86,8 @@ void Heat<D>::start(MacState<D>& s, const scene::Scene& scene) {
     auto &h = s["enthalpy"], &T = s["temperature"];
     const real coldest = -max_over(s.extent(), [&](const Index<D>& I) { return -T(I); });
     const char* place = scene.has("initial.temperature") ? "initial.temperature" : "substance";
-    if (!(coldest > 0)) scene.refuse(place, "the minimum is " + scene::number_text(coldest) + " K at the start", "greater than 0 K");
+    if (!(coldest > 0))
+        scene.refuse(place, "the lowest temperature is " + scene::number_text(coldest) + " K at the start", "it must be greater than 0 K");
     for_each_cell(s.extent(), [&](const Index<D>& I) { h(I) = melting_.enthalpy(T(I)); });
     const real most = max_over(s.extent(), [&](const Index<D>& I) { return h(I); });
     if (most > melting_.boils_above)

@@ -82,7 +82,7 @@ thermo::HeatCurve curve_at(real pressure, const std::string& path, const scene::
 }
 
 void check_temperature(const scene::Scene& scene, const std::string& path, real T) {
-    if (!(T > 0)) scene.refuse(path, "a temperature of " + scene::number_text(T) + " K", "greater than 0 K");
+    if (!(T > 0)) scene.refuse(path, "a temperature of " + scene::number_text(T) + " K", "it must be greater than 0 K");
 }
 
 void check_heater(const scene::Scene& scene, std::size_t i) {

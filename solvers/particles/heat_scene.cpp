@@ -324,7 +324,8 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
         if (free_) fluid.density[static_cast<std::size_t>(i)] = rho0_ * rest(fluid.enthalpy.back());
     }
     if (!(coldest > 0))
-        scene.refuse("initial.temperature", "the minimum is " + scene::number_text(coldest) + " K at the start", "greater than 0 K");
+        scene.refuse("initial.temperature", "the lowest temperature is " + scene::number_text(coldest) + " K at the start",
+                     "it must be greater than 0 K");
     if (boils_at_start(hottest))
         scene.refuse("initial.temperature", "at " + scene::number_text(hottest) + " K the liquid boils", "particles start as a liquid");
 }

@@ -74,7 +74,8 @@ LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame
     set_initial_field(temperature_, s.u, scene, "temperature");
     const char* place = scene.has("initial.temperature") ? "initial.temperature" : "substance";
     const real coldest = -max_over(s.extent(), [&](const Index<D>& I) { return -temperature_(I); });
-    if (!(coldest > 0)) scene.refuse(place, "the minimum is " + scene::number_text(coldest) + " K at the start", "greater than 0 K");
+    if (!(coldest > 0))
+        scene.refuse(place, "the lowest temperature is " + scene::number_text(coldest) + " K at the start", "it must be greater than 0 K");
     for_each_cell(s.extent(), [&](const Index<D>& I) { enthalpy_(I) = melting_.enthalpy(temperature_(I)); });
     const real most = max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? enthalpy_(I) : -infinity; });
     if (most > melting_.boils_above)
