@@ -135,7 +135,7 @@ std::vector<scene::Variant> effect_schemas() {
          {"n"}},
         {"damping",
          "Linear damping of all motion: dq/dt = -rate q; in columns of their vertical speed.",
-         {{.name = "rate", .type = Type::number, .doc = "It.", .unit = "1/s", .required = true, .min = 0, .steerable = true}},
+         {{.name = "rate", .type = Type::number, .doc = "Damping rate.", .unit = "1/s", .required = true, .min = 0, .steerable = true}},
          {"rate"}},
         {"rain",
          "Rain.",

@@ -52,7 +52,7 @@ Key terrain_key() {
             .selector = "kind",
             .variants = {{"formula",
                           "A formula of x, and of z in 3D: numbers, pi, + - * / ^ ( ), functions such as sin, exp, max.",
-                          {{.name = "height", .type = Type::text, .doc = "It.", .unit = "m", .required = true}}},
+                          {{.name = "height", .type = Type::text, .doc = "The formula.", .unit = "m", .required = true}}},
                          {"asc",
                           "An ESRI ASCII grid; bilinear between the centres of its cells. Its y axis is z here.",
                           {file,

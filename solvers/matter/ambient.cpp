@@ -37,7 +37,7 @@ Key ambient_key(const char* doc, const char* pressure_doc) {
                   .type = Type::tables,
                   .doc = doc,
                   .keys = {{.name = "t", .type = Type::number, .doc = "Time of the keyframe.", .unit = "s", .required = true},
-                           temperature_key("Of the surroundings."),
+                           temperature_key("Temperature of the surroundings."),
                            {.name = "pressure", .type = Type::number, .doc = pressure_doc, .unit = "Pa", .min = 0, .min_open = true}}}}};
 }
 

@@ -14,10 +14,10 @@ Key positive(const char* name, const char* doc, const char* unit) {
 }
 
 Key conductivity() {
-    return {.name = "conductivity", .type = Type::number, .doc = "Of heat.", .unit = "W/(m K)", .fallback = 0.0, .min = 0};
+    return {.name = "conductivity", .type = Type::number, .doc = "Thermal conductivity.", .unit = "W/(m K)", .fallback = 0.0, .min = 0};
 }
 
-Key heat_capacity() { return positive("heat_capacity", "At constant pressure.", "J/(kg K)"); }
+Key heat_capacity() { return positive("heat_capacity", "Specific heat capacity at constant pressure.", "J/(kg K)"); }
 
 Key point(const char* name, const char* doc) {
     return {.name = name, .type = Type::numbers, .doc = doc, .unit = "K, Pa", .required = true, .min = 0, .min_open = true, .length = 2};

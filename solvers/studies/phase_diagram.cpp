@@ -26,7 +26,7 @@ scene::Key PhaseDiagram::samples_key() {
     const auto list = [](const char* name, const char* unit) {
         return scene::Key{.name = name,
                           .type = Type::numbers,
-                          .doc = "Of each sample.",
+                          .doc = "Temperatures of the samples.",
                           .unit = unit,
                           .fallback = std::vector<double>{},
                           .min = 0,

@@ -29,7 +29,7 @@ std::vector<scene::Variant> effect_schemas() {
                                            "Viscous friction of the liquid with fluid.viscosity; no stress on the free surface.",
                                            {{.name = "scheme",
                                              .type = Type::choice,
-                                             .doc = "In time.",
+                                             .doc = "Scheme in time.",
                                              .fallback = std::string("crank-nicolson"),
                                              .choices = {"crank-nicolson", "implicit"}}},
                                            {"fluid.viscosity"}},
