@@ -43,7 +43,7 @@ Melting melting_of(const scene::Scene& scene, const std::string& solver) {
         scene.refuse(
             "heat.pressure",
             "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance->name() + " is never a liquid that freezes",
-            "solver \"" + solver + "\" knows solid and liquid");
+            "solver \"" + solver + "\" supports solid and liquid only");
     const Melting m = melting_at(*substance, scene.number("heat.pressure"));
     refuse_density(scene, *substance, m.T);
     return m;

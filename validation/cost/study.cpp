@@ -32,7 +32,7 @@ std::vector<Key> keys_of_studies() {
         {.name = "diverged_why", .type = Type::text, .doc = "Rationale."},
         {.name = "price",
          .type = Type::choice,
-         .doc = "Time is counted for a simulated second, or for a step.",
+         .doc = "Cost per simulated second, or per step.",
          .fallback = "second",
          .choices = {"second", "step"}},
         {.name = "methods", .type = Type::tables, .doc = "The methods compared; keys of the study apply to all.", .keys = method},
